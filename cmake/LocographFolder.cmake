@@ -1,0 +1,87 @@
+# One library target per folder of the house, all built alike.
+
+# locograph_folder(NAME [INTERFACE] SOURCES... [PUBLIC deps...] [PRIVATE deps...])
+# makes locograph::NAME out of the folder it is called in. Headers are included as
+# <locograph/NAME/...>, in the build tree through a link, after installation for real.
+function(locograph_folder name)
+  cmake_parse_arguments(arg "INTERFACE" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include/locograph)
+  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/include/locograph/${name}
+       SYMBOLIC)
+  set(target locograph_${name})
+  if(arg_INTERFACE)
+    add_library(${target} INTERFACE)
+    set(scope INTERFACE)
+  else()
+    add_library(${target} STATIC ${arg_SOURCES})
+    set(scope PUBLIC)
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:locograph_private_options>)
+    if(arg_PRIVATE)
+      target_link_libraries(${target} PRIVATE ${arg_PRIVATE})
+    endif()
+  endif()
+  add_library(locograph::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(${target} ${scope} cxx_std_20)
+  # The alignment of Eigen types is part of our ABI: pinned here, so that a user's -march cannot
+  # change the layout of a vertex or an edge.
+  target_compile_definitions(${target} ${scope} EIGEN_MAX_ALIGN_BYTES=64)
+  target_include_directories(${target} ${scope}
+    $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  if(arg_PUBLIC)
+    target_link_libraries(${target} ${scope} ${arg_PUBLIC})
+  endif()
+  install(TARGETS ${target} EXPORT locographTargets
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/locograph/${name} FILES_MATCHING PATTERN "*.h")
+endfunction()
+
+# locograph_test(NAME SOURCES... LINK targets...): one GoogleTest program, its cases listed in ctest.
+function(locograph_test name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE ${arg_LINK} locograph_private_options GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE
+    LOCOGRAPH_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data"
+    LOCOGRAPH_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_precompile_headers(${name} PRIVATE <gtest/gtest.h> <Eigen/Dense> <string> <vector>)
+  set_target_properties(${name} PROPERTIES
+    RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests/bin)
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600)
+endfunction()
+
+# locograph_benchmark(NAME SOURCES... LINK targets...): one Google Benchmark program.
+function(locograph_benchmark name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE ${arg_LINK} locograph_private_options benchmark::benchmark)
+  target_compile_definitions(${name} PRIVATE
+    LOCOGRAPH_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data"
+    LOCOGRAPH_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  set_target_properties(${name} PROPERTIES
+    RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/benchmarks/bin)
+endfunction()
+
+# What our own code is compiled with and nobody else's.
+add_library(locograph_private_options INTERFACE)
+target_compile_options(locograph_private_options INTERFACE -Wall -Wextra -Wpedantic)
+# GCC 12 warns about Eigen's own fixed-size kernels once they are inlined.
+target_compile_options(locograph_private_options INTERFACE
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overread
+    -Wno-stringop-overflow>)
+if(LOCOGRAPH_WERROR)
+  target_compile_options(locograph_private_options INTERFACE -Werror)
+endif()
+if(LOCOGRAPH_NATIVE AND NOT LOCOGRAPH_SANITIZE)
+  target_compile_options(locograph_private_options INTERFACE -march=native)
+endif()
+target_compile_options(locograph_private_options INTERFACE -fno-math-errno)
+if(LOCOGRAPH_SANITIZE)
+  add_compile_options(-fsanitize=${LOCOGRAPH_SANITIZE} -fno-omit-frame-pointer
+                      -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${LOCOGRAPH_SANITIZE})
+endif()

@@ -1,0 +1,15 @@
+# cmake --install, and what find_package(locograph) reads afterwards.
+include(CMakePackageConfigHelpers)
+set(locograph_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/locograph)
+install(EXPORT locographTargets NAMESPACE locograph:: DESTINATION ${locograph_config_dir})
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/locographConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/locographConfig.cmake INSTALL_DESTINATION ${locograph_config_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/locographConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/locographConfig.cmake
+              ${PROJECT_BINARY_DIR}/locographConfigVersion.cmake
+        DESTINATION ${locograph_config_dir})
+if(LOCOGRAPH_PLANNING)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/robots/models
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/locograph/robots)
+endif()

@@ -1,0 +1,118 @@
+#pragma once
+/// An edge type: an error on a few vertices, weighted by its information matrix Ω.
+///
+///     /// Range between a planar pose and a landmark. Error (1): measured − predicted [m].
+///     struct EdgeRange : Edge<1, VertexSE2, VertexXY> {
+///       double range_m = 0.0;
+///       auto fields() { return std::tie(range_m); }               // saved and loaded
+///       template <class T>
+///       void error(const SE2<T>& pose, const Eigen::Matrix<T, 2, 1>& point,
+///                  Eigen::Ref<Eigen::Matrix<T, 1, 1>> e) const {
+///         e[0] = range_m - (point - pose.translation()).norm();
+///       }
+///     };
+///     LOCOGRAPH_REGISTER_EDGE("RANGE_SE2_XY", EdgeRange)
+///
+/// Derivatives, the first that applies:
+///  1. by hand: void jacobians(views…, JacobianRef<E, 0>, JacobianRef<E, 1>, …) const, each
+///     (error × tangent of that vertex);
+///  2. dual numbers, when error() is a template over the scalar (see dual.h);
+///  3. central differences on local copies of the states, for opaque functions of double.
+///
+/// A DynamicEdge has its arity chosen at run time: any number of `Many` vertices, after the fixed
+/// `Leading` ones. It takes the same path through the solver; error() receives the many as a span:
+///
+///     struct EdgeCentroid : DynamicEdge<2, VertexXY> { …
+///       template <class T> void error(std::span<const Eigen::Matrix<T,2,1>> points, … e) const;
+///
+/// Optional members: fields() names what is saved besides ids and information (without it nothing
+/// is); bind(const Parameters&) looks up shared parameters before use; predict_first/predict_second
+/// (binary edges) give one vertex's view from the other's, for initial guesses. An error size known
+/// at run time only is Eigen::Dynamic and hides dimension().
+/// Every edge carries its vertices, information and robust kernel by value.
+
+#include <locograph/core/robust_kernel.h>
+#include <locograph/core/vertex.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <span>
+#include <tuple>
+#include <vector>
+
+namespace locograph {
+
+class Parameters;
+
+namespace detail {
+
+template <int Dimension>
+struct EdgeData {
+  static constexpr int kDimension = Dimension;
+  using Error = Eigen::Matrix<double, Dimension, 1>;
+  using Information = Eigen::Matrix<double, Dimension, Dimension>;
+
+  Information information = initial_information();  ///< Ω: symmetric, positive semi-definite
+  RobustKernel kernel;
+
+  int dimension() const {
+    return Dimension == Eigen::Dynamic ? static_cast<int>(information.rows()) : Dimension;
+  }
+  std::tuple<> fields() { return {}; }
+
+ private:
+  static Information initial_information() {
+    if constexpr (Dimension == Eigen::Dynamic) {
+      return Information();
+    } else {
+      return Information::Identity();
+    }
+  }
+};
+
+}  // namespace detail
+
+/// An edge on a fixed list of vertices.
+template <int Dimension, class... Vs>
+struct Edge : detail::EdgeData<Dimension> {
+  static constexpr bool kDynamicArity = false;
+  static constexpr int kArity = sizeof...(Vs);
+  using Vertices = std::tuple<Vs...>;
+  template <int I>
+  using VertexAt = std::tuple_element_t<I, Vertices>;
+
+  std::array<int, sizeof...(Vs)> vertices{};  ///< slots in the graph
+};
+
+/// An edge on fixed leading vertices and any number (at least one) of vertices of one more type.
+template <int Dimension, class ManyVertex, class... LeadingVertices>
+struct DynamicEdge : detail::EdgeData<Dimension> {
+  static constexpr bool kDynamicArity = true;
+  static constexpr int kLeading = sizeof...(LeadingVertices);
+  using Many = ManyVertex;
+  using Leading = std::tuple<LeadingVertices...>;
+
+  std::vector<int> vertices;  ///< slots in the graph, the leading ones first
+};
+
+/// Where a hand-written jacobians() of edge E writes the derivative by vertex I.
+template <class E, int I>
+using JacobianRef =
+    Eigen::Ref<Eigen::Matrix<double, E::kDimension, E::template VertexAt<I>::kDimension>>;
+
+/// The same for a DynamicEdge, which receives std::span<JacobianMap>, one for each vertex.
+using JacobianMap = Eigen::Map<Eigen::MatrixXd>;
+
+/// The type of the views of the many vertices of a DynamicEdge.
+template <class E, class T = double>
+using ManyView = std::conditional_t<HasDerived<typename E::Many>,
+                                    const std::remove_reference_t<ViewOf<typename E::Many, T>>*,
+                                    std::remove_cvref_t<ViewOf<typename E::Many, T>>>;
+
+/// Gives TYPE its tag in graph files; put it in the namespace of TYPE.
+#define LOCOGRAPH_REGISTER_EDGE(TAG, TYPE)                                 \
+  constexpr std::string_view locograph_tag(const TYPE*) { return TAG; }    \
+  static_assert(std::is_same_v<decltype(TYPE::kDynamicArity), const bool>, \
+                "an edge type derives from locograph::Edge or locograph::DynamicEdge");
+
+}  // namespace locograph

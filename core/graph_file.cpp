@@ -1,0 +1,301 @@
+#include <locograph/common/atomic_file.h>
+#include <locograph/core/graph_file.h>
+#include <locograph/core/information.h>
+#include <locograph/core/initial_guess.h>
+
+#include <algorithm>
+#include <map>
+
+namespace locograph {
+
+/// One file being read: sorts its lines by kind, so that they may come in any order.
+class GraphReader {
+ public:
+  GraphReader(const std::string& name, const std::filesystem::path& folder,
+              const TypeRegistry& types, const ReadOptions& options, ReadReport& report)
+      : types_(types), options_(options), report_(report) {
+    where_.file = name;
+    where_.folder = folder;
+  }
+
+  Graph read(std::string_view text) {
+    split(text);
+    if (parameters_.empty() && vertices_.empty() && edges_.empty() && report_.unknown.empty()) {
+      throw Error(where_.file, 0, "holds no graph", "VERTEX_… or EDGE_… lines");
+    }
+    for (const Line& line : parameters_)
+      at(line, [&](FieldReader& in) { read_parameter(line, in); });
+    for (const Line& line : vertices_) at(line, [&](FieldReader& in) { read_vertex(line, in); });
+    report_.vertices_from_edges = vertices_.empty() && !edges_.empty();
+    for (const Line& line : edges_) at(line, [&](FieldReader& in) { read_edge(line, in); });
+    for (const Line& line : fixes_) at(line, [&](FieldReader& in) { read_fix(in); });
+    report_indefinite();
+    if (report_.vertices_from_edges) initialise_from_edges(graph_);
+    return std::move(graph_);
+  }
+
+ private:
+  struct Line {
+    int number;
+    std::string_view tag;
+    std::string_view fields;
+    const void* type;
+  };
+
+  template <class F>
+  void at(const Line& line, F&& read) {
+    where_.line = line.number;
+    FieldReader in(line.fields, where_);
+    try {
+      read(in);
+    } catch (const Error& error) {
+      if (error.line() > 0) throw;
+      throw Error(where_.file, line.number, error.what(), "");
+    }
+  }
+
+  void split(std::string_view text) {
+    int number = 0;
+    while (!text.empty()) {
+      ++number;
+      const std::size_t end = text.find('\n');
+      std::string_view line = text.substr(0, end);
+      text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+      line = line.substr(0, comment_start(line));
+      const std::size_t first = line.find_first_not_of(" \t\r");
+      if (first == std::string_view::npos) continue;
+      line.remove_prefix(first);
+      const std::size_t length = std::min(line.find_first_of(" \t\r"), line.size());
+      sort_in({number, line.substr(0, length), line.substr(length), nullptr});
+    }
+  }
+
+  static std::size_t comment_start(std::string_view line) {
+    bool quoted = false;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      if (line[i] == '"') quoted = !quoted;
+      if (line[i] == '#' && !quoted) return i;
+    }
+    return line.size();
+  }
+
+  void sort_in(Line line) {
+    const std::string tag(line.tag);
+    if (const auto* vertex = types_.vertex_type(tag)) {
+      line.type = vertex;
+      vertices_.push_back(line);
+    } else if (const auto* edge = types_.edge_type(tag)) {
+      line.type = edge;
+      edges_.push_back(line);
+    } else if (const auto* parameter = types_.parameter_type(tag)) {
+      line.type = parameter;
+      parameters_.push_back(line);
+    } else if (tag == "FIX") {
+      fixes_.push_back(line);
+    } else {
+      const Error error(where_.file, line.number, "unknown tag '" + tag + "'",
+                        "a registered type (see: locograph list types)");
+      if (!options_.lenient) throw error;
+      report_.unknown.push_back(error.what());
+    }
+  }
+
+  void read_parameter(const Line& line, FieldReader& in) {
+    std::unique_ptr<Parameter> parameter =
+        (*static_cast<const TypeRegistry::MakeParameter*>(line.type))();
+    const int number = in.integer();
+    parameter->read(in);
+    in.expect_end();
+    graph_.parameters_.set(number, std::move(parameter));
+  }
+
+  int pool_of(std::type_index type, std::unique_ptr<VertexPool> fresh) {
+    for (std::size_t i = 0; i < graph_.vertex_pools_.size(); ++i) {
+      if (graph_.vertex_pools_[i]->type() == type) return static_cast<int>(i);
+    }
+    graph_.vertex_pools_.push_back(std::move(fresh));
+    return static_cast<int>(graph_.vertex_pools_.size()) - 1;
+  }
+
+  int pool_of(const TypeRegistry::VertexType& type) {
+    const auto known = vertex_pool_of_type_.find(&type);
+    if (known != vertex_pool_of_type_.end()) return known->second;
+    return vertex_pool_of_type_[&type] = pool_of(type.type, type.make_pool());
+  }
+
+  void read_vertex(const Line& line, FieldReader& in) {
+    const int pool = pool_of(*static_cast<const TypeRegistry::VertexType*>(line.type));
+    const int id = in.integer();
+    const int known = graph_.slot_of(id);
+    if (known >= 0) {
+      in.fail("vertex " + std::to_string(id) + " is declared twice, first on line " +
+                  std::to_string(graph_.vertex_records_[known].line),
+              "an id used once");
+    }
+    // Types that need parameters (a robot) find them here.
+    in.set_parameters(&graph_.parameters_);
+    const int index = graph_.vertex_pools_[pool]->read(in);
+    in.expect_end();
+    const int slot = graph_.add_vertex_record(id, pool, index);
+    graph_.vertex_records_[slot].line = line.number;
+    if (line.tag != graph_.vertex_pools_[pool]->tag()) {
+      graph_.vertex_records_[slot].alias = alias_of(std::string(line.tag));
+    }
+  }
+
+  int alias_of(const std::string& tag) {
+    const auto found = std::find(graph_.aliases_.begin(), graph_.aliases_.end(), tag);
+    if (found == graph_.aliases_.end()) graph_.aliases_.push_back(tag);
+    return static_cast<int>(std::find(graph_.aliases_.begin(), graph_.aliases_.end(), tag) -
+                            graph_.aliases_.begin());
+  }
+
+  int edge_pool_of(const TypeRegistry::MakeEdgePool& make) {
+    const auto known = edge_pool_of_type_.find(&make);
+    if (known != edge_pool_of_type_.end()) return known->second;
+    graph_.edge_pools_.push_back(make());
+    return edge_pool_of_type_[&make] = static_cast<int>(graph_.edge_pools_.size()) - 1;
+  }
+
+  void read_edge(const Line& line, FieldReader& in) {
+    const int number = edge_pool_of(*static_cast<const TypeRegistry::MakeEdgePool*>(line.type));
+    EdgePool& pool = *graph_.edge_pools_[number];
+    slots_.clear();
+    if (pool.arity() >= 0) {
+      for (int i = 0; i < pool.arity(); ++i) slots_.push_back(vertex_of_edge(pool, i, line, in));
+    } else {
+      while (in.peek() != "||") {
+        if (in.at_end()) in.fail("no '||' after the vertices", "TAG id… || n …");
+        slots_.push_back(vertex_of_edge(pool, static_cast<int>(slots_.size()), line, in));
+      }
+      in.word();
+      if (slots_.empty()) in.fail("an edge without vertices", "at least one id before '||'");
+    }
+    in.set_parameters(&graph_.parameters_);
+    const int index = pool.read(slots_, in);
+    in.expect_end();
+    pool.bind(index, graph_.parameters_);
+    check_information(pool, index, line.number);
+    graph_.add_edge_record(number, index, line.number);
+  }
+
+  int vertex_of_edge(const EdgePool& pool, int slot, const Line& line, FieldReader& in) {
+    const int id = in.integer();
+    int vertex = graph_.slot_of(id);
+    if (vertex < 0) {
+      if (!report_.vertices_from_edges) {
+        in.fail("unknown vertex " + std::to_string(id), "an id declared by a VERTEX line");
+      }
+      const int pool_number = pool_of(pool.slot_type(slot), pool.make_slot_pool(slot));
+      const int index = graph_.vertex_pools_[pool_number]->add_default();
+      vertex = graph_.add_vertex_record(id, pool_number, index);
+      graph_.vertex_records_[vertex].line = line.number;
+    }
+    const Graph::VertexRecord& record = graph_.vertex_records_[vertex];
+    if (graph_.vertex_pools_[record.pool]->type() != pool.slot_type(slot)) {
+      in.fail("vertex " + std::to_string(id) + " is a " + graph_.vertex_tag(vertex),
+              "a " + pool.make_slot_pool(slot)->tag());
+    }
+    if (std::find(slots_.begin(), slots_.end(), vertex) != slots_.end()) {
+      in.fail("the edge names vertex " + std::to_string(id) + " twice", "different vertices");
+    }
+    return vertex;
+  }
+
+  void check_information(EdgePool& pool, int index, int line) {
+    // Consecutive edges of real files mostly share their matrix: the last good one is remembered.
+    Eigen::MatrixXd information = pool.information(index);
+    if (information.rows() == last_good_.rows() && information == last_good_) return;
+    if (is_positive_semidefinite(information)) {
+      last_good_ = std::move(information);
+      return;
+    }
+    if (report_.indefinite_information++ == 0) report_.first_indefinite_line = line;
+    if (options_.lenient) pool.set_information(index, nearest_positive_semidefinite(information));
+  }
+
+  void report_indefinite() const {
+    if (report_.indefinite_information == 0 || options_.lenient) return;
+    throw Error(where_.file, report_.first_indefinite_line,
+                "the information matrix is indefinite, the first of " +
+                    std::to_string(report_.indefinite_information) + " such among " +
+                    std::to_string(graph_.edge_count()) + " edges",
+                "positive semi-definite matrices (--lenient projects them to the nearest ones)");
+  }
+
+  void read_fix(FieldReader& in) {
+    do {
+      const int id = in.integer();
+      const int slot = graph_.slot_of(id);
+      if (slot < 0) {
+        in.fail("unknown vertex " + std::to_string(id), "an id declared by a VERTEX line");
+      }
+      graph_.set_fixed(slot, true);
+    } while (!in.at_end());
+  }
+
+  const TypeRegistry& types_;
+  const ReadOptions& options_;
+  ReadReport& report_;
+  FileLine where_;
+  std::vector<Line> parameters_, vertices_, edges_, fixes_;
+  std::map<const void*, int> vertex_pool_of_type_, edge_pool_of_type_;
+  std::vector<int> slots_;
+  Eigen::MatrixXd last_good_;
+  Graph graph_;
+};
+
+Graph read_graph_text(std::string_view text, const std::string& name,
+                      const std::filesystem::path& folder, const TypeRegistry& types,
+                      const ReadOptions& options, ReadReport* report) {
+  ReadReport local;
+  ReadReport& used = report == nullptr ? local : *report;
+  used = {};
+  return GraphReader(name, folder, types, options, used).read(text);
+}
+
+Graph read_graph(const std::filesystem::path& path, const TypeRegistry& types,
+                 const ReadOptions& options, ReadReport* report) {
+  const std::string text = read_file(path);
+  return read_graph_text(text, path.string(), path.parent_path(), types, options, report);
+}
+
+std::string write_graph_text(const Graph& graph, const std::filesystem::path& folder) {
+  FieldWriter out(folder);
+  for (const auto& [number, parameter] : graph.parameters().all()) {
+    out.tag(parameter->tag());
+    out.integer(number);
+    parameter->write(out);
+    out.end_line();
+  }
+  for (int slot = 0; slot < graph.vertex_slots(); ++slot) {
+    if (!graph.vertex_alive(slot)) continue;
+    const Graph::VertexRecord& record = graph.vertex_record(slot);
+    out.tag(graph.vertex_tag(slot));
+    out.integer(record.id);
+    graph.vertex_pools()[record.pool]->write(record.index, out);
+    out.end_line();
+    if (record.fixed) {
+      out.tag("FIX");
+      out.integer(record.id);
+      out.end_line();
+    }
+  }
+  for (int slot = 0; slot < graph.edge_slots(); ++slot) {
+    if (!graph.edge_alive(slot)) continue;
+    const Graph::EdgeRecord& record = graph.edge_record(slot);
+    const EdgePool& pool = *graph.edge_pools()[record.pool];
+    out.tag(pool.tag());
+    for (const int v : pool.vertices(record.index)) out.integer(graph.vertex_record(v).id);
+    if (pool.arity() < 0) out.tag(" ||");
+    pool.write(record.index, out);
+    out.end_line();
+  }
+  return out.text();
+}
+
+void write_graph(const Graph& graph, const std::filesystem::path& path) {
+  write_file_atomically(path, write_graph_text(graph, path.parent_path()));
+}
+
+}  // namespace locograph

@@ -1,0 +1,268 @@
+#include <locograph/core/optimiser.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace locograph {
+namespace {
+
+using Reason = OptimiserResult::Reason;
+using Vector = Eigen::Map<Eigen::VectorXd>;
+
+Vector map(std::vector<double>& values) {
+  return Vector(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+void check(bool good, const char* option, const char* expected) {
+  if (!good) throw Error(std::string("option ") + option + " is out of range", expected);
+}
+
+}  // namespace
+
+void OptimiserOptions::validate() const {
+  check(max_iterations >= 0, "max_iterations", "0 or more");
+  check(gain >= 0.0 && gain < 1.0, "gain", "a fraction in [0, 1)");
+  check(gradient_tolerance >= 0.0, "gradient_tolerance", "0 or more");
+  check(step_tolerance >= 0.0, "step_tolerance", "0 or more");
+  check(initial_lambda > 0.0, "initial_lambda", "a positive number");
+  check(initial_radius > 0.0, "initial_radius", "a positive number");
+  check(max_refusals >= 1, "max_refusals", "1 or more");
+}
+
+std::string OptimiserResult::reason_text() const {
+  switch (reason) {
+    case Reason::kRunning:
+      return "still running";
+    case Reason::kGain:
+      return "converged: the cost changes less than the gain asked for";
+    case Reason::kGradient:
+      return "converged: the gradient vanishes";
+    case Reason::kStep:
+      return "converged: the step vanishes";
+    case Reason::kMaxIterations:
+      return "the number of iterations is used up";
+    case Reason::kDeadline:
+      return "the deadline has passed";
+    case Reason::kNoProgress:
+      return "no step lowers the cost";
+    case Reason::kSingular:
+      return "the linear system is singular";
+    case Reason::kNotFinite:
+      return "the initial cost is not finite";
+    case Reason::kDiverged:
+      return "the step raised the cost";
+    case Reason::kNothingToDo:
+      return "converged: every vertex is fixed";
+  }
+  return "";
+}
+
+void Optimiser::start(Workspace& workspace, LinearSolver& solver) {
+  workspace_ = &workspace;
+  solver_ = &solver;
+  // The statistics keep their memory: a moving horizon starts an optimisation every cycle.
+  std::vector<IterationStatistics> statistics = std::move(result_.statistics);
+  statistics.clear();
+  statistics.reserve(options_.max_iterations);
+  result_ = {};
+  result_.statistics = std::move(statistics);
+  lambda_ = 0.0;
+  lambda_growth_ = 2.0;
+  radius_ = options_.initial_radius;
+  const int n = workspace.problem().dimension();
+  diagonal_.resize(n);
+  newton_step_.resize(n);
+  negative_gradient_.resize(n);
+  solver.analyse(workspace.problem().pattern());
+  cost_ = workspace.evaluate(workspace.state());
+  result_.initial = result_.final = cost_;
+  if (!std::isfinite(cost_.robust)) finish(Reason::kNotFinite);
+  if (n == 0) finish(Reason::kNothingToDo);
+}
+
+bool Optimiser::finish(Reason reason) {
+  result_.reason = reason;
+  result_.converged = reason == Reason::kGain || reason == Reason::kGradient ||
+                      reason == Reason::kStep || reason == Reason::kNothingToDo;
+  result_.final = cost_;
+  return false;
+}
+
+bool Optimiser::iterate() {
+  if (result_.reason != Reason::kRunning) return false;
+  if (result_.iterations >= options_.max_iterations) return finish(Reason::kMaxIterations);
+  if (options_.deadline.passed()) return finish(Reason::kDeadline);
+  IterationStatistics now;
+  Stopwatch watch;
+  workspace_->linearise();
+  now.time_linearise = watch.seconds();
+  map(negative_gradient_) = -map(workspace_->gradient());
+  if (map(negative_gradient_).lpNorm<Eigen::Infinity>() <= options_.gradient_tolerance) {
+    return finish(Reason::kGradient);
+  }
+  bool more = false;
+  switch (options_.algorithm) {
+    case Algorithm::kGaussNewton:
+      more = iterate_gauss_newton(now);
+      break;
+    case Algorithm::kLevenbergMarquardt:
+      more = iterate_levenberg_marquardt(now);
+      break;
+    case Algorithm::kDogleg:
+      more = iterate_dogleg(now);
+      break;
+  }
+  now.cost = cost_.robust;
+  now.chi2 = cost_.chi2;
+  if (result_.statistics.size() < result_.statistics.capacity()) result_.statistics.push_back(now);
+  return more;
+}
+
+/// step = (H + diag(damping))⁻¹ (−gradient), timed.
+bool Optimiser::solve(IterationStatistics& now) {
+  const Stopwatch watch;
+  const bool good = solver_->factorise(workspace_->hessian().data(), workspace_->damping().data());
+  if (good) {
+    solver_->solve(negative_gradient_.data(), workspace_->step().data());
+  } else if (solver_->failed_row() >= 0) {
+    result_.singular_vertex = workspace_->problem().free_vertices()[solver_->failed_row()];
+  }
+  now.time_solve += watch.seconds();
+  return good;
+}
+
+Cost Optimiser::evaluate_trial(IterationStatistics& now) {
+  const Stopwatch watch;
+  workspace_->apply_step();
+  const Cost cost = workspace_->evaluate(workspace_->trial());
+  now.time_evaluate += watch.seconds();
+  return cost;
+}
+
+double Optimiser::state_norm() const { return map(workspace_->state()).norm(); }
+
+/// Takes the trial state; true when there is more to do.
+bool Optimiser::accept(const Cost& cost, IterationStatistics& now) {
+  const double before = cost_.robust;
+  now.step_norm = map(workspace_->step()).norm();
+  const bool tiny =
+      now.step_norm <= options_.step_tolerance * (state_norm() + options_.step_tolerance);
+  workspace_->accept_trial();
+  cost_ = cost;
+  result_.final = cost;
+  ++result_.iterations;
+  if (before - cost.robust <= options_.gain * before) return finish(Reason::kGain);
+  if (tiny) return finish(Reason::kStep);
+  return true;
+}
+
+bool Optimiser::iterate_gauss_newton(IterationStatistics& now) {
+  map(workspace_->damping()).setZero();
+  if (!solve(now)) return finish(Reason::kSingular);
+  const Cost cost = evaluate_trial(now);
+  // A rise beyond rounding: keep the better state and say so.
+  if (!(cost.robust <= cost_.robust * (1.0 + 1e-9))) return finish(Reason::kDiverged);
+  return accept(cost, now);
+}
+
+bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
+  workspace_->diagonal(diagonal_);
+  if (lambda_ == 0.0) {
+    lambda_ =
+        options_.initial_lambda * (options_.scale_by_diagonal ? 1.0 : map(diagonal_).maxCoeff());
+  }
+  bool factorised = false;
+  for (; now.refusals < options_.max_refusals; ++now.refusals) {
+    now.lambda = lambda_;
+    Vector damping = map(workspace_->damping());
+    if (options_.scale_by_diagonal) {
+      damping = lambda_ * map(diagonal_).cwiseMax(1e-9).cwiseMin(1e32);
+    } else {
+      damping.setConstant(lambda_);
+    }
+    if (solve(now)) {
+      factorised = true;
+      const Vector step = map(workspace_->step());
+      if (step.norm() <= options_.step_tolerance * (state_norm() + options_.step_tolerance)) {
+        return finish(Reason::kStep);
+      }
+      const Cost cost = evaluate_trial(now);
+      // F(h) ≈ F + 2gᵀh + hᵀHh, and (H + D)h = −g: the predicted decrease is hᵀ(Dh − g).
+      const double predicted = step.dot(damping.cwiseProduct(step) + map(negative_gradient_));
+      now.gain_ratio = (cost_.robust - cost.robust) / predicted;
+      if (std::isfinite(cost.robust) && now.gain_ratio > 0.0) {
+        const double s = 2.0 * now.gain_ratio - 1.0;
+        lambda_ *= std::max(1.0 / 3.0, 1.0 - s * s * s);
+        lambda_growth_ = 2.0;
+        return accept(cost, now);
+      }
+      // At the bottom of the valley rounding decides; the model says there is nothing to gain.
+      if (predicted <= options_.gain * cost_.robust * 1e-3) return finish(Reason::kGain);
+    }
+    lambda_ *= lambda_growth_;
+    lambda_growth_ *= 2.0;
+    if (options_.deadline.passed()) return finish(Reason::kDeadline);
+  }
+  return finish(factorised ? Reason::kNoProgress : Reason::kSingular);
+}
+
+bool Optimiser::iterate_dogleg(IterationStatistics& now) {
+  Vector step = map(workspace_->step());
+  const Vector descent = map(negative_gradient_);
+  Vector newton = map(newton_step_);
+  // A little damping when H alone cannot be factorised.
+  double damping = 0.0;
+  workspace_->diagonal(diagonal_);
+  for (;;) {
+    map(workspace_->damping()).setConstant(damping);
+    if (solve(now)) break;
+    damping = damping == 0.0 ? 1e-9 * map(diagonal_).maxCoeff() : damping * 100.0;
+    if (!(damping < map(diagonal_).maxCoeff())) return finish(Reason::kSingular);
+  }
+  newton = step;
+  const double curvature = workspace_->quadratic_form(negative_gradient_);
+  const double alpha = curvature > 0.0 ? descent.squaredNorm() / curvature : 0.0;
+  for (; now.refusals < options_.max_refusals; ++now.refusals) {
+    now.lambda = radius_;
+    if (newton.norm() <= radius_) {
+      step = newton;
+    } else if (alpha * descent.norm() >= radius_ || alpha == 0.0) {
+      step = radius_ / descent.norm() * descent;
+    } else {
+      // From the Cauchy point a towards the Newton step b until the radius: |a + β(b − a)| = Δ.
+      const double a2 = alpha * alpha * descent.squaredNorm();
+      const double ab = alpha * descent.dot(newton) - a2;
+      const double b2 = (newton - alpha * descent).squaredNorm();
+      const double beta = (-ab + std::sqrt(ab * ab + b2 * (radius_ * radius_ - a2))) / b2;
+      step = alpha * descent + beta * (newton - alpha * descent);
+    }
+    const Cost cost = evaluate_trial(now);
+    const double predicted =
+        2.0 * descent.dot(step) - workspace_->quadratic_form(workspace_->step());
+    now.gain_ratio = (cost_.robust - cost.robust) / predicted;
+    const bool good = std::isfinite(cost.robust) && now.gain_ratio > 0.0;
+    const double norm = step.norm();
+    if (good && now.gain_ratio > 0.75) radius_ = std::max(radius_, 3.0 * norm);
+    if (!good || now.gain_ratio < 0.25) radius_ = std::min(radius_, norm) / 2.0;
+    if (good) return accept(cost, now);
+    if (predicted <= options_.gain * cost_.robust * 1e-3) return finish(Reason::kGain);
+    if (options_.deadline.passed()) return finish(Reason::kDeadline);
+  }
+  return finish(Reason::kNoProgress);
+}
+
+OptimiserResult optimise(Graph& graph, const OptimiserOptions& options, LinearSolver& solver) {
+  Problem problem;
+  problem.compile(graph);
+  Workspace workspace;
+  workspace.allocate(problem);
+  workspace.load_state();
+  Optimiser optimiser(options);
+  optimiser.start(workspace, solver);
+  while (optimiser.iterate()) {
+  }
+  workspace.store_state();
+  return optimiser.result();
+}
+
+}  // namespace locograph

@@ -1,0 +1,121 @@
+#pragma once
+/// Minimises Σ ρ(eᵀΩe) over the free vertices of a problem: Gauss-Newton, Levenberg-Marquardt or
+/// Powell's dogleg.
+///
+///     OptimiserOptions options;
+///     OptimiserResult result = optimise(graph, options, *make_linear_solver("auto"));
+///     if (!result.converged) std::cerr << result.reason_text();
+///
+/// Step by step, on a problem compiled once (a moving horizon does this every cycle):
+///
+///     Optimiser optimiser(options);
+///     optimiser.start(workspace, solver);     // evaluates; may allocate
+///     while (optimiser.iterate()) {}          // does not allocate
+///     workspace.store_state();
+///
+/// Levenberg-Marquardt follows Madsen, Nielsen & Tingleff 2004 (gain ratio and Nielsen's update of
+/// λ, their algorithm 3.16); the dogleg their algorithm 3.21. Deterministic.
+
+#include <locograph/common/deadline.h>
+#include <locograph/core/linear_solver.h>
+#include <locograph/core/workspace.h>
+
+#include <string>
+#include <vector>
+
+namespace locograph {
+
+enum class Algorithm { kGaussNewton, kLevenbergMarquardt, kDogleg };
+
+struct OptimiserOptions {
+  Algorithm algorithm = Algorithm::kLevenbergMarquardt;
+  int max_iterations = 100;
+  /// Converged when an accepted step lowers the cost by less than this fraction of it.
+  double gain = 1e-9;
+  /// Converged when no entry of the gradient JᵀΩe is larger.
+  double gradient_tolerance = 1e-10;
+  /// Converged when |step| is below this fraction of |state|.
+  double step_tolerance = 1e-12;
+  /// First λ, as a fraction of the largest diagonal entry of H.
+  double initial_lambda = 1e-5;
+  /// Damp by λ·diag(H) (Marquardt 1963) instead of λ·I; initial_lambda is then λ itself.
+  bool scale_by_diagonal = false;
+  /// First trust-region radius of the dogleg, in units of the tangent.
+  double initial_radius = 1e4;
+  /// Steps that may be refused in a row before the iteration gives up.
+  int max_refusals = 16;
+  Deadline deadline;
+
+  /// Throws Error naming the option that is out of range.
+  void validate() const;
+};
+
+struct IterationStatistics {
+  double cost = 0.0, chi2 = 0.0;
+  double gain_ratio = 0.0;
+  double lambda = 0.0;  ///< or the trust-region radius
+  double step_norm = 0.0;
+  int refusals = 0;
+  double time_linearise = 0.0, time_solve = 0.0, time_evaluate = 0.0;  ///< seconds
+};
+
+struct OptimiserResult {
+  enum class Reason {
+    kRunning,
+    kGain,
+    kGradient,
+    kStep,
+    kMaxIterations,
+    kDeadline,
+    kNoProgress,   ///< no damping gave a lower cost
+    kSingular,     ///< H is not positive definite: singular_vertex says where
+    kNotFinite,    ///< the initial cost is not a number
+    kDiverged,     ///< Gauss-Newton raised the cost
+    kNothingToDo,  ///< no free vertex
+  };
+  Reason reason = Reason::kRunning;
+  bool converged = false;
+  int iterations = 0;
+  Cost initial, final;
+  int singular_vertex = -1;  ///< slot, -1 when H was never singular
+  std::vector<IterationStatistics> statistics;
+
+  std::string reason_text() const;
+};
+
+class Optimiser {
+ public:
+  explicit Optimiser(const OptimiserOptions& options) : options_(options) { options.validate(); }
+
+  /// The workspace must hold the initial state (load_state()).
+  void start(Workspace& workspace, LinearSolver& solver);
+  /// One accepted step; false when it is over.
+  bool iterate();
+  const OptimiserResult& result() const { return result_; }
+  OptimiserOptions& options() { return options_; }
+
+ private:
+  enum class Trial { kAccepted, kRefused, kFailed };
+
+  bool finish(OptimiserResult::Reason reason);
+  bool iterate_gauss_newton(IterationStatistics& now);
+  bool iterate_levenberg_marquardt(IterationStatistics& now);
+  bool iterate_dogleg(IterationStatistics& now);
+  bool solve(IterationStatistics& now);
+  Cost evaluate_trial(IterationStatistics& now);
+  bool accept(const Cost& cost, IterationStatistics& now);
+  double state_norm() const;
+
+  OptimiserOptions options_;
+  Workspace* workspace_ = nullptr;
+  LinearSolver* solver_ = nullptr;
+  OptimiserResult result_;
+  Cost cost_;
+  double lambda_ = 0.0, lambda_growth_ = 2.0, radius_ = 0.0;
+  std::vector<double> diagonal_, newton_step_, negative_gradient_;
+};
+
+/// Compiles, optimises and writes the result back to the graph. Vertices that are fixed stay.
+OptimiserResult optimise(Graph& graph, const OptimiserOptions& options, LinearSolver& solver);
+
+}  // namespace locograph

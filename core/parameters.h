@@ -1,0 +1,71 @@
+#pragma once
+/// Parameters: what many edges or vertices share (a sensor's offset, a robot, a map), by number.
+///
+///     struct PoseOffset : Parameter { … tag(), read(), write() … };
+///     graph.parameters().set(0, std::make_shared<PoseOffset>(…));
+///     auto offset = graph.parameters().get<PoseOffset>(0);
+///
+/// In a file a parameter is one line `TAG number fields…`. Parameters are immutable once set.
+
+#include <locograph/core/fields.h>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <typeinfo>
+
+namespace locograph {
+
+class Parameter {
+ public:
+  virtual ~Parameter() = default;
+  virtual std::string_view tag() const = 0;
+  virtual void read(FieldReader& in) = 0;
+  virtual void write(FieldWriter& out) const = 0;
+};
+
+class Parameters {
+ public:
+  /// Throws Error when the number is taken.
+  void set(int number, std::shared_ptr<const Parameter> parameter) {
+    if (!all_.emplace(number, std::move(parameter)).second) {
+      throw Error("parameter " + std::to_string(number) + " is given twice", "one definition");
+    }
+  }
+  void replace(int number, std::shared_ptr<const Parameter> parameter) {
+    all_[number] = std::move(parameter);
+  }
+
+  /// Throws Error when there is none, or when it is of another type.
+  template <class P>
+  std::shared_ptr<const P> get(int number) const {
+    const auto found = all_.find(number);
+    if (found == all_.end()) {
+      throw Error("unknown parameter " + std::to_string(number),
+                  "a number declared by a PARAMS line");
+    }
+    std::shared_ptr<const P> typed = std::dynamic_pointer_cast<const P>(found->second);
+    if (!typed) {
+      throw Error(
+          "parameter " + std::to_string(number) + " is a " + std::string(found->second->tag()),
+          "another type of parameter");
+    }
+    return typed;
+  }
+
+  /// The first parameter of type P in order of number, null when there is none.
+  template <class P>
+  std::shared_ptr<const P> find() const {
+    for (const auto& [number, parameter] : all_) {
+      if (auto typed = std::dynamic_pointer_cast<const P>(parameter)) return typed;
+    }
+    return nullptr;
+  }
+
+  const std::map<int, std::shared_ptr<const Parameter>>& all() const { return all_; }
+
+ private:
+  std::map<int, std::shared_ptr<const Parameter>> all_;
+};
+
+}  // namespace locograph

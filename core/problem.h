@@ -1,0 +1,74 @@
+#pragma once
+/// A graph compiled for one set of free vertices: every offset an iteration needs, worked out once.
+///
+///     Problem problem;
+///     problem.compile(graph);                    // all vertices that are not fixed, all edges
+///     problem.compile(graph, window);            // these vertices free, the edges on them
+///     Workspace workspace;
+///     workspace.allocate(problem);
+///     workspace.load_state();                    // graph → flat state
+///     Cost cost = workspace.evaluate(workspace.state());
+///     workspace.linearise();                     // fills hessian() and gradient()
+///
+/// Recompiling costs time proportional to the window, not to the graph, and keeps memory; when the
+/// block pattern is unchanged linear solvers keep their analysis. A Problem refers to the graph: it
+/// must be compiled again after vertices or edges are added, removed, fixed or freed (changing
+/// their values is fine). The order of edges and vertices is that of the graph's pools: results do
+/// not depend on anything else.
+
+#include <locograph/core/block_matrix.h>
+#include <locograph/core/graph.h>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace locograph {
+
+class Problem {
+ public:
+  void compile(Graph& graph);
+  void compile(Graph& graph, std::span<const int> free_vertex_slots);
+
+  const BlockPattern& pattern() const { return pattern_; }
+  int dimension() const { return pattern_.scalar_size(); }
+  int state_size() const { return state_size_; }
+  int edge_count() const { return edge_count_; }
+  /// Number of terms eᵀΩe's scalars, Σ dimension of the edges.
+  int residual_count() const { return residual_count_; }
+  /// Vertex slot of each block row.
+  std::span<const int> free_vertices() const { return free_; }
+
+  Graph& graph() const { return *graph_; }
+  std::span<const std::vector<ActiveVertex>> active() const { return active_; }
+  std::span<const CompiledEdges> edges() const { return edges_; }
+  std::size_t scratch_bytes() const { return scratch_bytes_; }
+
+ private:
+  void begin(Graph& graph);
+  void add_vertex(int slot, int tangent_offset);
+  void compile_edges(const std::vector<int>& edge_slots);
+  void build_pattern();
+  void build_offsets();
+
+  struct Place {
+    int block = -1;  ///< block row, -1 when fixed
+    int state_offset = -1;
+    int derived_index = -1;
+  };
+
+  Graph* graph_ = nullptr;
+  std::vector<int> free_;
+  std::vector<int> touched_;  ///< slots whose place is set, to clear it cheaply
+  std::vector<Place> place_;  ///< by vertex slot
+  std::vector<std::vector<ActiveVertex>> active_;
+  std::vector<CompiledEdges> edges_;
+  BlockPattern pattern_;
+  std::vector<std::uint64_t> pairs_;
+  int state_size_ = 0;
+  int edge_count_ = 0;
+  int residual_count_ = 0;
+  std::size_t scratch_bytes_ = 0;
+};
+
+}  // namespace locograph

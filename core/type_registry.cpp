@@ -1,0 +1,59 @@
+#include <locograph/core/type_registry.h>
+
+#include <algorithm>
+
+namespace locograph {
+namespace {
+
+template <class Map>
+auto* look_up(const Map& map, const std::string& tag) {
+  const auto found = map.find(tag);
+  return found == map.end() ? nullptr : &found->second;
+}
+
+}  // namespace
+
+void TypeRegistry::check_free(const std::string& tag) const {
+  if (tag.empty() || tag.find_first_of(" \t#") != std::string::npos) {
+    throw Error("tag '" + tag + "' cannot stand in a graph file", "one word");
+  }
+  if (vertices_.contains(tag) || edges_.contains(tag) || parameters_.contains(tag) ||
+      tag == "FIX") {
+    throw Error("tag " + tag + " is registered twice", "a tag that is not taken");
+  }
+}
+
+void TypeRegistry::add_vertex(const std::string& tag, std::type_index type,
+                              std::function<std::unique_ptr<VertexPool>()> make) {
+  check_free(tag);
+  vertices_.emplace(tag, VertexType{type, std::move(make)});
+}
+void TypeRegistry::add_edge(const std::string& tag, MakeEdgePool make) {
+  check_free(tag);
+  edges_.emplace(tag, std::move(make));
+}
+void TypeRegistry::add_parameter(const std::string& tag, MakeParameter make) {
+  check_free(tag);
+  parameters_.emplace(tag, std::move(make));
+}
+
+const TypeRegistry::VertexType* TypeRegistry::vertex_type(const std::string& tag) const {
+  return look_up(vertices_, tag);
+}
+const TypeRegistry::MakeEdgePool* TypeRegistry::edge_type(const std::string& tag) const {
+  return look_up(edges_, tag);
+}
+const TypeRegistry::MakeParameter* TypeRegistry::parameter_type(const std::string& tag) const {
+  return look_up(parameters_, tag);
+}
+
+std::vector<std::string> TypeRegistry::tags() const {
+  std::vector<std::string> all;
+  for (const auto& entry : vertices_) all.push_back(entry.first);
+  for (const auto& entry : edges_) all.push_back(entry.first);
+  for (const auto& entry : parameters_) all.push_back(entry.first);
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+}  // namespace locograph

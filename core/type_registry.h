@@ -1,0 +1,71 @@
+#pragma once
+/// Which types a graph file may name: tags of vertices, edges and parameters.
+///
+///     TypeRegistry types = standard_types();          // from locograph/types/standard_types.h
+///     types.add_vertex<VertexXY>();
+///     types.add_edge<EdgeRange>();
+///     types.add_parameter<PoseOffset>("PARAMS_SE3OFFSET");
+///     Graph graph = read_graph("map.g2o", types);
+///
+/// A value: made where it is needed and passed on; there is no global registry. A tag that is taken
+/// is an Error.
+
+#include <locograph/core/typed_edge_pool.h>
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace locograph {
+
+class TypeRegistry {
+ public:
+  template <class V>
+  void add_vertex() {
+    add_vertex(std::string(locograph_tag(static_cast<const V*>(nullptr))), typeid(V),
+               [] { return std::unique_ptr<VertexPool>(std::make_unique<TypedVertexPool<V>>()); });
+  }
+  /// A second tag for V; a vertex read under it is written under it.
+  template <class V>
+  void add_vertex_alias(const std::string& tag) {
+    add_vertex(tag, typeid(V),
+               [] { return std::unique_ptr<VertexPool>(std::make_unique<TypedVertexPool<V>>()); });
+  }
+  template <class E>
+  void add_edge() {
+    add_edge(std::string(locograph_tag(static_cast<const E*>(nullptr))),
+             [] { return std::unique_ptr<EdgePool>(std::make_unique<TypedEdgePool<E>>()); });
+  }
+  template <class P>
+  void add_parameter(const std::string& tag) {
+    add_parameter(tag, [] { return std::unique_ptr<Parameter>(std::make_unique<P>()); });
+  }
+
+  struct VertexType {
+    std::type_index type;
+    std::function<std::unique_ptr<VertexPool>()> make_pool;
+  };
+  using MakeEdgePool = std::function<std::unique_ptr<EdgePool>()>;
+  using MakeParameter = std::function<std::unique_ptr<Parameter>()>;
+
+  const VertexType* vertex_type(const std::string& tag) const;
+  const MakeEdgePool* edge_type(const std::string& tag) const;
+  const MakeParameter* parameter_type(const std::string& tag) const;
+  /// All tags, sorted.
+  std::vector<std::string> tags() const;
+
+ private:
+  void add_vertex(const std::string& tag, std::type_index type,
+                  std::function<std::unique_ptr<VertexPool>()> make);
+  void add_edge(const std::string& tag, MakeEdgePool make);
+  void add_parameter(const std::string& tag, MakeParameter make);
+  void check_free(const std::string& tag) const;
+
+  std::map<std::string, VertexType> vertices_;
+  std::map<std::string, MakeEdgePool> edges_;
+  std::map<std::string, MakeParameter> parameters_;
+};
+
+}  // namespace locograph

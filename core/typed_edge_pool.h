@@ -1,0 +1,343 @@
+#pragma once
+/// The edge pool of one concrete type: include it where a type is registered or added to a graph.
+
+#include <locograph/core/edge_evaluation.h>
+#include <locograph/core/information.h>
+
+namespace locograph {
+
+template <class E>
+class TypedEdgePool final : public EdgePool {
+ public:
+  TypedEdgePool() : EdgePool(std::string(locograph_tag(static_cast<const E*>(nullptr)))) {}
+
+  std::vector<E> edges;
+
+  std::type_index type() const override { return typeid(E); }
+  int size() const override { return static_cast<int>(edges.size()); }
+  int arity() const override { return E::kDynamicArity ? -1 : kFixed; }
+  int dimension(int index) const override { return edges[index].dimension(); }
+  std::span<const int> vertices(int index) const override { return edges[index].vertices; }
+  std::span<int> vertices(int index) override { return edges[index].vertices; }
+
+  std::type_index slot_type(int slot) const override {
+    std::type_index type = typeid(void);
+    with_slot_type(slot, [&]<class V>(std::type_identity<V>) { type = typeid(V); });
+    return type;
+  }
+  std::unique_ptr<VertexPool> make_slot_pool(int slot) const override {
+    std::unique_ptr<VertexPool> pool;
+    with_slot_type(slot, [&]<class V>(std::type_identity<V>) {
+      pool = std::make_unique<TypedVertexPool<V>>();
+    });
+    return pool;
+  }
+
+  Eigen::MatrixXd information(int index) const override { return edges[index].information; }
+  void set_information(int index, const Eigen::MatrixXd& information) override {
+    edges[index].information = information;
+  }
+  RobustKernel& kernel(int index) override { return edges[index].kernel; }
+
+  std::size_t scratch_bytes(const CompiledEdges& compiled) const override {
+    std::size_t most = 0;
+    for (std::size_t k = 0; k < compiled.edges.size(); ++k) {
+      most = std::max(most, scratch_bytes(compiled, static_cast<int>(k)));
+    }
+    return most;
+  }
+
+  void error(const CompiledEdges& compiled, int k, const Evaluation& x,
+             double* error) const override {
+    x.scratch->reset();
+    const E& edge = edges[compiled.edges[k]];
+    Eigen::Map<Eigen::Matrix<double, kD, 1>> e(error, edge.dimension());
+    Evaluator(edge, slots(compiled, k), x).error(e);
+  }
+
+  Cost cost(const CompiledEdges& compiled, const Evaluation& x) const override {
+    Cost total;
+    const int count = static_cast<int>(compiled.edges.size());
+    for (int k = 0; k < count; ++k) {
+      x.scratch->reset();
+      const E& edge = edges[compiled.edges[k]];
+      detail::Local<kD, 1> e = detail::make_local<kD, 1>(edge.dimension(), 1, *x.scratch);
+      Evaluator(edge, slots(compiled, k), x).error(e);
+      const double chi2 = weighted_square(edge, e, *x.scratch);
+      total += {edge.kernel.weights(chi2).cost, chi2};
+    }
+    return total;
+  }
+
+  Cost linearise(const CompiledEdges& compiled, const Evaluation& x, double* hessian,
+                 double* gradient) const override {
+    Cost total;
+    const int count = static_cast<int>(compiled.edges.size());
+    for (int k = 0; k < count; ++k) {
+      x.scratch->reset();
+      total += linearise_one(compiled, k, x, hessian, gradient);
+    }
+    return total;
+  }
+
+  Eigen::MatrixXd jacobian(const CompiledEdges& compiled, int k, int slot, const Evaluation& x,
+                           bool numeric) const override {
+    x.scratch->reset();
+    const E& edge = edges[compiled.edges[k]];
+    const Evaluator evaluator(edge, slots(compiled, k), x);
+    Eigen::MatrixXd result;
+    evaluator.each_slot([&]<class V>(std::type_identity<V>, int s) {
+      if (s != slot) return;
+      const int d = detail::vertex_of<V>(slots(compiled, k)[s]).dimension();
+      Eigen::Matrix<double, kD, V::kDimension> typed(edge.dimension(), d);
+      if (numeric) {
+        evaluator.template numeric_jacobian<V>(s, typed.data());
+      } else {
+        double** data = x.scratch->array<double*>(slots(compiled, k).size());
+        std::fill(data, data + slots(compiled, k).size(), nullptr);
+        data[s] = typed.data();
+        evaluator.jacobians(data);
+      }
+      result = typed;
+    });
+    return result;
+  }
+
+  bool predict([[maybe_unused]] int index, [[maybe_unused]] int slot,
+               [[maybe_unused]] const double* other_state,
+               [[maybe_unused]] double* state) const override {
+    if constexpr (!E::kDynamicArity) {
+      if constexpr (E::kArity == 2) {
+        using A = typename E::template VertexAt<0>;
+        using B = typename E::template VertexAt<1>;
+        if constexpr (!HasDerived<A> && !HasDerived<B>) {
+          if constexpr (requires(const E& e, ViewOf<A> a) {
+                          B::store(e.predict_second(a), state);
+                        }) {
+            if (slot == 1) {
+              B::store(edges[index].predict_second(A::view(other_state)), state);
+              return true;
+            }
+          }
+          if constexpr (requires(const E& e, ViewOf<B> b) {
+                          A::store(e.predict_first(b), state);
+                        }) {
+            if (slot == 0) {
+              A::store(edges[index].predict_first(B::view(other_state)), state);
+              return true;
+            }
+          }
+        }
+      }
+    }
+    return false;
+  }
+
+  void bind([[maybe_unused]] int index, [[maybe_unused]] const Parameters& parameters) override {
+    if constexpr (requires(E & e) { e.bind(parameters); }) edges[index].bind(parameters);
+  }
+
+  int read(std::span<const int> vertices, FieldReader& in) override {
+    E edge;
+    if constexpr (E::kDynamicArity) {
+      edge.vertices.assign(vertices.begin(), vertices.end());
+    } else {
+      std::copy(vertices.begin(), vertices.end(), edge.vertices.begin());
+    }
+    int dimension = kD;
+    if constexpr (E::kDynamicArity || kD == Eigen::Dynamic) {
+      dimension = in.integer();
+      if (dimension < 1 || (kD != Eigen::Dynamic && dimension != kD)) {
+        in.fail("error of size " + std::to_string(dimension),
+                kD == Eigen::Dynamic ? "a positive size" : "size " + std::to_string(kD));
+      }
+    }
+    if constexpr (requires { edge.resize(dimension); }) edge.resize(dimension);
+    read_fields(in, edge.fields());
+    edge.information.resize(dimension, dimension);
+    for (int r = 0; r < dimension; ++r) {
+      for (int c = r; c < dimension; ++c) {
+        edge.information(r, c) = in.number();
+        edge.information(c, r) = edge.information(r, c);
+      }
+    }
+    edges.push_back(std::move(edge));
+    return size() - 1;
+  }
+
+  void write(int index, FieldWriter& out) const override {
+    const E& edge = edges[index];
+    const int dimension = edge.dimension();
+    if constexpr (E::kDynamicArity || kD == Eigen::Dynamic) out.integer(dimension);
+    write_fields(out, const_cast<E&>(edge).fields());
+    for (int r = 0; r < dimension; ++r) {
+      for (int c = r; c < dimension; ++c) out.number(edge.information(r, c));
+    }
+  }
+
+  void remove(int index) override {
+    if (index + 1 != size()) edges[index] = std::move(edges.back());
+    edges.pop_back();
+  }
+
+ private:
+  using Evaluator = detail::EdgeEvaluator<E>;
+  static constexpr int kD = E::kDimension;
+  static constexpr int kFixed = detail::fixed_slot_count<E>();
+
+  static std::span<const CompiledEdges::Slot> slots(const CompiledEdges& compiled, int k) {
+    const int begin = compiled.slot_begin[k];
+    return {compiled.slots.data() + begin,
+            static_cast<std::size_t>(compiled.slot_begin[k + 1] - begin)};
+  }
+
+  template <class F>
+  static void with_slot_type(int slot, F&& f) {
+    if constexpr (E::kDynamicArity) {
+      if (slot >= kFixed) {
+        f(std::type_identity<typename E::Many>());
+        return;
+      }
+    }
+    with_fixed_slot_type(slot, f, typename Evaluator::FixedSequence());
+  }
+  template <class F, int... I>
+  static void with_fixed_slot_type(int slot, F& f, std::integer_sequence<int, I...>) {
+    ((slot == I ? f(std::type_identity<detail::FixedVertex<E, I>>()) : void()), ...);
+  }
+
+  /// An upper bound of everything one edge may ask of the scratch memory in one evaluation.
+  std::size_t scratch_bytes(const CompiledEdges& compiled, int k) const {
+    const std::size_t n = static_cast<std::size_t>(edges[compiled.edges[k]].dimension());
+    const std::span<const CompiledEdges::Slot> own = slots(compiled, k);
+    std::size_t tangent = 0, state = 0, widest = 0;
+    for (const CompiledEdges::Slot& slot : own) {
+      const std::size_t d = slot.pool->dimension(slot.vertex_index);
+      widest = std::max(widest, d);
+      tangent += d;
+      state += slot.pool->state_size(slot.vertex_index);
+    }
+    const std::size_t views = state * (widest + 2) * 2;  // as dual numbers, aligned
+    const std::size_t doubles =
+        n * (2 * tangent + 8) + 3 * tangent + 3 * state + views + widest * n + widest * widest;
+    return doubles * sizeof(double) + own.size() * (sizeof(CompiledEdges::Slot) + 512) + 8192;
+  }
+
+  template <class Vector>
+  static double weighted_square(const E& edge, const Vector& e, [[maybe_unused]] Scratch& scratch) {
+    if constexpr (kD == Eigen::Dynamic) {
+      double sum = 0.0;
+      for (int c = 0; c < e.size(); ++c) sum += e[c] * edge.information.col(c).dot(e);
+      return sum;
+    } else {
+      return e.dot(edge.information.lazyProduct(e));
+    }
+  }
+
+  Cost linearise_one(const CompiledEdges& compiled, int k, const Evaluation& x, double* hessian,
+                     double* gradient) const {
+    const E& edge = edges[compiled.edges[k]];
+    const std::span<const CompiledEdges::Slot> own = slots(compiled, k);
+    const Evaluator evaluator(edge, own, x);
+    const int n = edge.dimension();
+
+    detail::Local<kD, 1> e = detail::make_local<kD, 1>(n, 1, *x.scratch);
+    evaluator.error(e);
+    const double chi2 = weighted_square(edge, e, *x.scratch);
+    const RobustKernel::Weights robust = edge.kernel.weights(chi2);
+    if constexpr (E::kDynamicArity) {
+      double** data = x.scratch->array<double*>(own.size());
+      evaluator.each_slot([&]<class V>(std::type_identity<V>, int s) {
+        const int d = detail::vertex_of<V>(own[s]).dimension();
+        data[s] = own[s].tangent_offset < 0
+                      ? nullptr
+                      : x.scratch->array<double>(static_cast<std::size_t>(n) * d);
+      });
+      evaluator.jacobians(data);
+      accumulate(compiled, k, evaluator, e, robust.weight, data, x, hessian, gradient);
+    } else {
+      fixed_jacobians(compiled, k, evaluator, e, robust.weight, x, hessian, gradient,
+                      typename Evaluator::FixedSequence());
+    }
+    return {robust.cost, chi2};
+  }
+
+  /// Jacobians of a fixed arity live on the stack where their size is known.
+  template <class Vector, int... I>
+  void fixed_jacobians(const CompiledEdges& compiled, int k, const Evaluator& evaluator,
+                       const Vector& e, double weight, const Evaluation& x, double* hessian,
+                       double* gradient, std::integer_sequence<int, I...>) const {
+    const std::span<const CompiledEdges::Slot> own = slots(compiled, k);
+    std::tuple<detail::Local<kD, detail::FixedVertex<E, I>::kDimension>...> storage(
+        detail::make_local<kD, detail::FixedVertex<E, I>::kDimension>(
+            evaluator.dimension(), detail::vertex_of<detail::FixedVertex<E, I>>(own[I]).dimension(),
+            *x.scratch)...);
+    double* data[] = {(own[I].tangent_offset < 0 ? nullptr : std::get<I>(storage).data())...};
+    evaluator.jacobians(data);
+    accumulate(compiled, k, evaluator, e, weight, data, x, hessian, gradient);
+  }
+
+  template <class V>
+  static auto jacobian_map(double* data, int n, int d) {
+    return Eigen::Map<Eigen::Matrix<double, kD, V::kDimension>>(data, n, d);
+  }
+
+  /// H_ij += J_iᵀ (wΩ) J_j for i ≤ j, g_i += J_iᵀ (wΩ) e, at the precomputed offsets.
+  template <class Vector>
+  void accumulate(const CompiledEdges& compiled, int k, const Evaluator& evaluator, const Vector& e,
+                  double weight, double* const* data, const Evaluation& x, double* hessian,
+                  double* gradient) const {
+    if (weight == 0.0) return;
+    const E& edge = edges[compiled.edges[k]];
+    const std::span<const CompiledEdges::Slot> own = slots(compiled, k);
+    const int count = static_cast<int>(own.size());
+    const CompiledEdges::Block* block = compiled.blocks.data() + compiled.block_begin[k];
+    evaluator.each_slot([&]<class A>(std::type_identity<A>, int i) {
+      const CompiledEdges::Block* row = block;
+      block += count - i;
+      if (data[i] == nullptr) return;
+      const std::size_t mark = x.scratch->mark();
+      const int di = detail::vertex_of<A>(own[i]).dimension();
+      const auto ji = jacobian_map<A>(data[i], edge.dimension(), di);
+      detail::Local<A::kDimension, kD> weighted =
+          detail::make_local<A::kDimension, kD>(di, edge.dimension(), *x.scratch);
+      if constexpr (A::kDimension == Eigen::Dynamic || kD == Eigen::Dynamic) {
+        weighted.noalias() = ji.transpose() * edge.information;
+        weighted *= weight;
+      } else {
+        weighted.noalias() = ji.transpose().lazyProduct(edge.information * weight);
+      }
+      Eigen::Map<Eigen::Matrix<double, A::kDimension, 1>> g(gradient + own[i].tangent_offset, di);
+      g.noalias() += weighted * e;
+      evaluator.each_slot([&]<class B>(std::type_identity<B>, int j) {
+        if (j < i || data[j] == nullptr) return;
+        const CompiledEdges::Block where = row[j - i];
+        const int dj = detail::vertex_of<B>(own[j]).dimension();
+        const auto jj = jacobian_map<B>(data[j], edge.dimension(), dj);
+        if ((where & 1) == 0) {
+          Eigen::Map<Eigen::Matrix<double, A::kDimension, B::kDimension>> h(hessian + (where >> 1),
+                                                                            di, dj);
+          add_product(weighted, jj, h);
+        } else {
+          Eigen::Map<Eigen::Matrix<double, B::kDimension, A::kDimension>> h(hessian + (where >> 1),
+                                                                            dj, di);
+          add_product(jj.transpose(), weighted.transpose(), h);
+        }
+      });
+      x.scratch->rewind(mark);
+    });
+  }
+
+  template <class Left, class Right, class Block>
+  static void add_product(const Left& left, const Right& right, Block& block) {
+    if constexpr (Left::RowsAtCompileTime == Eigen::Dynamic ||
+                  Left::ColsAtCompileTime == Eigen::Dynamic ||
+                  Right::ColsAtCompileTime == Eigen::Dynamic) {
+      block.noalias() += left * right;
+    } else {
+      block.noalias() += left.lazyProduct(right);
+    }
+  }
+};
+
+}  // namespace locograph

@@ -1,0 +1,133 @@
+#pragma once
+/// All vertices of one concrete type, by value and contiguous, behind one virtual interface.
+///
+/// The solver never calls a vertex: it calls its pool, once for all vertices. Users reach a typed
+/// pool through Graph.
+
+#include <locograph/core/vertex.h>
+
+#include <memory>
+#include <span>
+#include <string>
+#include <typeindex>
+#include <vector>
+
+namespace locograph {
+
+/// Where one vertex of a pool lives in a compiled problem.
+struct ActiveVertex {
+  int index = 0;            ///< in its pool
+  int state_offset = 0;     ///< in the flat state
+  int tangent_offset = -1;  ///< in the step; -1 when it is held fixed
+};
+
+/// Derived quantities of the active vertices of one pool, in the order of the ActiveVertex list.
+class DerivedStore {
+ public:
+  virtual ~DerivedStore() = default;
+};
+template <HasDerived V>
+class TypedDerivedStore final : public DerivedStore {
+ public:
+  std::vector<typename V::Derived> values;
+};
+
+class VertexPool {
+ public:
+  explicit VertexPool(std::string tag) : tag_(std::move(tag)) {}
+  virtual ~VertexPool() = default;
+
+  const std::string& tag() const { return tag_; }
+  virtual std::type_index type() const = 0;
+  virtual int size() const = 0;
+  virtual int dimension(int index) const = 0;
+  virtual int state_size(int index) const = 0;
+  virtual const double* state(int index) const = 0;
+  virtual double* state(int index) = 0;
+
+  /// out = state ⊞ step for all listed vertices that are not fixed; fixed ones are left alone.
+  virtual void oplus(std::span<const ActiveVertex> vertices, const double* state,
+                     const double* step, double* out) const = 0;
+
+  /// Null when the type has no derived quantities.
+  virtual std::unique_ptr<DerivedStore> make_derived(
+      std::span<const ActiveVertex> vertices) const = 0;
+  virtual void derive(std::span<const ActiveVertex> vertices, const double* state,
+                      DerivedStore& derived) const = 0;
+
+  virtual int add_default() = 0;
+  virtual int read(FieldReader& in) = 0;  ///< returns the index of the new vertex
+  virtual void write(int index, FieldWriter& out) const = 0;
+  /// Removes by moving the last vertex into the gap.
+  virtual void remove(int index) = 0;
+
+ private:
+  std::string tag_;
+};
+
+template <class V>
+class TypedVertexPool final : public VertexPool {
+ public:
+  TypedVertexPool() : VertexPool(std::string(locograph_tag(static_cast<const V*>(nullptr)))) {}
+
+  std::vector<V> vertices;
+
+  std::type_index type() const override { return typeid(V); }
+  int size() const override { return static_cast<int>(vertices.size()); }
+  int dimension(int index) const override { return vertices[index].dimension(); }
+  int state_size(int index) const override { return vertices[index].state_size(); }
+  const double* state(int index) const override { return vertices[index].state.data(); }
+  double* state(int index) override { return vertices[index].state.data(); }
+
+  void oplus(std::span<const ActiveVertex> active, const double* state, const double* step,
+             double* out) const override {
+    for (const ActiveVertex& v : active) {
+      if (v.tangent_offset < 0) continue;
+      vertices[v.index].oplus(state + v.state_offset, step + v.tangent_offset,
+                              out + v.state_offset);
+    }
+  }
+
+  std::unique_ptr<DerivedStore> make_derived(
+      [[maybe_unused]] std::span<const ActiveVertex> active) const override {
+    if constexpr (HasDerived<V>) {
+      auto store = std::make_unique<TypedDerivedStore<V>>();
+      store->values.reserve(active.size());
+      for (const ActiveVertex& v : active) {
+        store->values.push_back(vertices[v.index].make_derived());
+      }
+      return store;
+    } else {
+      return nullptr;
+    }
+  }
+
+  void derive([[maybe_unused]] std::span<const ActiveVertex> active,
+              [[maybe_unused]] const double* state,
+              [[maybe_unused]] DerivedStore& derived) const override {
+    if constexpr (HasDerived<V>) {
+      std::vector<typename V::Derived>& values = static_cast<TypedDerivedStore<V>&>(derived).values;
+      for (std::size_t i = 0; i < active.size(); ++i) {
+        vertices[active[i].index].derive(state + active[i].state_offset, values[i]);
+      }
+    }
+  }
+
+  int add_default() override {
+    vertices.emplace_back();
+    return size() - 1;
+  }
+  int read(FieldReader& in) override {
+    V vertex;
+    vertex.read(in);
+    vertices.push_back(std::move(vertex));
+    return size() - 1;
+  }
+  void write(int index, FieldWriter& out) const override { vertices[index].write(out); }
+  void remove(int index) override {
+    if (index + 1 != size()) vertices[index] = std::move(vertices.back());
+    vertices.pop_back();
+  }
+};
+
+}  // namespace locograph

@@ -1,0 +1,37 @@
+#pragma once
+/// Block-banded Cholesky in natural order, panel by panel: for trajectories and moving horizons.
+///
+/// Block column c is one dense panel over the rows from its diagonal block to the last block row
+/// that its band or the fill reaches (the profile of the matrix), so products are large and nothing
+/// is indexed inside them.
+
+#include <locograph/core/linear_solver.h>
+
+#include <vector>
+
+namespace locograph {
+
+class BandedSolver final : public LinearSolver {
+ public:
+  std::string name() const override { return "banded"; }
+  void analyse(const BlockPattern& pattern) override;
+  bool factorise(const double* values, const double* damping) override;
+  void solve(const double* right_hand_side, double* x) const override;
+  int failed_row() const override { return failed_row_; }
+
+  /// Multiply-adds of one factorisation of this pattern in natural order.
+  static double cost(const BlockPattern& pattern);
+
+ private:
+  /// Last block row of each panel, fill included.
+  static std::vector<int> panel_ends(const BlockPattern& pattern);
+
+  BlockPattern pattern_;
+  std::vector<int> last_;  ///< last block row of each panel
+  std::vector<std::size_t> panel_begin_;
+  std::vector<int> height_;  ///< scalar rows of each panel
+  std::vector<double> panels_;
+  int failed_row_ = -1;
+};
+
+}  // namespace locograph

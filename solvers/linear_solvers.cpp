@@ -1,0 +1,66 @@
+#include <locograph/common/error.h>
+#include <locograph/solvers/banded_solver.h>
+#include <locograph/solvers/block_cholesky.h>
+#include <locograph/solvers/dense_solver.h>
+#include <locograph/solvers/linear_solvers.h>
+
+#include <algorithm>
+
+namespace locograph {
+namespace {
+
+/// Chooses when it sees the pattern, and again when the pattern changes.
+class AutoSolver final : public LinearSolver {
+ public:
+  std::string name() const override { return chosen_ ? chosen_->name() : "auto"; }
+
+  void analyse(const BlockPattern& pattern) override {
+    if (chosen_ && pattern == pattern_) return;
+    pattern_ = pattern;
+    const double n = pattern.scalar_size();
+    const double dense = n * n * n / 6.0;
+    const double banded = BandedSolver::cost(pattern);
+    if (dense <= 50e3 || (pattern.size() <= 2)) {
+      chosen_ = std::make_unique<DenseSolver>();
+    } else {
+      auto sparse = std::make_unique<BlockCholesky>();
+      sparse->analyse(pattern);
+      // Panels run at several times the speed of small blocks: a band may cost twice the flops.
+      if (banded <= 2.0 * sparse->cost()) {
+        chosen_ = std::make_unique<BandedSolver>();
+      } else {
+        chosen_ = std::move(sparse);
+      }
+    }
+    chosen_->analyse(pattern);
+  }
+  bool factorise(const double* values, const double* damping) override {
+    return chosen_->factorise(values, damping);
+  }
+  void solve(const double* right_hand_side, double* x) const override {
+    chosen_->solve(right_hand_side, x);
+  }
+  int failed_row() const override { return chosen_ ? chosen_->failed_row() : -1; }
+
+ private:
+  BlockPattern pattern_;
+  std::unique_ptr<LinearSolver> chosen_;
+};
+
+}  // namespace
+
+std::vector<std::string> linear_solver_names() {
+  return {"auto", "banded", "block-cholesky", "dense"};
+}
+
+std::unique_ptr<LinearSolver> make_linear_solver(const std::string& name) {
+  if (name == "auto") return std::make_unique<AutoSolver>();
+  if (name == "banded") return std::make_unique<BandedSolver>();
+  if (name == "block-cholesky") return std::make_unique<BlockCholesky>();
+  if (name == "dense") return std::make_unique<DenseSolver>();
+  std::string all;
+  for (const std::string& known : linear_solver_names()) all += (all.empty() ? "" : ", ") + known;
+  throw Error("unknown linear solver '" + name + "'", "one of " + all);
+}
+
+}  // namespace locograph

@@ -1,0 +1,23 @@
+#pragma once
+/// The linear solvers there are, by name.
+///
+///     std::unique_ptr<LinearSolver> solver = make_linear_solver("auto");
+///
+/// dense           Cholesky of the whole matrix: a few dozen scalar rows
+/// banded          block band, natural order: trajectories, moving horizons
+/// block-cholesky  block-sparse, minimum-degree order on the block pattern: pose graphs
+/// auto            the cheapest of the three by estimated cost, decided in analyse()
+
+#include <locograph/core/linear_solver.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace locograph {
+
+/// Throws Error naming the solvers there are.
+std::unique_ptr<LinearSolver> make_linear_solver(const std::string& name);
+std::vector<std::string> linear_solver_names();
+
+}  // namespace locograph

@@ -1,0 +1,168 @@
+#pragma once
+/// Spatial edges: relative pose, point and camera measurements, priors.
+
+#include <locograph/core/edge.h>
+#include <locograph/types/slam3d/parameters.h>
+#include <locograph/types/slam3d/vertices.h>
+
+namespace locograph {
+
+/// Translation, and vector part of the quaternion with w ≥ 0: the error of a pose E ≈ identity in
+/// all edges here (the convention of `.g2o` files).
+template <class T>
+void pose_error(const SE3<T>& pose, Eigen::Ref<Eigen::Matrix<T, 6, 1>> e) {
+  const T sign = pose.rotation().w() < T(0) ? T(-1) : T(1);
+  e.template head<3>() = pose.translation();
+  e.template tail<3>() = sign * pose.rotation().vec();
+}
+
+/// EDGE_SE3:QUAT: relative pose. Error (6): pose_error of Z⁻¹ (A⁻¹ B).
+struct EdgeSE3 : Edge<6, VertexSE3, VertexSE3> {
+  SE3<double> measurement;
+  auto fields() { return std::tie(measurement); }
+
+  template <class T>
+  void error(const SE3<T>& a, const SE3<T>& b, Eigen::Ref<Eigen::Matrix<T, 6, 1>> e) const {
+    pose_error<T>(measurement.template cast<T>().inverse() * (a.inverse() * b), e);
+  }
+  void jacobians(const SE3<double>& a, const SE3<double>& b, JacobianRef<EdgeSE3, 0> ja,
+                 JacobianRef<EdgeSE3, 1> jb) const;
+  SE3<double> predict_second(const SE3<double>& a) const { return a * measurement; }
+  SE3<double> predict_first(const SE3<double>& b) const { return b * measurement.inverse(); }
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_SE3:QUAT", EdgeSE3)
+
+/// EDGE_SE3_PRIOR: absolute pose of a sensor. Fields: number of the PARAMS_SE3OFFSET, measurement.
+/// Error (6): pose_error of Z⁻¹ (A·o).
+struct EdgeSE3Prior : Edge<6, VertexSE3> {
+  int offset_number = 0;
+  SE3<double> measurement;
+  SE3<double> offset;  ///< looked up by bind()
+  auto fields() { return std::tie(offset_number, measurement); }
+  void bind(const Parameters& parameters) {
+    offset = parameters.get<OffsetSE3>(offset_number)->offset;
+  }
+
+  template <class T>
+  void error(const SE3<T>& a, Eigen::Ref<Eigen::Matrix<T, 6, 1>> e) const {
+    pose_error<T>(measurement.template cast<T>().inverse() * (a * offset.template cast<T>()), e);
+  }
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_SE3_PRIOR", EdgeSE3Prior)
+
+/// EDGE_SE3_TRACKXYZ: a point seen by a sensor. Fields: number of the PARAMS_SE3OFFSET,
+/// measurement. Error (3) [m]: (A·o)⁻¹ p − z.
+struct EdgeSE3PointXYZ : Edge<3, VertexSE3, VertexPointXYZ> {
+  int offset_number = 0;
+  Eigen::Vector3d measurement = Eigen::Vector3d::Zero();
+  SE3<double> offset;
+  auto fields() { return std::tie(offset_number, measurement); }
+  void bind(const Parameters& parameters) {
+    offset = parameters.get<OffsetSE3>(offset_number)->offset;
+  }
+
+  template <class T>
+  void error(const SE3<T>& a, const Eigen::Matrix<T, 3, 1>& p,
+             Eigen::Ref<Eigen::Matrix<T, 3, 1>> e) const {
+    const SE3<T> sensor = a * offset.template cast<T>();
+    e = sensor.rotation().conjugate() * (p - sensor.translation()) - measurement.template cast<T>();
+  }
+  void jacobians(const SE3<double>& a, const Eigen::Vector3d& p, JacobianRef<EdgeSE3PointXYZ, 0> ja,
+                 JacobianRef<EdgeSE3PointXYZ, 1> jp) const;
+  Eigen::Vector3d predict_second(const SE3<double>& a) const { return a * offset * measurement; }
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_SE3_TRACKXYZ", EdgeSE3PointXYZ)
+
+/// EDGE_SE3_OFFSET: relative pose of two sensors. Fields: numbers of the two PARAMS_SE3OFFSET,
+/// measurement. Error (6): pose_error of Z⁻¹ ((A·oₐ)⁻¹ (B·o_b)).
+struct EdgeSE3Offset : Edge<6, VertexSE3, VertexSE3> {
+  int first_offset = 0, second_offset = 0;
+  SE3<double> measurement;
+  SE3<double> first, second;
+  auto fields() { return std::tie(first_offset, second_offset, measurement); }
+  void bind(const Parameters& parameters) {
+    first = parameters.get<OffsetSE3>(first_offset)->offset;
+    second = parameters.get<OffsetSE3>(second_offset)->offset;
+  }
+
+  template <class T>
+  void error(const SE3<T>& a, const SE3<T>& b, Eigen::Ref<Eigen::Matrix<T, 6, 1>> e) const {
+    const SE3<T> sensor_a = a * first.template cast<T>(), sensor_b = b * second.template cast<T>();
+    pose_error<T>(measurement.template cast<T>().inverse() * (sensor_a.inverse() * sensor_b), e);
+  }
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_SE3_OFFSET", EdgeSE3Offset)
+
+/// EDGE_POINT_XYZ: relative position of two points. Error (3) [m]: (q − p) − z.
+struct EdgePointXYZ : Edge<3, VertexPointXYZ, VertexPointXYZ> {
+  Eigen::Vector3d measurement = Eigen::Vector3d::Zero();
+  auto fields() { return std::tie(measurement); }
+
+  template <class T>
+  void error(const Eigen::Matrix<T, 3, 1>& p, const Eigen::Matrix<T, 3, 1>& q,
+             Eigen::Ref<Eigen::Matrix<T, 3, 1>> e) const {
+    e = q - p - measurement.template cast<T>();
+  }
+  Eigen::Vector3d predict_second(const Eigen::Vector3d& p) const { return p + measurement; }
+  Eigen::Vector3d predict_first(const Eigen::Vector3d& q) const { return q - measurement; }
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_POINT_XYZ", EdgePointXYZ)
+
+/// EDGE_POINT_XYZ_PRIOR: absolute position of a point. Error (3) [m]: p − z.
+struct EdgePointXYZPrior : Edge<3, VertexPointXYZ> {
+  Eigen::Vector3d measurement = Eigen::Vector3d::Zero();
+  auto fields() { return std::tie(measurement); }
+
+  template <class T>
+  void error(const Eigen::Matrix<T, 3, 1>& p, Eigen::Ref<Eigen::Matrix<T, 3, 1>> e) const {
+    e = p - measurement.template cast<T>();
+  }
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_POINT_XYZ_PRIOR", EdgePointXYZPrior)
+
+/// EDGE_PROJECT_DEPTH: a point in a depth camera. Fields: number of the PARAMS_CAMERACALIB,
+/// measurement (u, v [px], depth [m]). Error (3): predicted − measured.
+struct EdgeProjectDepth : Edge<3, VertexSE3, VertexPointXYZ> {
+  int camera_number = 0;
+  Eigen::Vector3d measurement = Eigen::Vector3d::Zero();
+  std::shared_ptr<const CameraCalibration> camera;
+  auto fields() { return std::tie(camera_number, measurement); }
+  void bind(const Parameters& parameters) {
+    camera = parameters.get<CameraCalibration>(camera_number);
+  }
+
+  template <class T>
+  void error(const SE3<T>& a, const Eigen::Matrix<T, 3, 1>& p,
+             Eigen::Ref<Eigen::Matrix<T, 3, 1>> e) const {
+    project(a, p, e);
+    e -= measurement.template cast<T>();
+  }
+  template <class T>
+  void project(const SE3<T>& a, const Eigen::Matrix<T, 3, 1>& p,
+               Eigen::Ref<Eigen::Matrix<T, 3, 1>> image) const {
+    const SE3<T> sensor = a * camera->offset.template cast<T>();
+    const Eigen::Matrix<T, 3, 1> c = sensor.rotation().conjugate() * (p - sensor.translation());
+    image[0] = T(camera->fx) * c[0] / c[2] + T(camera->cx);
+    image[1] = T(camera->fy) * c[1] / c[2] + T(camera->cy);
+    image[2] = c[2];
+  }
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_PROJECT_DEPTH", EdgeProjectDepth)
+
+/// EDGE_PROJECT_DISPARITY: the same with the inverse depth [1/m] as third coordinate.
+struct EdgeProjectDisparity : Edge<3, VertexSE3, VertexPointXYZ> {
+  EdgeProjectDepth depth;
+  auto fields() { return depth.fields(); }
+  void bind(const Parameters& parameters) { depth.bind(parameters); }
+
+  template <class T>
+  void error(const SE3<T>& a, const Eigen::Matrix<T, 3, 1>& p,
+             Eigen::Ref<Eigen::Matrix<T, 3, 1>> e) const {
+    depth.project(a, p, e);
+    e[2] = T(1) / e[2];
+    e -= depth.measurement.template cast<T>();
+  }
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_PROJECT_DISPARITY", EdgeProjectDisparity)
+
+}  // namespace locograph

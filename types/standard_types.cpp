@@ -1,0 +1,12 @@
+#include <locograph/types/standard_types.h>
+
+namespace locograph {
+
+TypeRegistry standard_types() {
+  TypeRegistry types;
+  add_slam2d_types(types);
+  add_slam3d_types(types);
+  return types;
+}
+
+}  // namespace locograph
