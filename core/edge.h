@@ -30,6 +30,11 @@
 /// (binary edges) give one vertex's view from the other's, for initial guesses. An error size known
 /// at run time only is Eigen::Dynamic and hides dimension().
 /// Every edge carries its vertices, information and robust kernel by value.
+///
+/// A WeightedEdge has a diagonal Ω, a vector of weights, and a row-major Jacobian that is zero
+/// before jacobians() is called; only entries other than zero cost time. It suits errors of many
+/// rows that each touch a few coordinates (limits, distances). With kOneSided = true its rows are
+/// hinges max(0, …): a row whose error is zero has no derivative and is skipped.
 
 #include <locograph/core/robust_kernel.h>
 #include <locograph/core/vertex.h>
@@ -49,6 +54,7 @@ namespace detail {
 template <int Dimension>
 struct EdgeData {
   static constexpr int kDimension = Dimension;
+  static constexpr bool kDiagonal = false;
   using Error = Eigen::Matrix<double, Dimension, 1>;
   using Information = Eigen::Matrix<double, Dimension, Dimension>;
 
@@ -70,11 +76,40 @@ struct EdgeData {
   }
 };
 
+template <int Dimension>
+struct WeightedEdgeData {
+  static constexpr int kDimension = Dimension;
+  static constexpr bool kDiagonal = true;
+  static constexpr bool kOneSided = false;
+  using Error = Eigen::Matrix<double, Dimension, 1>;
+
+  Error weights = initial_weights();  ///< the diagonal of Ω, ≥ 0
+  RobustKernel kernel;
+
+  int dimension() const { return static_cast<int>(weights.size()); }
+  std::tuple<> fields() { return {}; }
+
+ private:
+  static Error initial_weights() {
+    if constexpr (Dimension == Eigen::Dynamic) {
+      return Error();
+    } else {
+      return Error::Ones();
+    }
+  }
+};
+
 }  // namespace detail
 
-/// An edge on a fixed list of vertices.
-template <int Dimension, class... Vs>
-struct Edge : detail::EdgeData<Dimension> {
+/// An edge whose Ω is diagonal. (A constant, not a concept: it is asked while E is still
+/// incomplete.)
+template <class E>
+inline constexpr bool kHasWeights = E::kDiagonal;
+
+namespace detail {
+
+template <class... Vs>
+struct FixedArity {
   static constexpr bool kDynamicArity = false;
   static constexpr int kArity = sizeof...(Vs);
   using Vertices = std::tuple<Vs...>;
@@ -83,6 +118,16 @@ struct Edge : detail::EdgeData<Dimension> {
 
   std::array<int, sizeof...(Vs)> vertices{};  ///< slots in the graph
 };
+
+}  // namespace detail
+
+/// An edge on a fixed list of vertices.
+template <int Dimension, class... Vs>
+struct Edge : detail::EdgeData<Dimension>, detail::FixedArity<Vs...> {};
+
+/// The same with a diagonal Ω.
+template <int Dimension, class... Vs>
+struct WeightedEdge : detail::WeightedEdgeData<Dimension>, detail::FixedArity<Vs...> {};
 
 /// An edge on fixed leading vertices and any number (at least one) of vertices of one more type.
 template <int Dimension, class ManyVertex, class... LeadingVertices>
@@ -95,10 +140,17 @@ struct DynamicEdge : detail::EdgeData<Dimension> {
   std::vector<int> vertices;  ///< slots in the graph, the leading ones first
 };
 
+/// The derivative of the error of E by a vertex of a given tangent size. Row-major for weighted
+/// edges and, as Eigen demands, for a single row; column-major for the others.
+template <class E, int Columns>
+using JacobianMatrix =
+    Eigen::Matrix<double, E::kDimension, Columns,
+                  Columns != 1 && (kHasWeights<E> || E::kDimension == 1) ? Eigen::RowMajor
+                                                                         : Eigen::ColMajor>;
+
 /// Where a hand-written jacobians() of edge E writes the derivative by vertex I.
 template <class E, int I>
-using JacobianRef =
-    Eigen::Ref<Eigen::Matrix<double, E::kDimension, E::template VertexAt<I>::kDimension>>;
+using JacobianRef = Eigen::Ref<JacobianMatrix<E, E::template VertexAt<I>::kDimension>>;
 
 /// The same for a DynamicEdge, which receives std::span<JacobianMap>, one for each vertex.
 using JacobianMap = Eigen::Map<Eigen::MatrixXd>;

@@ -37,18 +37,17 @@ template <class E, int I>
 using FixedVertex = std::tuple_element_t<I, typename FixedVertices<E>::type>;
 
 /// A matrix on the stack when its size is known, a view of scratch memory when it is not.
-template <int Rows, int Columns>
-using Local = std::conditional_t<Rows == Eigen::Dynamic || Columns == Eigen::Dynamic,
-                                 Eigen::Map<Eigen::Matrix<double, Rows, Columns>>,
-                                 Eigen::Matrix<double, Rows, Columns>>;
-template <int Rows, int Columns>
-Local<Rows, Columns> make_local([[maybe_unused]] int rows, [[maybe_unused]] int columns,
-                                [[maybe_unused]] Scratch& scratch) {
-  if constexpr (Rows == Eigen::Dynamic || Columns == Eigen::Dynamic) {
-    return Local<Rows, Columns>(scratch.array<double>(static_cast<std::size_t>(rows) * columns),
-                                rows, columns);
+template <class Matrix>
+using LocalMatrix =
+    std::conditional_t<Matrix::SizeAtCompileTime == Eigen::Dynamic, Eigen::Map<Matrix>, Matrix>;
+template <class Matrix>
+LocalMatrix<Matrix> make_local([[maybe_unused]] int rows, [[maybe_unused]] int columns,
+                               [[maybe_unused]] Scratch& scratch) {
+  if constexpr (Matrix::SizeAtCompileTime == Eigen::Dynamic) {
+    return LocalMatrix<Matrix>(scratch.array<double>(static_cast<std::size_t>(rows) * columns),
+                               rows, columns);
   } else {
-    return Local<Rows, Columns>();
+    return LocalMatrix<Matrix>();
   }
 }
 
@@ -112,7 +111,7 @@ class EdgeEvaluator {
     const int d = vertex.dimension();
     const int n = dimension();
     constexpr double kStep = 6e-6;
-    Eigen::Map<Eigen::MatrixXd> jacobian(data, n, d);
+    Eigen::Map<JacobianMatrix<E, V::kDimension>> jacobian(data, n, d);
     const std::size_t mark = x_.scratch->mark();
     double* step = x_.scratch->array<double>(d);
     std::fill(step, step + d, 0.0);
@@ -170,7 +169,7 @@ class EdgeEvaluator {
   }
 
   template <int I>
-  using FixedJacobian = Eigen::Ref<Eigen::Matrix<double, kD, FixedVertex<E, I>::kDimension>>;
+  using FixedJacobian = Eigen::Ref<JacobianMatrix<E, FixedVertex<E, I>::kDimension>>;
 
   template <int... I>
   static constexpr bool test_analytic(std::integer_sequence<int, I...>) {
@@ -191,14 +190,16 @@ class EdgeEvaluator {
 
  private:
   template <int I>
-  Eigen::Map<Eigen::Matrix<double, kD, FixedVertex<E, I>::kDimension>> fixed_map(
+  Eigen::Map<JacobianMatrix<E, FixedVertex<E, I>::kDimension>> fixed_map(
       double* const* jacobians) const {
-    using M = Eigen::Matrix<double, kD, FixedVertex<E, I>::kDimension>;
+    using M = JacobianMatrix<E, FixedVertex<E, I>::kDimension>;
     const int d = vertex_of<FixedVertex<E, I>>(slots_[I]).dimension();
     double* data = jacobians[I];
     if (data == nullptr)
       data = x_.scratch->array<double>(static_cast<std::size_t>(dimension()) * d);
-    return Eigen::Map<M>(data, dimension(), d);
+    Eigen::Map<M> map(data, dimension(), d);
+    if constexpr (kHasWeights<E>) map.setZero();
+    return map;
   }
 
   template <int... I>
@@ -347,7 +348,7 @@ class EdgeEvaluator {
     using T = Dual<V::kDimension>;
     Eigen::Matrix<T, kD, 1> error;
     call_dual<T>(slot, Eigen::Ref<Eigen::Matrix<T, kD, 1>>(error), FixedSequence());
-    Eigen::Map<Eigen::Matrix<double, kD, V::kDimension>> jacobian(data);
+    Eigen::Map<JacobianMatrix<E, V::kDimension>> jacobian(data);
     for (int r = 0; r < kD; ++r) jacobian.row(r) = error[r].v.transpose();
   }
 

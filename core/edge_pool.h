@@ -82,6 +82,7 @@ class EdgePool {
   /// The pool that a vertex in a given slot must belong to; the type's tag when there is none yet.
   virtual std::type_index slot_type(int slot) const = 0;
   virtual std::unique_ptr<VertexPool> make_slot_pool(int slot) const = 0;
+  virtual bool has_weights() const = 0;  ///< Ω is diagonal
   virtual Eigen::MatrixXd information(int index) const = 0;
   virtual void set_information(int index, const Eigen::MatrixXd& information) = 0;
   virtual RobustKernel& kernel(int index) = 0;

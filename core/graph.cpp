@@ -47,8 +47,7 @@ int Graph::add_edge_record(int pool, int index, int line) {
   return slot;
 }
 
-void Graph::check_edge(std::span<const int> vertices,
-                       const Eigen::Ref<const Eigen::MatrixXd>& information, int dimension) const {
+void Graph::check_edge(std::span<const int> vertices) const {
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     if (vertices[i] < 0 || vertices[i] >= vertex_slots() || !vertex_alive(vertices[i])) {
       throw Error("an edge names a vertex that is not in the graph");
@@ -62,6 +61,20 @@ void Graph::check_edge(std::span<const int> vertices,
     }
   }
   if (vertices.empty()) throw Error("an edge has no vertex", "at least one");
+}
+
+void Graph::check_edge(std::span<const int> vertices,
+                       const Eigen::Ref<const Eigen::VectorXd>& weights) const {
+  check_edge(vertices);
+  if (weights.size() == 0) throw Error("an edge without rows", "at least one weight");
+  if (!weights.allFinite() || weights.minCoeff() < 0.0) {
+    throw Error("a weight is negative or not finite", "weights >= 0");
+  }
+}
+
+void Graph::check_edge(std::span<const int> vertices,
+                       const Eigen::Ref<const Eigen::MatrixXd>& information, int dimension) const {
+  check_edge(vertices);
   if (information.rows() != dimension || information.cols() != dimension) {
     throw Error("information matrix of size " + std::to_string(information.rows()) + " x " +
                     std::to_string(information.cols()),

@@ -188,7 +188,11 @@ class Graph {
   template <class E>
   EdgeId add_typed_edge(E edge) {
     if constexpr (requires { edge.bind(parameters_); }) edge.bind(parameters_);
-    check_edge(edge.vertices, edge.information, edge.dimension());
+    if constexpr (kHasWeights<E>) {
+      check_edge(edge.vertices, edge.weights);
+    } else {
+      check_edge(edge.vertices, edge.information, edge.dimension());
+    }
     const int pool = edge_pool_of<E>();
     std::vector<E>& edges = static_cast<TypedEdgePool<E>&>(*edge_pools_[pool]).edges;
     edges.push_back(std::move(edge));
@@ -197,6 +201,9 @@ class Graph {
 
   int add_vertex_record(int id, int pool, int index);
   int add_edge_record(int pool, int index, int line);
+  void check_edge(std::span<const int> vertices) const;
+  void check_edge(std::span<const int> vertices,
+                  const Eigen::Ref<const Eigen::VectorXd>& weights) const;
   void check_edge(std::span<const int> vertices,
                   const Eigen::Ref<const Eigen::MatrixXd>& information, int dimension) const;
 

@@ -203,6 +203,7 @@ class GraphReader {
   }
 
   void check_information(EdgePool& pool, int index, int line) {
+    if (pool.has_weights()) return;
     // Consecutive edges of real files mostly share their matrix: the last good one is remembered.
     Eigen::MatrixXd information = pool.information(index);
     if (information.rows() == last_good_.rows() && information == last_good_) return;

@@ -33,9 +33,20 @@ class TypedEdgePool final : public EdgePool {
     return pool;
   }
 
-  Eigen::MatrixXd information(int index) const override { return edges[index].information; }
+  bool has_weights() const override { return kHasWeights<E>; }
+  Eigen::MatrixXd information(int index) const override {
+    if constexpr (kHasWeights<E>) {
+      return edges[index].weights.asDiagonal();
+    } else {
+      return edges[index].information;
+    }
+  }
   void set_information(int index, const Eigen::MatrixXd& information) override {
-    edges[index].information = information;
+    if constexpr (kHasWeights<E>) {
+      edges[index].weights = information.diagonal();
+    } else {
+      edges[index].information = information;
+    }
   }
   RobustKernel& kernel(int index) override { return edges[index].kernel; }
 
@@ -61,9 +72,9 @@ class TypedEdgePool final : public EdgePool {
     for (int k = 0; k < count; ++k) {
       x.scratch->reset();
       const E& edge = edges[compiled.edges[k]];
-      detail::Local<kD, 1> e = detail::make_local<kD, 1>(edge.dimension(), 1, *x.scratch);
+      detail::LocalMatrix<Error> e = detail::make_local<Error>(edge.dimension(), 1, *x.scratch);
       Evaluator(edge, slots(compiled, k), x).error(e);
-      const double chi2 = weighted_square(edge, e, *x.scratch);
+      const double chi2 = weighted_square(edge, e);
       total += {edge.kernel.weights(chi2).cost, chi2};
     }
     return total;
@@ -89,7 +100,7 @@ class TypedEdgePool final : public EdgePool {
     evaluator.each_slot([&]<class V>(std::type_identity<V>, int s) {
       if (s != slot) return;
       const int d = detail::vertex_of<V>(slots(compiled, k)[s]).dimension();
-      Eigen::Matrix<double, kD, V::kDimension> typed(edge.dimension(), d);
+      JacobianMatrix<E, V::kDimension> typed(edge.dimension(), d);
       if (numeric) {
         evaluator.template numeric_jacobian<V>(s, typed.data());
       } else {
@@ -154,11 +165,15 @@ class TypedEdgePool final : public EdgePool {
     }
     if constexpr (requires { edge.resize(dimension); }) edge.resize(dimension);
     read_fields(in, edge.fields());
-    edge.information.resize(dimension, dimension);
-    for (int r = 0; r < dimension; ++r) {
-      for (int c = r; c < dimension; ++c) {
-        edge.information(r, c) = in.number();
-        edge.information(c, r) = edge.information(r, c);
+    if constexpr (kHasWeights<E>) {
+      read_weights(edge, dimension, in);
+    } else {
+      edge.information.resize(dimension, dimension);
+      for (int r = 0; r < dimension; ++r) {
+        for (int c = r; c < dimension; ++c) {
+          edge.information(r, c) = in.number();
+          edge.information(c, r) = edge.information(r, c);
+        }
       }
     }
     edges.push_back(std::move(edge));
@@ -170,8 +185,12 @@ class TypedEdgePool final : public EdgePool {
     const int dimension = edge.dimension();
     if constexpr (E::kDynamicArity || kD == Eigen::Dynamic) out.integer(dimension);
     write_fields(out, const_cast<E&>(edge).fields());
-    for (int r = 0; r < dimension; ++r) {
-      for (int c = r; c < dimension; ++c) out.number(edge.information(r, c));
+    if constexpr (kHasWeights<E>) {
+      write_weights(edge, out);
+    } else {
+      for (int r = 0; r < dimension; ++r) {
+        for (int c = r; c < dimension; ++c) out.number(edge.information(r, c));
+      }
     }
   }
 
@@ -182,6 +201,7 @@ class TypedEdgePool final : public EdgePool {
 
  private:
   using Evaluator = detail::EdgeEvaluator<E>;
+  using Error = Eigen::Matrix<double, E::kDimension, 1>;
   static constexpr int kD = E::kDimension;
   static constexpr int kFixed = detail::fixed_slot_count<E>();
 
@@ -189,6 +209,24 @@ class TypedEdgePool final : public EdgePool {
     const int begin = compiled.slot_begin[k];
     return {compiled.slots.data() + begin,
             static_cast<std::size_t>(compiled.slot_begin[k + 1] - begin)};
+  }
+
+  /// Weights in a file: `scalar w` when all are equal, `diagonal w…` otherwise.
+  static void read_weights(E& edge, int dimension, FieldReader& in) {
+    const std::string kind = in.word();
+    if (kind != "scalar" && kind != "diagonal") {
+      in.fail("weights begin with '" + kind + "'", "'scalar' or 'diagonal'");
+    }
+    edge.weights.resize(dimension);
+    for (int r = 0; r < dimension; ++r) {
+      edge.weights[r] = kind == "scalar" && r > 0 ? edge.weights[0] : in.number();
+      if (edge.weights[r] < 0.0) in.fail("a negative weight", "weights >= 0");
+    }
+  }
+  static void write_weights(const E& edge, FieldWriter& out) {
+    const bool scalar = (edge.weights.array() == edge.weights[0]).all();
+    out.word(scalar ? "scalar" : "diagonal");
+    for (int r = 0; r < (scalar ? 1 : edge.dimension()); ++r) out.number(edge.weights[r]);
   }
 
   template <class F>
@@ -224,8 +262,10 @@ class TypedEdgePool final : public EdgePool {
   }
 
   template <class Vector>
-  static double weighted_square(const E& edge, const Vector& e, [[maybe_unused]] Scratch& scratch) {
-    if constexpr (kD == Eigen::Dynamic) {
+  static double weighted_square(const E& edge, const Vector& e) {
+    if constexpr (kHasWeights<E>) {
+      return e.cwiseAbs2().dot(edge.weights);
+    } else if constexpr (kD == Eigen::Dynamic) {
       double sum = 0.0;
       for (int c = 0; c < e.size(); ++c) sum += e[c] * edge.information.col(c).dot(e);
       return sum;
@@ -241,9 +281,9 @@ class TypedEdgePool final : public EdgePool {
     const Evaluator evaluator(edge, own, x);
     const int n = edge.dimension();
 
-    detail::Local<kD, 1> e = detail::make_local<kD, 1>(n, 1, *x.scratch);
+    detail::LocalMatrix<Error> e = detail::make_local<Error>(n, 1, *x.scratch);
     evaluator.error(e);
-    const double chi2 = weighted_square(edge, e, *x.scratch);
+    const double chi2 = weighted_square(edge, e);
     const RobustKernel::Weights robust = edge.kernel.weights(chi2);
     if constexpr (E::kDynamicArity) {
       double** data = x.scratch->array<double*>(own.size());
@@ -268,18 +308,82 @@ class TypedEdgePool final : public EdgePool {
                        const Vector& e, double weight, const Evaluation& x, double* hessian,
                        double* gradient, std::integer_sequence<int, I...>) const {
     const std::span<const CompiledEdges::Slot> own = slots(compiled, k);
-    std::tuple<detail::Local<kD, detail::FixedVertex<E, I>::kDimension>...> storage(
-        detail::make_local<kD, detail::FixedVertex<E, I>::kDimension>(
-            evaluator.dimension(), detail::vertex_of<detail::FixedVertex<E, I>>(own[I]).dimension(),
-            *x.scratch)...);
+    std::tuple<detail::LocalMatrix<JacobianMatrix<E, detail::FixedVertex<E, I>::kDimension>>...>
+    storage(detail::make_local<JacobianMatrix<E, detail::FixedVertex<E, I>::kDimension>>(
+        evaluator.dimension(), detail::vertex_of<detail::FixedVertex<E, I>>(own[I]).dimension(),
+        *x.scratch)...);
     double* data[] = {(own[I].tangent_offset < 0 ? nullptr : std::get<I>(storage).data())...};
     evaluator.jacobians(data);
-    accumulate(compiled, k, evaluator, e, weight, data, x, hessian, gradient);
+    if constexpr (kHasWeights<E>) {
+      accumulate_rows(compiled, k, evaluator, e, weight, data, x, hessian, gradient);
+    } else {
+      accumulate(compiled, k, evaluator, e, weight, data, x, hessian, gradient);
+    }
+  }
+
+  /// The entries other than zero of one row of a Jacobian.
+  struct RowEntries {
+    int count;
+    int* column;
+    double* value;
+  };
+
+  /// Diagonal Ω: H += w gᵀg row by row, over the entries that are not zero.
+  template <class Vector>
+  void accumulate_rows(const CompiledEdges& compiled, int k, const Evaluator& evaluator,
+                       const Vector& e, double weight, double* const* data, const Evaluation& x,
+                       double* hessian, double* gradient) const {
+    const E& edge = edges[compiled.edges[k]];
+    const std::span<const CompiledEdges::Slot> own = slots(compiled, k);
+    const int count = static_cast<int>(own.size());
+    RowEntries* entries = x.scratch->array<RowEntries>(count);
+    int* width = x.scratch->array<int>(count);
+    evaluator.each_slot([&]<class V>(std::type_identity<V>, int s) {
+      width[s] = detail::vertex_of<V>(own[s]).dimension();
+      entries[s] = {0, x.scratch->array<int>(width[s]), x.scratch->array<double>(width[s])};
+    });
+    for (int r = 0; r < edge.dimension(); ++r) {
+      const double w = weight * edge.weights[r];
+      if (w == 0.0 || (E::kOneSided && e[r] == 0.0)) continue;
+      for (int s = 0; s < count; ++s) {
+        RowEntries& row = entries[s];
+        row.count = 0;
+        if (data[s] == nullptr) continue;
+        const double* from = data[s] + static_cast<std::size_t>(r) * width[s];
+        for (int c = 0; c < width[s]; ++c) {
+          if (from[c] == 0.0) continue;
+          row.column[row.count] = c;
+          row.value[row.count++] = from[c];
+        }
+      }
+      const CompiledEdges::Block* block = compiled.blocks.data() + compiled.block_begin[k];
+      for (int i = 0; i < count; ++i) {
+        const RowEntries& left = entries[i];
+        double* g = gradient + own[i].tangent_offset;
+        for (int a = 0; a < left.count; ++a) g[left.column[a]] += w * e[r] * left.value[a];
+        for (int j = i; j < count; ++j, ++block) {
+          const RowEntries& right = entries[j];
+          if (left.count == 0 || right.count == 0) continue;
+          double* h = hessian + (*block >> 1);
+          // Block (i, j) is width[i] × width[j], column-major; transposed where i comes later.
+          const bool transposed = (*block & 1) != 0;
+          const int row_step = transposed ? width[j] : 1;
+          const int column_step = transposed ? 1 : width[i];
+          for (int b = 0; b < right.count; ++b) {
+            const double factor = w * right.value[b];
+            double* column = h + static_cast<std::ptrdiff_t>(right.column[b]) * column_step;
+            for (int a = 0; a < left.count; ++a) {
+              column[left.column[a] * row_step] += factor * left.value[a];
+            }
+          }
+        }
+      }
+    }
   }
 
   template <class V>
   static auto jacobian_map(double* data, int n, int d) {
-    return Eigen::Map<Eigen::Matrix<double, kD, V::kDimension>>(data, n, d);
+    return Eigen::Map<JacobianMatrix<E, V::kDimension>>(data, n, d);
   }
 
   /// H_ij += J_iᵀ (wΩ) J_j for i ≤ j, g_i += J_iᵀ (wΩ) e, at the precomputed offsets.
@@ -299,8 +403,9 @@ class TypedEdgePool final : public EdgePool {
       const std::size_t mark = x.scratch->mark();
       const int di = detail::vertex_of<A>(own[i]).dimension();
       const auto ji = jacobian_map<A>(data[i], edge.dimension(), di);
-      detail::Local<A::kDimension, kD> weighted =
-          detail::make_local<A::kDimension, kD>(di, edge.dimension(), *x.scratch);
+      using Weighted = Eigen::Matrix<double, A::kDimension, kD>;
+      detail::LocalMatrix<Weighted> weighted =
+          detail::make_local<Weighted>(di, edge.dimension(), *x.scratch);
       if constexpr (A::kDimension == Eigen::Dynamic || kD == Eigen::Dynamic) {
         weighted.noalias() = ji.transpose() * edge.information;
         weighted *= weight;

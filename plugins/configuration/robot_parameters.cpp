@@ -1,0 +1,137 @@
+#include <locograph/plugins/configuration/robot_parameters.h>
+#include <locograph/world/octree.h>
+
+namespace locograph {
+namespace {
+
+/// Spheres may stick out of the shapes they cover by this much: more spheres cost time, larger ones
+/// cost free space.
+constexpr double kSphereOvershoot_m = 0.02;
+
+std::filesystem::path read_path(FieldReader& in) {
+  const std::string word = in.word();
+  if (word == "-") return {};
+  const std::filesystem::path path(word);
+  return path.is_absolute() ? path : in.where().folder / path;
+}
+
+void write_path(FieldWriter& out, const std::filesystem::path& path) {
+  if (path.empty()) {
+    out.word("-");
+    return;
+  }
+  const std::filesystem::path folder =
+      std::filesystem::absolute(out.folder().empty() ? "." : out.folder());
+  out.word(std::filesystem::proximate(std::filesystem::absolute(path), folder).generic_string());
+}
+
+}  // namespace
+
+RobotParameter::RobotParameter(std::filesystem::path urdf_file, std::filesystem::path srdf_file,
+                               RobotOptions robot_options)
+    : urdf(std::move(urdf_file)), srdf(std::move(srdf_file)), options(std::move(robot_options)) {
+  load();
+}
+
+void RobotParameter::load() {
+  robot = std::make_shared<const Robot>(Robot::load(urdf, srdf, options));
+  spheres = covering_spheres(*robot, kSphereOvershoot_m);
+}
+
+void RobotParameter::read(FieldReader& in) {
+  urdf = read_path(in);
+  srdf = read_path(in);
+  const std::string base = in.word();
+  if (base != "floating" && base != "fixed") {
+    in.fail("base '" + base + "'", "'floating' or 'fixed'");
+  }
+  options.floating_base = base == "floating";
+  const int count = in.integer();
+  for (int i = 0; i < count; ++i) options.active_joints.push_back(in.word());
+  load();
+}
+
+void RobotParameter::write(FieldWriter& out) const {
+  write_path(out, urdf);
+  write_path(out, srdf);
+  out.word(options.floating_base ? "floating" : "fixed");
+  out.integer(static_cast<long>(options.active_joints.size()));
+  for (const std::string& name : options.active_joints) out.word(name);
+}
+
+WheelsParameter::WheelsParameter(const Robot& robot, int number, std::vector<Wheel> named)
+    : robot_number(number), wheels(std::move(named)) {
+  for (Wheel& wheel : wheels) {
+    wheel.link = robot.link_index(wheel.link_name);
+    if (!(wheel.radius_m > 0.0)) {
+      throw Error("wheel " + wheel.link_name + " has radius " + std::to_string(wheel.radius_m),
+                  "a radius > 0 m");
+    }
+    const int above = robot.links()[wheel.link].parent_joint;
+    if (above < 0 || robot.joints()[above].type == JointType::kFixed) {
+      throw Error("wheel " + wheel.link_name + " cannot turn", "a link below a revolute joint");
+    }
+    const Joint& joint = robot.joints()[above];
+    wheel.carrier = joint.parent_link;
+    wheel.joint = joint.index;
+    wheel.axle_in_carrier = joint.parent_from_joint.linear() * joint.axis;
+    wheel.centre_in_carrier = joint.parent_from_joint.translation();
+    // The carrier's axis that is most nearly normal to the axle, made normal to it.
+    int axis = 0;
+    wheel.axle_in_carrier.cwiseAbs().minCoeff(&axis);
+    Eigen::Vector3d upright = Eigen::Vector3d::Unit(axis);
+    upright -= wheel.axle_in_carrier * wheel.axle_in_carrier.dot(upright);
+    wheel.upright_in_carrier = upright.normalized();
+  }
+}
+
+void WheelsParameter::read(FieldReader& in) {
+  const int number = in.integer();
+  const int count = in.integer();
+  if (count < 1) in.fail("number of wheels " + std::to_string(count), "at least one");
+  std::vector<Wheel> named(count);
+  for (Wheel& wheel : named) {
+    wheel.link_name = in.word();
+    wheel.radius_m = in.number();
+  }
+  *this = WheelsParameter(*in.parameters()->get<RobotParameter>(number)->robot, number,
+                          std::move(named));
+}
+
+void WheelsParameter::write(FieldWriter& out) const {
+  out.integer(robot_number);
+  out.integer(static_cast<long>(wheels.size()));
+  for (const Wheel& wheel : wheels) {
+    out.word(wheel.link_name);
+    out.number(wheel.radius_m);
+  }
+}
+
+WorldParameter::WorldParameter(std::filesystem::path map_file, std::filesystem::path obstacle_file)
+    : map(std::move(map_file)), obstacles(std::move(obstacle_file)) {
+  load();
+}
+
+void WorldParameter::load() {
+  now = {};
+  if (!map.empty()) {
+    DistanceFieldOptions options;
+    options.ground_z = kGroundVoxelTop_m;
+    now.map = std::make_shared<const DistanceField>(
+        DistanceField::from_octree(*load_octree(map), options));
+  }
+  if (!obstacles.empty()) now.obstacles = load_obstacles(obstacles);
+}
+
+void WorldParameter::read(FieldReader& in) {
+  map = read_path(in);
+  obstacles = read_path(in);
+  load();
+}
+
+void WorldParameter::write(FieldWriter& out) const {
+  write_path(out, map);
+  write_path(out, obstacles);
+}
+
+}  // namespace locograph

@@ -1,0 +1,52 @@
+#include <locograph/plugins/configuration/vertex_configuration.h>
+
+#include <cmath>
+
+namespace locograph {
+
+ConfigurationState::ConfigurationState(std::shared_ptr<const RobotParameter> parameter)
+    : robot(std::move(parameter)),
+      kinematics(*robot->robot),
+      q(robot->robot->configuration_size()),
+      sphere_centres(robot->spheres.size()) {}
+
+void ConfigurationState::update(const double* configuration) {
+  std::copy_n(configuration, q.size(), q.data());
+  kinematics.update(configuration);
+  for (std::size_t i = 0; i < sphere_centres.size(); ++i) {
+    const CollisionSphere& sphere = robot->spheres[i];
+    sphere_centres[i] = kinematics.world_from_link(sphere.link) * sphere.center;
+  }
+}
+
+VertexConfiguration::VertexConfiguration(int number,
+                                         std::shared_ptr<const RobotParameter> parameter,
+                                         double time, const Eigen::VectorXd& q)
+    : robot_number(number), time_s(time), robot(std::move(parameter)) {
+  if (q.size() != robot->robot->configuration_size()) {
+    throw Error("configuration of " + std::to_string(q.size()) + " numbers",
+                std::to_string(robot->robot->configuration_size()));
+  }
+  state = q;
+}
+
+void VertexConfiguration::read(FieldReader& in) {
+  robot_number = in.integer();
+  robot = in.parameters()->get<RobotParameter>(robot_number);
+  time_s = in.number();
+  state.resize(robot->robot->configuration_size());
+  for (Eigen::Index i = 0; i < state.size(); ++i) state[i] = in.number();
+  if (!robot->robot->floating_base()) return;
+  const double squared = state.segment<4>(3).squaredNorm();
+  if (squared < 1e-12) in.fail("quaternion of length zero", "a unit quaternion qx qy qz qw");
+  // As it was written if it is normalised: reading what was written gives the same bits.
+  if (std::abs(squared - 1.0) > 1e-14) state.segment<4>(3) /= std::sqrt(squared);
+}
+
+void VertexConfiguration::write(FieldWriter& out) const {
+  out.integer(robot_number);
+  out.number(time_s);
+  for (Eigen::Index i = 0; i < state.size(); ++i) out.number(state[i]);
+}
+
+}  // namespace locograph

@@ -1,0 +1,65 @@
+#pragma once
+/// VERTEX_CONFIGURATION: where a robot is, base pose and active joints, at one moment of a plan.
+///
+///     VERTEX_CONFIGURATION id robot time  x y z qx qy qz qw  joints…      (m, rad, s)
+///
+/// State: Robot::configuration_size() numbers. Tangent: Robot::tangent_size(): linear and angular
+/// velocity of the base in the base frame, joint velocities; never Euler angles. Edges receive a
+/// ConfigurationState: kinematics and collision spheres worked out once for each state, read by
+/// all.
+
+#include <locograph/core/vertex.h>
+#include <locograph/plugins/configuration/robot_parameters.h>
+#include <locograph/robots/robot_state.h>
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+namespace locograph {
+
+/// A configuration with everything derived from it.
+struct ConfigurationState {
+  std::shared_ptr<const RobotParameter> robot;
+  RobotState kinematics;
+  Eigen::VectorXd q;
+  double time_s = 0.0;
+  std::vector<Eigen::Vector3d> sphere_centres;  ///< world frame, as RobotParameter::spheres
+
+  explicit ConfigurationState(std::shared_ptr<const RobotParameter> parameter);
+  void update(const double* configuration);
+
+  const Robot& model() const { return kinematics.robot(); }
+  double joint(int active) const { return q[model().base_configuration_size() + active]; }
+  /// world_from_base, identity rotation and origin for a fixed base.
+  Eigen::Vector3d base_position() const { return q.head<3>(); }
+  Eigen::Quaterniond base_rotation() const { return Eigen::Quaterniond(q.segment<4>(3).data()); }
+};
+
+struct VertexConfiguration : Vertex<Eigen::Dynamic, Eigen::Dynamic> {
+  using Derived = ConfigurationState;
+
+  int robot_number = 0;
+  double time_s = 0.0;
+  std::shared_ptr<const RobotParameter> robot;
+
+  VertexConfiguration() = default;
+  VertexConfiguration(int number, std::shared_ptr<const RobotParameter> parameter, double time,
+                      const Eigen::VectorXd& q);
+
+  int dimension() const { return robot ? robot->robot->tangent_size() : 0; }
+  void oplus(const double* s, const double* d, double* out) const {
+    robot->robot->integrate(s, d, out);
+  }
+  Derived make_derived() const { return ConfigurationState(robot); }
+  void derive(const double* s, Derived& derived) const {
+    derived.time_s = time_s;
+    derived.update(s);
+  }
+
+  void read(FieldReader& in);
+  void write(FieldWriter& out) const;
+};
+LOCOGRAPH_REGISTER_VERTEX("VERTEX_CONFIGURATION", VertexConfiguration)
+
+}  // namespace locograph

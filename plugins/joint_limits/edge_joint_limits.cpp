@@ -1,0 +1,34 @@
+#include <locograph/plugins/joint_limits/edge_joint_limits.h>
+
+namespace locograph {
+
+template class TypedEdgePool<EdgeJointLimits>;
+
+EdgeJointLimits::EdgeJointLimits(const Robot& robot, double margin_, double weight)
+    : margin(margin_) {
+  weights.setConstant(robot.active_joint_count(), weight);
+}
+
+void EdgeJointLimits::error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const {
+  for (int i = 0; i < e.size(); ++i) {
+    const Joint& joint = q.model().active_joint(i);
+    const double position = q.joint(i);
+    e[i] = std::max({0.0, joint.lower + margin - position, position - joint.upper + margin});
+  }
+}
+
+void EdgeJointLimits::jacobians(const ConfigurationState& q,
+                                JacobianRef<EdgeJointLimits, 0> j) const {
+  const int base = q.model().base_tangent_size();
+  for (int i = 0; i < j.rows(); ++i) {
+    const Joint& joint = q.model().active_joint(i);
+    const double position = q.joint(i);
+    if (joint.lower + margin - position > 0.0) {
+      j(i, base + i) = -1.0;
+    } else if (position - joint.upper + margin > 0.0) {
+      j(i, base + i) = 1.0;
+    }
+  }
+}
+
+}  // namespace locograph

@@ -1,0 +1,29 @@
+#pragma once
+/// EDGE_JOINT_LIMITS: keeps every active joint a margin away from its limits.
+///
+///     EDGE_JOINT_LIMITS id  n margin  weights
+///
+/// Error (number of active joints) [rad or m]: max(0, lower + margin − q, q − upper + margin) for
+/// each; zero for joints without limits. Linear in the violation, so that its gradient does not
+/// vanish at the boundary.
+
+#include <locograph/core/typed_edge_pool.h>
+#include <locograph/plugins/configuration/vertex_configuration.h>
+
+namespace locograph {
+
+struct EdgeJointLimits : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
+  static constexpr bool kOneSided = true;
+  double margin = 0.0;
+  auto fields() { return std::tie(margin); }
+
+  EdgeJointLimits() = default;
+  EdgeJointLimits(const Robot& robot, double margin, double weight);
+
+  void error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const;
+  void jacobians(const ConfigurationState& q, JacobianRef<EdgeJointLimits, 0> j) const;
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_JOINT_LIMITS", EdgeJointLimits)
+extern template class TypedEdgePool<EdgeJointLimits>;
+
+}  // namespace locograph

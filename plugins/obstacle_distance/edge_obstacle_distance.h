@@ -1,0 +1,33 @@
+#pragma once
+/// EDGE_OBSTACLE_DISTANCE: keeps the robot's collision spheres a margin away from the world.
+///
+///     EDGE_OBSTACLE_DISTANCE id  n world margin  weights
+///
+/// Error (number of spheres) [m]: max(0, margin − (d(c) − r)) for a sphere of radius r about c, d
+/// the signed distance that the PARAMS_WORLD shows at the configuration's time. Inside an obstacle
+/// it grows with the depth, so there is a way out.
+
+#include <locograph/core/typed_edge_pool.h>
+#include <locograph/plugins/configuration/vertex_configuration.h>
+
+namespace locograph {
+
+struct EdgeObstacleDistance : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
+  static constexpr bool kOneSided = true;
+  int world_number = 0;
+  double margin_m = 0.05;
+  std::shared_ptr<const WorldParameter> world;  ///< looked up by bind()
+  auto fields() { return std::tie(world_number, margin_m); }
+  void bind(const Parameters& parameters) { world = parameters.get<WorldParameter>(world_number); }
+
+  EdgeObstacleDistance() = default;
+  EdgeObstacleDistance(const RobotParameter& robot, int world_number, double margin_m,
+                       double weight);
+
+  void error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const;
+  void jacobians(const ConfigurationState& q, JacobianRef<EdgeObstacleDistance, 0> j) const;
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_OBSTACLE_DISTANCE", EdgeObstacleDistance)
+extern template class TypedEdgePool<EdgeObstacleDistance>;
+
+}  // namespace locograph

@@ -1,0 +1,42 @@
+#include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
+
+#include <cmath>
+
+namespace locograph {
+
+template class TypedEdgePool<EdgePlanTracking>;
+
+Eigen::Matrix3d inverse_right_jacobian(const Eigen::Vector3d& v) {
+  const double squared = v.squaredNorm(), angle = std::sqrt(squared);
+  // (1 − (θ/2) cot(θ/2)) / θ², and its series near zero.
+  const double factor = angle < 1e-4 ? 1.0 / 12.0 + squared / 720.0
+                                     : (1.0 - 0.5 * angle / std::tan(0.5 * angle)) / squared;
+  Eigen::Matrix3d cross;
+  cross << 0.0, -v[2], v[1], v[2], 0.0, -v[0], -v[1], v[0], 0.0;
+  return Eigen::Matrix3d::Identity() + 0.5 * cross + factor * cross * cross;
+}
+
+EdgePlanTracking::EdgePlanTracking(const Eigen::VectorXd& reference_,
+                                   const Eigen::VectorXd& weights_)
+    : reference(reference_) {
+  weights = weights_;
+}
+
+void EdgePlanTracking::error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const {
+  q.model().difference(reference.data(), q.q.data(), e.data());
+}
+
+void EdgePlanTracking::jacobians(const ConfigurationState& q,
+                                 JacobianRef<EdgePlanTracking, 0> j) const {
+  const int base = q.model().base_tangent_size();
+  if (base > 0) {
+    const Eigen::Quaterniond from(reference.segment<4>(3).data());
+    const Eigen::Quaterniond relative = from.conjugate() * q.base_rotation();
+    const Eigen::AngleAxisd rotation(relative);
+    j.topLeftCorner<3, 3>() = relative.toRotationMatrix();
+    j.block<3, 3>(3, 3) = inverse_right_jacobian(rotation.angle() * rotation.axis());
+  }
+  for (int i = base; i < j.rows(); ++i) j(i, i) = 1.0;
+}
+
+}  // namespace locograph

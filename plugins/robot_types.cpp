@@ -1,0 +1,27 @@
+#include <locograph/plugins/joint_limits/edge_joint_limits.h>
+#include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
+#include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
+#include <locograph/plugins/robot_types.h>
+#include <locograph/plugins/rolling/edge_rolling.h>
+#include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
+#include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
+#include <locograph/plugins/wheel_contact/edge_wheel_contact.h>
+
+namespace locograph {
+
+void add_robot_types(TypeRegistry& types) {
+  types.add_parameter<RobotParameter>("PARAMS_ROBOT");
+  types.add_parameter<WheelsParameter>("PARAMS_WHEELS");
+  types.add_parameter<WorldParameter>("PARAMS_WORLD");
+  types.add_parameter<ScenarioParameter>("PARAMS_SCENARIO");
+  types.add_vertex<VertexConfiguration>();
+  types.add_edge<EdgeJointLimits>();
+  types.add_edge<EdgeObstacleDistance>();
+  types.add_edge<EdgePlanTracking>();
+  types.add_edge<EdgeRolling>();
+  types.add_edge<EdgeVelocityLimits>();
+  types.add_edge<EdgeVelocityTracking>();
+  types.add_edge<EdgeWheelContact>();
+}
+
+}  // namespace locograph

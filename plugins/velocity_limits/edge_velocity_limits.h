@@ -1,0 +1,37 @@
+#pragma once
+/// EDGE_VELOCITY_LIMITS: no joint, and not the base, moves faster than it may between two
+/// configurations.
+///
+///     EDGE_VELOCITY_LIMITS id id  n fraction base_linear base_angular  weights
+///
+/// Error (active joints + 2): max(0, |Δq| − fraction · v_max · Δt) for each joint [rad or m], then
+/// the same for the distance [m] and the angle [rad] the base moves. Zero inside the limits: a
+/// limit, not a pull towards rest. Δt is the difference of the two time stamps. Limits of the base
+/// in m/s and rad/s, 0 for none.
+
+#include <locograph/core/typed_edge_pool.h>
+#include <locograph/plugins/configuration/vertex_configuration.h>
+
+namespace locograph {
+
+struct EdgeVelocityLimits : WeightedEdge<Eigen::Dynamic, VertexConfiguration, VertexConfiguration> {
+  static constexpr bool kOneSided = true;
+  double fraction = 1.0;
+  double base_linear_m_s = 0.0;
+  double base_angular_rad_s = 0.0;
+  auto fields() { return std::tie(fraction, base_linear_m_s, base_angular_rad_s); }
+
+  EdgeVelocityLimits() = default;
+  EdgeVelocityLimits(const Robot& robot, double fraction, double base_linear_m_s,
+                     double base_angular_rad_s, double weight);
+
+  void error(const ConfigurationState& a, const ConfigurationState& b,
+             Eigen::Ref<Eigen::VectorXd> e) const;
+  void jacobians(const ConfigurationState& a, const ConfigurationState& b,
+                 JacobianRef<EdgeVelocityLimits, 0> ja,
+                 JacobianRef<EdgeVelocityLimits, 1> jb) const;
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_VELOCITY_LIMITS", EdgeVelocityLimits)
+extern template class TypedEdgePool<EdgeVelocityLimits>;
+
+}  // namespace locograph

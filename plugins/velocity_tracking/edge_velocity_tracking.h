@@ -1,0 +1,36 @@
+#pragma once
+/// EDGE_VELOCITY_TRACKING: keeps the step between two configurations near the step that the global
+/// plan makes there, so that a detour is taken smoothly.
+///
+///     EDGE_VELOCITY_TRACKING id id  n step…  weights
+///
+/// Error (tangent size): (b ⊖ a) − step, both in the base frame of a: translation [m], rotation
+/// vector [rad], joints. Ω per coordinate.
+
+#include <locograph/core/typed_edge_pool.h>
+#include <locograph/plugins/configuration/vertex_configuration.h>
+
+namespace locograph {
+
+struct EdgeVelocityTracking
+    : WeightedEdge<Eigen::Dynamic, VertexConfiguration, VertexConfiguration> {
+  Eigen::VectorXd step;  ///< of the plan
+  auto fields() { return std::tie(step); }
+  void resize(int n) {
+    weights.resize(n);
+    step.resize(n);
+  }
+
+  EdgeVelocityTracking() = default;
+  EdgeVelocityTracking(const Eigen::VectorXd& step, const Eigen::VectorXd& weights);
+
+  void error(const ConfigurationState& a, const ConfigurationState& b,
+             Eigen::Ref<Eigen::VectorXd> e) const;
+  void jacobians(const ConfigurationState& a, const ConfigurationState& b,
+                 JacobianRef<EdgeVelocityTracking, 0> ja,
+                 JacobianRef<EdgeVelocityTracking, 1> jb) const;
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_VELOCITY_TRACKING", EdgeVelocityTracking)
+extern template class TypedEdgePool<EdgeVelocityTracking>;
+
+}  // namespace locograph

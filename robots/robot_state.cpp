@@ -1,0 +1,164 @@
+#include <locograph/common/error.h>
+#include <locograph/robots/kinematic_tree.h>
+#include <locograph/robots/robot_state.h>
+
+#include <cmath>
+
+namespace locograph {
+
+RobotState::RobotState(const Robot& robot)
+    : robot_(&robot),
+      tree_(&robot.tree()),
+      world_from_body_(robot.tree().bodies.size(), Eigen::Isometry3d::Identity()),
+      world_from_link_(robot.links().size(), Eigen::Isometry3d::Identity()),
+      joint_origin_(robot.tree().bodies.size() - 1),
+      joint_axis_(joint_origin_.size()),
+      subtree_moment_(robot.tree().bodies.size()),
+      coefficients_(2 * joint_origin_.size()) {
+  update(robot.neutral_configuration().data());
+}
+
+void RobotState::update(const double* q) {
+  const KinematicTree& tree = *tree_;
+  const std::size_t joint_count = joint_origin_.size();
+  if (robot_->floating_base()) {
+    world_from_body_[0].linear() = Eigen::Quaterniond(q[6], q[3], q[4], q[5]).toRotationMatrix();
+    world_from_body_[0].translation() << q[0], q[1], q[2];
+    q += 7;
+  }
+  world_from_link_[0] = world_from_body_[0];
+  subtree_moment_[0].noalias() = world_from_body_[0].matrix() * tree.bodies[0].moment;
+
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const bool revolute = tree.bodies[i + 1].revolute;
+    coefficients_[2 * i] = revolute ? std::sin(q[i]) : q[i];
+    coefficients_[2 * i + 1] = revolute ? std::cos(q[i]) : 0.0;
+  }
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const KinematicTree::Body& body = tree.bodies[i + 1];
+    Eigen::Matrix4d local;
+    local.noalias() = body.A + coefficients_[2 * i] * body.B + coefficients_[2 * i + 1] * body.C;
+    Eigen::Matrix4d& pose = world_from_body_[i + 1].matrix();
+    pose.noalias() = world_from_body_[static_cast<std::size_t>(body.parent)].matrix() * local;
+    Eigen::Vector4d axis;
+    axis.noalias() = pose * body.axis;
+    joint_axis_[i] = axis.head<3>();
+    joint_origin_[i] = pose.col(3).head<3>();
+    subtree_moment_[i + 1].noalias() = pose * body.moment;
+    world_from_link_[static_cast<std::size_t>(tree.link_of_body[i + 1])].matrix() = pose;
+  }
+  for (const KinematicTree::RigidLink& rigid : tree.rigid_links) {
+    world_from_link_[static_cast<std::size_t>(rigid.link)].matrix().noalias() =
+        world_from_body_[static_cast<std::size_t>(rigid.body)].matrix() * rigid.body_from_link;
+  }
+  for (std::size_t b = joint_count; b > 0; --b) {
+    subtree_moment_[static_cast<std::size_t>(tree.bodies[b].parent)] += subtree_moment_[b];
+  }
+}
+
+void RobotState::frame_jacobian(
+    int link, const Eigen::Isometry3d& link_from_frame,
+    Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>> jacobian) const {
+  jacobian.setZero();
+  const Eigen::Vector3d point = world_from_link(link) * link_from_frame.translation();
+  const int base = robot_->base_tangent_size();
+  if (base > 0) {
+    const Eigen::Matrix3d rotation = world_from_body_[0].linear();
+    const Eigen::Vector3d arm = point - world_from_body_[0].translation();
+    jacobian.topLeftCorner<3, 3>() = rotation;
+    jacobian.block<3, 3>(3, 3) = rotation;
+    for (int k = 0; k < 3; ++k) jacobian.block<3, 1>(0, 3 + k) = rotation.col(k).cross(arm);
+  }
+  for (const int i : robot_->support(link)) {
+    if (tree_->bodies[static_cast<std::size_t>(i) + 1].revolute) {
+      jacobian.block<3, 1>(0, base + i) = joint_axis(i).cross(point - joint_origin(i));
+      jacobian.block<3, 1>(3, base + i) = joint_axis(i);
+    } else {
+      jacobian.block<3, 1>(0, base + i) = joint_axis(i);
+    }
+  }
+}
+
+// d . (axis x (p - o)) = axis . ((p - o) x d) for a joint; for the base, with d in base axes,
+// d . (v + omega x r) = v . d + omega . (r x d).
+void RobotState::add_point_gradient(int link, const Eigen::Vector3d& point_world,
+                                    const Eigen::Vector3d& direction_world, double scale,
+                                    double* row, int stride) const {
+  const Eigen::Vector3d direction = scale * direction_world;
+  if (robot_->floating_base()) {
+    const Eigen::Matrix3d world_from_base = world_from_body_[0].linear();
+    const Eigen::Vector3d arm = point_world - world_from_body_[0].translation();
+    const Eigen::Vector3d linear = world_from_base.transpose() * direction;
+    const Eigen::Vector3d angular = world_from_base.transpose() * arm.cross(direction);
+    for (int k = 0; k < 3; ++k) {
+      row[k * stride] += linear[k];
+      row[(3 + k) * stride] += angular[k];
+    }
+    row += 6 * stride;
+  }
+  const int* support = tree_->support.data();
+  const int end = tree_->support_begin[static_cast<std::size_t>(link) + 1];
+  for (int s = tree_->support_begin[static_cast<std::size_t>(link)]; s < end; ++s) {
+    const int i = support[s];
+    const Eigen::Vector3d& axis = joint_axis(i);
+    const double slope = tree_->bodies[static_cast<std::size_t>(i) + 1].revolute
+                             ? axis.dot((point_world - joint_origin(i)).cross(direction))
+                             : axis.dot(direction);
+    row[i * stride] += slope;
+  }
+}
+
+// d . (omega x a) = omega . (a x d); translations do not turn the axis.
+void RobotState::add_axis_gradient(int link, const Eigen::Vector3d& axis_world,
+                                   const Eigen::Vector3d& direction_world, double scale,
+                                   double* row, int stride) const {
+  const Eigen::Vector3d lever = scale * axis_world.cross(direction_world);
+  if (robot_->floating_base()) {
+    const Eigen::Vector3d angular = world_from_body_[0].linear().transpose() * lever;
+    for (int k = 0; k < 3; ++k) row[(3 + k) * stride] += angular[k];
+    row += 6 * stride;
+  }
+  for (const int i : robot_->support(link)) {
+    if (tree_->bodies[static_cast<std::size_t>(i) + 1].revolute) {
+      row[i * stride] += joint_axis(i).dot(lever);
+    }
+  }
+}
+
+void RobotState::require_mass() const {
+  if (!(tree_->bodies[0].subtree_mass > 0.0)) {
+    throw Error("robot '" + robot_->name() + "' has no centre of mass",
+                "an <inertial> with a positive mass in at least one link of the URDF");
+  }
+}
+
+Eigen::Vector3d RobotState::center_of_mass() const {
+  require_mass();
+  return subtree_moment_[0].head<3>() / tree_->bodies[0].subtree_mass;
+}
+
+// Moving joint i moves the subtree behind it: sum_k m_k axis x (c_k - o) = axis x (S - M_i o).
+void RobotState::center_of_mass_jacobian(
+    Eigen::Ref<Eigen::Matrix<double, 3, Eigen::Dynamic>> jacobian) const {
+  const Eigen::Vector3d com = center_of_mass();
+  const double inverse_mass = 1.0 / tree_->bodies[0].subtree_mass;
+  const int base = robot_->base_tangent_size();
+  if (base > 0) {
+    const Eigen::Matrix3d rotation = world_from_body_[0].linear();
+    const Eigen::Vector3d arm = com - world_from_body_[0].translation();
+    jacobian.leftCols<3>() = rotation;
+    for (int k = 0; k < 3; ++k) jacobian.col(3 + k) = rotation.col(k).cross(arm);
+  }
+  for (int i = 0; i < robot_->active_joint_count(); ++i) {
+    const KinematicTree::Body& body = tree_->bodies[static_cast<std::size_t>(i) + 1];
+    if (body.revolute) {
+      const Eigen::Vector3d moment = subtree_moment_[static_cast<std::size_t>(i) + 1].head<3>() -
+                                     body.subtree_mass * joint_origin(i);
+      jacobian.col(base + i) = inverse_mass * joint_axis(i).cross(moment);
+    } else {
+      jacobian.col(base + i) = inverse_mass * body.subtree_mass * joint_axis(i);
+    }
+  }
+}
+
+}  // namespace locograph

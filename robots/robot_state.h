@@ -1,0 +1,79 @@
+#pragma once
+/// The kinematics of one configuration: link poses, Jacobians, centre of mass.
+///
+///     locograph::RobotState state(robot);
+///     state.update(robot.named_configuration("home").data());
+///     Eigen::Vector3d wheel = state.world_from_link(robot.link_index("wheel_1")).translation();
+///     Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(6, robot.tangent_size());
+///     state.frame_jacobian(robot.link_index("wheel_1"), Eigen::Isometry3d::Identity(), jacobian);
+///
+/// Everything is in the world frame [m, rad] unless said; columns follow the tangent convention of
+/// robot.h. All memory is allocated by the constructor; no other function allocates.
+/// Keeps a pointer to the robot, which must outlive it. Thread-safety: one per thread to update,
+/// const functions freely shared.
+///
+/// Before the first update() the state is that of neutral_configuration().
+
+#include <locograph/robots/robot.h>
+
+#include <Eigen/Geometry>
+#include <vector>
+
+namespace locograph {
+
+class RobotState {
+ public:
+  explicit RobotState(const Robot& robot);
+
+  const Robot& robot() const { return *robot_; }
+
+  /// q: robot().configuration_size() numbers; the quaternion must have norm 1.
+  void update(const double* q);
+
+  const Eigen::Isometry3d& world_from_link(int link) const {
+    return world_from_link_[static_cast<std::size_t>(link)];
+  }
+  /// A point on the axis of an active joint, and the axis' direction.
+  const Eigen::Vector3d& joint_origin(int active) const {
+    return joint_origin_[static_cast<std::size_t>(active)];
+  }
+  const Eigen::Vector3d& joint_axis(int active) const {
+    return joint_axis_[static_cast<std::size_t>(active)];
+  }
+
+  /// Geometric Jacobian, 6 x tangent_size, of a frame fixed to `link`: rows 0-2 velocity of its
+  /// origin, rows 3-5 angular velocity, both along the world axes. Overwrites all columns.
+  void frame_jacobian(int link, const Eigen::Isometry3d& link_from_frame,
+                      Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>> jacobian) const;
+
+  /// row[k * stride] += scale * direction . d(point)/d(tangent_k) for a point fixed to `link` that
+  /// is now at point_world. Touches the columns of the base and of support(link) only.
+  void add_point_gradient(int link, const Eigen::Vector3d& point_world,
+                          const Eigen::Vector3d& direction_world, double scale, double* row,
+                          int stride = 1) const;
+
+  /// row[k * stride] += scale * direction . d(axis)/d(tangent_k) for a unit vector fixed to `link`
+  /// that now points along axis_world. Touches the same columns.
+  void add_axis_gradient(int link, const Eigen::Vector3d& axis_world,
+                         const Eigen::Vector3d& direction_world, double scale, double* row,
+                         int stride = 1) const;
+
+  /// Throws Error if no link has a mass.
+  Eigen::Vector3d center_of_mass() const;
+  /// 3 x tangent_size, overwrites all columns. The torques that hold the robot against gravity g
+  /// are -total_mass * jacobian^T * g. Throws Error if no link has a mass.
+  void center_of_mass_jacobian(Eigen::Ref<Eigen::Matrix<double, 3, Eigen::Dynamic>> jacobian) const;
+
+ private:
+  void require_mass() const;
+
+  const Robot* robot_;
+  const KinematicTree* tree_;
+  std::vector<Eigen::Isometry3d> world_from_body_;
+  std::vector<Eigen::Isometry3d> world_from_link_;
+  std::vector<Eigen::Vector3d> joint_origin_, joint_axis_;
+  std::vector<Eigen::Vector4d> subtree_moment_;  // sum of mass * com of all bodies below, [kg m]
+  std::vector<double> coefficients_;
+};
+
+}  // namespace locograph

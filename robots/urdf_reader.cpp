@@ -1,0 +1,373 @@
+#include <console_bridge/console.h>
+#include <locograph/common/error.h>
+#include <locograph/robots/names.h>
+#include <locograph/robots/urdf_reader.h>
+#include <locograph/robots/xml_file.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <mutex>
+
+namespace locograph {
+namespace {
+
+using Element = XmlFile::Element;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The structure of a URDF, checked: urdfdom reads the values but knows neither lines nor most
+/// mistakes.
+class UrdfStructure {
+ public:
+  explicit UrdfStructure(const XmlFile& xml) : xml_(xml) {
+    read_links();
+    read_joints();
+    find_root();
+  }
+
+  /// Link names, depth first.
+  const std::vector<std::string>& order() const { return order_; }
+  const Element& link(const std::string& name) const { return *links_.at(name); }
+  /// The <joint> above a link, null for the root.
+  const Element* parent_joint(const std::string& link) const {
+    const auto found = parent_joint_.find(link);
+    return found == parent_joint_.end() || link == order_[0] ? nullptr : found->second;
+  }
+
+ private:
+  void read_links() {
+    for (const Element& link : xml_.children(xml_.root(), "link")) {
+      const std::string name = xml_.attribute(link, "name");
+      if (!links_.emplace(name, &link).second) {
+        throw xml_.error(link, "second link '" + name + "'", "a name of its own for each link");
+      }
+      for (const char* kind : {"collision", "visual"}) {
+        for (const Element& shape : xml_.children(link, kind)) check_geometry(shape, name);
+      }
+      check_numbers(link);
+    }
+    if (links_.empty()) throw xml_.error(xml_.root(), "no <link>", "at least one link");
+  }
+
+  void check_geometry(const Element& shape, const std::string& link) const {
+    const Element* geometry = shape.FirstChildElement("geometry");
+    const Element* kind = geometry == nullptr ? nullptr : geometry->FirstChildElement();
+    const std::string name = kind == nullptr ? "" : kind->Name();
+    if (name != "sphere" && name != "cylinder" && name != "box" && name != "mesh") {
+      const std::string found = name.empty() ? "no geometry" : "unknown geometry <" + name + ">";
+      throw xml_.error(kind == nullptr ? shape : *kind,
+                       "link '" + link + "' has a <" + shape.Name() + "> with " + found,
+                       "sphere, cylinder, box or mesh");
+    }
+    if (name == "mesh") xml_.attribute(*kind, "filename");
+    if (name == "sphere" || name == "cylinder") check_positive(*kind, "radius", 1);
+    if (name == "cylinder") check_positive(*kind, "length", 1);
+    if (name == "box") check_positive(*kind, "size", 3);
+  }
+
+  void check_positive(const Element& element, const char* name, int count) const {
+    for (const double value : xml_.numbers(element, name, count)) {
+      if (value <= 0.0) {
+        throw xml_.error(element,
+                         "<" + std::string(element.Name()) + "> with " + name + "=\"" +
+                             element.Attribute(name) + "\"",
+                         "a positive " + std::string(name));
+      }
+    }
+  }
+
+  void check_numbers(const Element& parent) const {
+    static const std::map<std::string, std::vector<std::pair<const char*, int>>> kNumbers = {
+        {"origin", {{"xyz", 3}, {"rpy", 3}}},
+        {"axis", {{"xyz", 3}}},
+        {"mass", {{"value", 1}}},
+        {"inertia", {{"ixx", 1}, {"ixy", 1}, {"ixz", 1}, {"iyy", 1}, {"iyz", 1}, {"izz", 1}}},
+        {"limit", {{"lower", 1}, {"upper", 1}, {"effort", 1}, {"velocity", 1}}},
+        {"mimic", {{"multiplier", 1}, {"offset", 1}}},
+        {"mesh", {{"scale", 3}}}};
+    for (const Element& child : xml_.children(parent)) {
+      const auto known = kNumbers.find(child.Name());
+      if (known != kNumbers.end()) {
+        for (const auto& [attribute, count] : known->second) {
+          if (child.Attribute(attribute) != nullptr) xml_.numbers(child, attribute, count);
+        }
+      }
+      check_numbers(child);
+    }
+  }
+
+  void read_joints() {
+    for (const Element& joint : xml_.children(xml_.root(), "joint")) {
+      const std::string name = xml_.attribute(joint, "name");
+      if (!joints_.emplace(name, &joint).second) {
+        throw xml_.error(joint, "second joint '" + name + "'", "a name of its own for each joint");
+      }
+      check_type(joint, name);
+      check_numbers(joint);
+      const std::string parent = end_link(joint, name, "parent");
+      const std::string child = end_link(joint, name, "child");
+      if (!parent_joint_.emplace(child, &joint).second) {
+        throw xml_.error(joint, "link '" + child + "' has a second parent, joint '" + name + "'",
+                         "one joint above each link");
+      }
+      children_[parent].push_back(child);
+    }
+  }
+
+  void check_type(const Element& joint, const std::string& name) const {
+    const std::string type = xml_.attribute(joint, "type");
+    if (type == "revolute" || type == "prismatic") {
+      const Element* limit = joint.FirstChildElement("limit");
+      if (limit == nullptr) {
+        throw xml_.error(joint, type + " joint '" + name + "' has no <limit>",
+                         "<limit lower upper velocity effort>");
+      }
+      for (const char* needed : {"lower", "upper", "velocity", "effort"}) {
+        xml_.numbers(*limit, needed, 1);
+      }
+      if (limit->DoubleAttribute("lower") > limit->DoubleAttribute("upper")) {
+        throw xml_.error(*limit, "joint '" + name + "' has its lower limit above the upper one",
+                         "lower <= upper");
+      }
+    } else if (type != "fixed" && type != "continuous" && type != "floating") {
+      throw xml_.error(joint, "joint '" + name + "' has unknown type '" + type + "'",
+                       "fixed, revolute, continuous, prismatic, or floating below the root link");
+    }
+    const Element* axis = joint.FirstChildElement("axis");
+    if (type != "fixed" && type != "floating" && axis != nullptr) {
+      const std::vector<double> xyz = xml_.numbers(*axis, "xyz", 3);
+      if (Eigen::Vector3d(xyz[0], xyz[1], xyz[2]).norm() < 1e-9) {
+        throw xml_.error(*axis, "joint '" + name + "' has a zero axis", "a direction");
+      }
+    }
+  }
+
+  std::string end_link(const Element& joint, const std::string& name, const char* end) const {
+    const Element* element = joint.FirstChildElement(end);
+    if (element == nullptr) {
+      throw xml_.error(joint, "joint '" + name + "' has no <" + end + ">",
+                       "<" + std::string(end) + " link=\"...\">");
+    }
+    const std::string link = xml_.attribute(*element, "link");
+    if (!links_.contains(link)) {
+      throw xml_.error(*element, "joint '" + name + "' names unknown link '" + link + "'",
+                       similar_names(link, link_names()));
+    }
+    return link;
+  }
+
+  std::vector<std::string> link_names() const {
+    std::vector<std::string> names;
+    for (const auto& [name, element] : links_) names.push_back(name);
+    return names;
+  }
+
+  void find_root() {
+    std::vector<std::string> roots;
+    for (const Element& link : xml_.children(xml_.root(), "link")) {
+      const std::string name = link.Attribute("name");
+      if (!parent_joint_.contains(name)) roots.push_back(name);
+    }
+    if (roots.empty()) {
+      throw xml_.error(xml_.root(), "no root link", "one link that is no joint's child");
+    }
+    if (roots.size() > 1) {
+      throw xml_.error(link(roots[1]), "two root links, '" + roots[0] + "' and '" + roots[1] + "'",
+                       "one link that is no joint's child");
+    }
+    append(root_below_floating_joint(roots[0]));
+    for (const auto& [name, element] : links_) {
+      const bool reached = std::find(order_.begin(), order_.end(), name) != order_.end();
+      if (!reached && name != roots[0]) {
+        throw xml_.error(*element, "link '" + name + "' is part of a loop",
+                         "a tree of links and joints");
+      }
+    }
+  }
+
+  std::string root_below_floating_joint(const std::string& root) const {
+    const auto children = children_.find(root);
+    for (const auto& [name, joint] : joints_) {
+      if (joint->Attribute("type") != std::string("floating")) continue;
+      const bool below_root = children != children_.end() && children->second.size() == 1 &&
+                              joint->FirstChildElement("parent")->Attribute("link") == root;
+      if (!below_root) {
+        throw xml_.error(*joint, "joint '" + name + "' has type 'floating'",
+                         "a floating joint only as the one joint below the root link");
+      }
+      if (link(root).FirstChildElement("inertial") || link(root).FirstChildElement("collision")) {
+        throw xml_.error(link(root), "link '" + root + "' above the floating base has a body",
+                         "neither <inertial> nor <collision>");
+      }
+    }
+    if (children == children_.end() || children->second.size() != 1) return root;
+    const std::string& child = children->second[0];
+    const bool floating = parent_joint_.at(child)->Attribute("type") == std::string("floating");
+    return floating ? child : root;
+  }
+
+  void append(const std::string& link) {
+    order_.push_back(link);
+    const auto children = children_.find(link);
+    if (children == children_.end()) return;
+    for (const std::string& child : children->second) append(child);
+  }
+
+  const XmlFile& xml_;
+  std::map<std::string, const Element*> links_, joints_, parent_joint_;
+  std::map<std::string, std::vector<std::string>> children_;
+  std::vector<std::string> order_;
+};
+
+/// Keeps what urdfdom would print.
+class SilentConsole : public console_bridge::OutputHandler {
+ public:
+  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && first_error.empty()) {
+      first_error = text;
+    }
+  }
+  std::string first_error;
+};
+
+urdf::ModelInterfaceSharedPtr parse_with_urdfdom(const std::string& text, const std::string& file) {
+  static std::mutex console_mutex;  // console_bridge has one output handler per process
+  const std::lock_guard<std::mutex> lock(console_mutex);
+  SilentConsole console;
+  console_bridge::useOutputHandler(&console);
+  urdf::ModelInterfaceSharedPtr model;
+  std::string failure;
+  try {
+    model = urdf::parseURDF(text);
+  } catch (const std::exception& exception) {
+    failure = exception.what();
+  }
+  console_bridge::restorePreviousOutputHandler();
+  if (!model) {
+    if (failure.empty()) failure = console.first_error;
+    throw Error(file, 0, "urdfdom refuses it: " + failure, "a valid URDF");
+  }
+  return model;
+}
+
+Eigen::Isometry3d isometry(const urdf::Pose& pose) {
+  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
+  result.translation() << pose.position.x, pose.position.y, pose.position.z;
+  double x = 0.0, y = 0.0, z = 0.0, w = 1.0;
+  pose.rotation.getQuaternion(x, y, z, w);
+  result.linear() = Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
+  return result;
+}
+
+CollisionShape convert(const urdf::Collision& collision, int link, int line,
+                       const std::filesystem::path& urdf) {
+  CollisionShape shape;
+  shape.link = link;
+  shape.line = line;
+  shape.link_from_shape = isometry(collision.origin);
+  const urdf::Geometry& geometry = *collision.geometry;
+  switch (geometry.type) {
+    case urdf::Geometry::SPHERE:
+      shape.type = ShapeType::kSphere;
+      shape.radius = static_cast<const urdf::Sphere&>(geometry).radius;
+      break;
+    case urdf::Geometry::CYLINDER:
+      shape.type = ShapeType::kCylinder;
+      shape.radius = static_cast<const urdf::Cylinder&>(geometry).radius;
+      shape.length = static_cast<const urdf::Cylinder&>(geometry).length;
+      break;
+    case urdf::Geometry::BOX: {
+      const urdf::Vector3& size = static_cast<const urdf::Box&>(geometry).dim;
+      shape.type = ShapeType::kBox;
+      shape.size << size.x, size.y, size.z;
+      break;
+    }
+    case urdf::Geometry::MESH: {
+      const urdf::Mesh& mesh = static_cast<const urdf::Mesh&>(geometry);
+      shape.type = ShapeType::kMesh;
+      shape.size << mesh.scale.x, mesh.scale.y, mesh.scale.z;
+      shape.mesh_file = find_mesh(mesh.filename, urdf);
+      shape.mesh_found = !shape.mesh_file.empty();
+      if (!shape.mesh_found) shape.mesh_file = mesh.filename;
+      break;
+    }
+  }
+  return shape;
+}
+
+Link convert(const urdf::Link& source, const XmlFile& xml, const Element& element, int index,
+             const std::filesystem::path& urdf) {
+  Link link;
+  link.name = source.name;
+  if (source.inertial) {
+    const urdf::Inertial& inertial = *source.inertial;
+    const Eigen::Isometry3d origin = isometry(inertial.origin);
+    Eigen::Matrix3d inertia;
+    inertia << inertial.ixx, inertial.ixy, inertial.ixz, inertial.ixy, inertial.iyy, inertial.iyz,
+        inertial.ixz, inertial.iyz, inertial.izz;
+    link.mass = inertial.mass;
+    link.com = origin.translation();
+    link.inertia = origin.linear() * inertia * origin.linear().transpose();
+  }
+  const std::vector<std::reference_wrapper<const Element>> collisions =
+      xml.children(element, "collision");
+  std::vector<CollisionShape> shapes;
+  for (std::size_t i = 0; i < source.collision_array.size(); ++i) {
+    shapes.push_back(
+        convert(*source.collision_array[i], index, collisions[i].get().GetLineNum(), urdf));
+  }
+  link.collision = merge_capsules(shapes);
+  return link;
+}
+
+Joint convert(const urdf::Joint& source) {
+  Joint joint;
+  joint.name = source.name;
+  joint.parent_from_joint = isometry(source.parent_to_joint_origin_transform);
+  joint.type = source.type == urdf::Joint::REVOLUTE     ? JointType::kRevolute
+               : source.type == urdf::Joint::CONTINUOUS ? JointType::kContinuous
+               : source.type == urdf::Joint::PRISMATIC  ? JointType::kPrismatic
+                                                        : JointType::kFixed;
+  if (joint.type == JointType::kFixed) return joint;
+  joint.axis = Eigen::Vector3d(source.axis.x, source.axis.y, source.axis.z).normalized();
+  const bool limited = joint.type != JointType::kContinuous;
+  joint.lower = limited ? source.limits->lower : -kInfinity;
+  joint.upper = limited ? source.limits->upper : kInfinity;
+  joint.max_velocity = source.limits ? source.limits->velocity : kInfinity;
+  joint.max_effort = source.limits ? source.limits->effort : kInfinity;
+  if (source.mimic) joint.frozen_position = source.mimic->offset;
+  return joint;
+}
+
+}  // namespace
+
+UrdfModel read_urdf(const std::filesystem::path& file) {
+  const XmlFile xml(file, "robot");
+  const UrdfStructure structure(xml);
+  const urdf::ModelInterfaceSharedPtr source = parse_with_urdfdom(xml.text(), file.string());
+
+  UrdfModel model;
+  model.name = source->getName();
+  std::map<std::string, int> index;
+  for (const std::string& name : structure.order()) {
+    const int link_index = static_cast<int>(model.links.size());
+    index[name] = link_index;
+    Link link = convert(*source->getLink(name), xml, structure.link(name), link_index, file);
+    if (const Element* element = structure.parent_joint(name)) {
+      const urdf::Joint& joint_source = *source->getJoint(element->Attribute("name"));
+      Joint joint = convert(joint_source);
+      joint.parent_link = index.at(joint_source.parent_link_name);
+      joint.child_link = link_index;
+      link.parent_joint = static_cast<int>(model.joints.size());
+      model.joints.push_back(joint);
+      model.joint_lines.push_back(element->GetLineNum());
+      model.mimic.push_back(joint_source.mimic != nullptr);
+    }
+    model.links.push_back(link);
+  }
+  return model;
+}
+
+}  // namespace locograph

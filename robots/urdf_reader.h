@@ -1,0 +1,35 @@
+#pragma once
+/// Links and joints of a URDF file, root first, depth first, before any joint is chosen or frozen.
+///
+///     locograph::UrdfModel model = locograph::read_urdf("centauro.urdf");
+///
+/// joints[i].index is -1 and frozen_position 0 throughout (the offset for a mimic joint).
+
+#include <locograph/robots/robot.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace locograph {
+
+struct UrdfModel {
+  std::string name;
+  std::vector<Link> links;
+  std::vector<Joint> joints;
+  std::vector<int> joint_lines;  ///< of the <joint> elements
+  std::vector<bool> mimic;       ///< per joint
+};
+
+/// Throws Error with the line of the first element that makes the file unusable.
+UrdfModel read_urdf(const std::filesystem::path& file);
+
+/// A cylinder and two spheres of its radius around the centres of its ends become one capsule in
+/// the cylinder's place; the other shapes stay as they are. Centres may be off by 0.1 mm.
+std::vector<CollisionShape> merge_capsules(const std::vector<CollisionShape>& shapes);
+
+/// Where a URDF's mesh reference points to: `package://NAME/PATH` is looked for as NAME/PATH and as
+/// PATH in the folder of the URDF and all folders above it. Empty if there is no such file.
+std::filesystem::path find_mesh(const std::string& reference, const std::filesystem::path& urdf);
+
+}  // namespace locograph

@@ -1,0 +1,81 @@
+#include <locograph/robots/xml_file.h>
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+namespace locograph {
+
+XmlFile::XmlFile(const std::filesystem::path& file, const std::string& root_name)
+    : file_(file.string()) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream || !std::filesystem::is_regular_file(file)) {
+    throw Error(file_, 0, "cannot be read", "a readable XML file");
+  }
+  std::ostringstream buffer;
+  buffer << stream.rdbuf();
+  text_ = buffer.str();
+  if (text_.find_first_not_of(" \t\r\n") == std::string::npos) {
+    throw Error(file_, 0, "is empty", "XML with a <" + root_name + "> element");
+  }
+  if (document_.Parse(text_.data(), text_.size()) != tinyxml2::XML_SUCCESS) {
+    throw Error(file_, document_.ErrorLineNum(), "not well-formed XML",
+                "XML with a <" + root_name + "> element");
+  }
+  const Element* root = document_.RootElement();
+  if (root == nullptr || root->Name() != root_name) {
+    throw Error(
+        file_, root == nullptr ? 0 : root->GetLineNum(),
+        root == nullptr ? "no XML element" : "root element is <" + std::string(root->Name()) + ">",
+        "<" + root_name + ">");
+  }
+}
+
+std::vector<std::reference_wrapper<const XmlFile::Element>> XmlFile::children(
+    const Element& parent, const char* name) const {
+  std::vector<std::reference_wrapper<const Element>> result;
+  for (const Element* child = parent.FirstChildElement(name); child != nullptr;
+       child = child->NextSiblingElement(name)) {
+    result.emplace_back(*child);
+  }
+  return result;
+}
+
+std::string XmlFile::attribute(const Element& element, const char* name) const {
+  const char* value = element.Attribute(name);
+  if (value == nullptr || *value == '\0') {
+    throw error(element, "<" + std::string(element.Name()) + "> without " + name,
+                "attribute " + std::string(name));
+  }
+  return value;
+}
+
+std::vector<double> XmlFile::numbers(const Element& element, const char* name, int count) const {
+  std::istringstream words(attribute(element, name));
+  std::vector<double> values;
+  std::string word;
+  bool valid = true;
+  while (words >> word) {
+    const char* begin = word.data() + (word[0] == '+' ? 1 : 0);
+    const char* end = word.data() + word.size();
+    double value = 0.0;
+    const std::from_chars_result parsed = std::from_chars(begin, end, value);
+    valid = valid && parsed.ec == std::errc() && parsed.ptr == end && std::isfinite(value);
+    values.push_back(value);
+  }
+  if (!valid || values.size() != static_cast<std::size_t>(count)) {
+    throw error(element,
+                "<" + std::string(element.Name()) + "> with " + name + "=\"" +
+                    element.Attribute(name) + "\"",
+                std::to_string(count) + (count == 1 ? " finite number" : " finite numbers"));
+  }
+  return values;
+}
+
+Error XmlFile::error(const Element& element, const std::string& what,
+                     const std::string& expected) const {
+  return Error(file_, element.GetLineNum(), what, expected);
+}
+
+}  // namespace locograph

@@ -1,0 +1,43 @@
+#pragma once
+/// An XML file in memory whose elements know their line, for URDF and SRDF; errors name file and
+/// line.
+///
+///     const locograph::XmlFile xml("robot.urdf", "robot");
+///     for (const tinyxml2::XMLElement& link : xml.children(xml.root(), "link")) {
+///       std::string name = xml.attribute(link, "name");
+///     }
+
+#include <locograph/common/error.h>
+#include <tinyxml2.h>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace locograph {
+
+class XmlFile {
+ public:
+  using Element = tinyxml2::XMLElement;
+
+  /// Throws Error if the file is missing, empty, not XML, or its root element is not <root_name>.
+  XmlFile(const std::filesystem::path& file, const std::string& root_name);
+
+  const std::string& text() const { return text_; }
+  const Element& root() const { return *document_.RootElement(); }
+  /// The children called `name`, in order; all child elements if name is null.
+  std::vector<std::reference_wrapper<const Element>> children(const Element& parent,
+                                                              const char* name = nullptr) const;
+  /// The value of an attribute that must be there and not empty.
+  std::string attribute(const Element& element, const char* name) const;
+  /// Exactly `count` finite numbers separated by blanks.
+  std::vector<double> numbers(const Element& element, const char* name, int count) const;
+  Error error(const Element& element, const std::string& what, const std::string& expected) const;
+
+ private:
+  std::string file_, text_;
+  tinyxml2::XMLDocument document_;
+};
+
+}  // namespace locograph
