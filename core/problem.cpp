@@ -67,19 +67,38 @@ void Problem::compile(Graph& graph) {
 
 void Problem::compile(Graph& graph, std::span<const int> free_vertex_slots) {
   begin(graph);
+  compile_window(free_vertex_slots, nullptr);
+}
+
+void Problem::compile(Graph& graph, std::span<const int> free_vertex_slots,
+                      std::span<const int> held) {
+  begin(graph);
+  compile_window(free_vertex_slots, &held);
+}
+
+void Problem::compile_window(std::span<const int> free_vertex_slots,
+                             const std::span<const int>* held) {
   for (const int slot : free_vertex_slots) {
-    if (place_[slot].state_offset >= 0 || graph.vertex_record(slot).fixed) continue;
+    if (place_[slot].state_offset >= 0 || graph_->vertex_record(slot).fixed) continue;
     add_vertex(slot, static_cast<int>(free_.size()));
   }
   std::vector<int> touching;
   for (const int slot : free_) {
-    const std::vector<int>& incident = graph.incident_edges(slot);
+    const std::vector<int>& incident = graph_->incident_edges(slot);
     touching.insert(touching.end(), incident.begin(), incident.end());
   }
   std::sort(touching.begin(), touching.end());
   touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
+  if (held != nullptr) {
+    std::erase_if(touching, [&](int e) {
+      const std::span<const int> vertices = graph_->edge_vertices(e);
+      return std::any_of(vertices.begin(), vertices.end(), [&](int v) {
+        return place_[v].block < 0 && std::find(held->begin(), held->end(), v) == held->end();
+      });
+    });
+  }
   for (const int e : touching) {
-    for (const int v : graph.edge_vertices(e)) {
+    for (const int v : graph_->edge_vertices(e)) {
       if (place_[v].state_offset < 0) add_vertex(v, -1);
     }
   }

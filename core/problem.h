@@ -29,6 +29,9 @@ class Problem {
  public:
   void compile(Graph& graph);
   void compile(Graph& graph, std::span<const int> free_vertex_slots);
+  /// The same, without the edges that touch a vertex which is neither free nor in `held`: the end
+  /// of a horizon is not tied to what lies behind it.
+  void compile(Graph& graph, std::span<const int> free_vertex_slots, std::span<const int> held);
 
   const BlockPattern& pattern() const { return pattern_; }
   int dimension() const { return pattern_.scalar_size(); }
@@ -47,6 +50,7 @@ class Problem {
  private:
   void begin(Graph& graph);
   void add_vertex(int slot, int tangent_offset);
+  void compile_window(std::span<const int> free_vertex_slots, const std::span<const int>* held);
   void compile_edges(const std::vector<int>& edge_slots);
   void build_pattern();
   void build_offsets();

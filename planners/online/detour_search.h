@@ -1,0 +1,63 @@
+#pragma once
+/// Finds on which side, and how far, to pass what stands in the way: the first guess from which the
+/// graph optimiser can slide into a detour.
+///
+///     DetourSearch search(robot, options);
+///     std::vector<double> offsets = search.find(window, times, world, offset, slope);
+///
+/// A local optimiser cannot tell left from right when an obstacle lies square across the plan.
+/// Here the whole window is moved sideways as it is, legs and heading as planned, by an offset for
+/// each of its configurations. Dynamic programming over (offset, change of offset) finds the
+/// offsets that minimise
+///     Σ w_lateral o² + w_step (Δo)² + w_turn (Δ²o)² + w_obstacle Σ_spheres max(0, margin + r − d)²
+/// on a grid: the global optimum of that one-dimensional problem, left and right alike.
+
+#include <locograph/planners/plan/plan.h>
+#include <locograph/robots/robot_state.h>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace locograph {
+
+struct DetourOptions {
+  double grid_m = 0.02;
+  double largest_offset_m = 1.6;
+  int steepest = 4;  ///< change of offset from one configuration to the next, in grid steps
+  double lateral_weight = 0.2, step_weight = 50.0, turn_weight = 300.0;
+  double obstacle_weight = 1e4;
+  double margin_m = 0.05;
+};
+
+class DetourSearch {
+ public:
+  DetourSearch(std::shared_ptr<const RobotParameter> robot, const DetourOptions& options);
+
+  /// plan: the configurations of the window as planned. start_offset and start_slope: how far the
+  /// executed configuration is to the left of its place in the plan, and how much that changed in
+  /// the last step [m]. Returns an offset for each configuration.
+  std::vector<double> find(const std::vector<const double*>& plan,
+                           const std::vector<double>& time_s, const WorldDistance& world,
+                           double start_offset, double start_slope);
+
+  /// Unit vector to the left of a configuration's heading.
+  static Eigen::Vector3d left(const double* configuration);
+
+ private:
+  double obstacle_cost(const WorldDistance& world, double time_s,
+                       const Eigen::Vector3d& shift) const;
+  void fill_obstacle_costs(const double* configuration, const WorldDistance& world, double time_s,
+                           double* costs);
+
+  std::shared_ptr<const RobotParameter> robot_;
+  DetourOptions options_;
+  RobotState state_;
+  int half_ = 0;    ///< offsets run from −half_ to half_ grid steps
+  int slopes_ = 0;  ///< 2 · steepest + 1
+  std::vector<Eigen::Vector3d> centres_;
+  std::vector<double> obstacle_, cost_, next_;
+  std::vector<std::int8_t> choice_;
+};
+
+}  // namespace locograph

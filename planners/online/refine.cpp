@@ -1,0 +1,46 @@
+#include <locograph/planners/online/refine.h>
+
+#include <sstream>
+
+namespace locograph {
+namespace {
+
+std::string describe(const Graph& graph, const CycleReport& cycle) {
+  std::ostringstream text;
+  text << "stopped at configuration " << cycle.executed << ": " << cycle.violation.constraint
+       << " violated by " << cycle.violation.worst << " " << cycle.violation.unit << " at vertex "
+       << graph.vertex_record(cycle.violation.at_vertex).id;
+  return text.str();
+}
+
+}  // namespace
+
+RefineReport refine(Graph& graph, const WorldAt& world_at, const RefineOptions& options) {
+  LocalPlanner planner(graph, options.planner);
+  RefineReport report;
+  report.dof = planner.dimension_of_configuration();
+  report.success = true;
+  report.reason = "every configuration is feasible";
+  report.configurations = planner.plan_size();
+  for (int executed = 0; executed + 1 < planner.plan_size(); ++executed) {
+    const Stopwatch watch;
+    if (const WorldDistance* world = world_at ? world_at(executed) : nullptr) planner.show(*world);
+    report.map_update_s.push_back(watch.seconds());
+    const CycleReport cycle = planner.cycle(executed);
+    report.cycles.push_back(cycle);
+    report.feasible_cycles += cycle.feasible ? 1 : 0;
+    report.deadline_misses += cycle.deadline_missed ? 1 : 0;
+    if (options.on_cycle) options.on_cycle(cycle);
+    if (!cycle.next_feasible) {
+      report.success = false;
+      report.reason = describe(graph, cycle);
+      const Plan plan = planner.plan();
+      for (int i = executed + 1; i < planner.plan_size(); ++i) graph.remove_vertex(plan.slots[i]);
+      report.configurations = executed + 1;
+      break;
+    }
+  }
+  return report;
+}
+
+}  // namespace locograph

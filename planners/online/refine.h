@@ -1,0 +1,38 @@
+#pragma once
+/// Walks along a plan, one cycle of the local planner at each step, as if a robot executed it.
+///
+///     RefineOptions options;
+///     RefineReport report = refine(graph, world_seen_at, options);
+///
+/// Stops before a configuration that cannot be made feasible: the rest of the plan is removed from
+/// the graph, and the report says which constraint stood in the way.
+
+#include <locograph/planners/online/local_planner.h>
+
+#include <functional>
+
+namespace locograph {
+
+struct RefineOptions {
+  LocalPlannerOptions planner;
+  /// Called after each cycle, e.g. to show progress; may be empty.
+  std::function<void(const CycleReport&)> on_cycle;
+};
+
+struct RefineReport {
+  std::vector<CycleReport> cycles;
+  std::vector<double> map_update_s;  ///< time that showing the world took, for each cycle
+  int dof = 0;
+  int feasible_cycles = 0;
+  int deadline_misses = 0;
+  int configurations = 0;  ///< left in the plan
+  bool success = false;
+  std::string reason;
+};
+
+/// world_at: what the world shows when the robot is at configuration `executed`; null: nothing new.
+using WorldAt = std::function<const WorldDistance*(int executed)>;
+
+RefineReport refine(Graph& graph, const WorldAt& world_at, const RefineOptions& options);
+
+}  // namespace locograph
