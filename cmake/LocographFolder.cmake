@@ -26,7 +26,8 @@ function(locograph_folder name)
   target_compile_features(${target} ${scope} cxx_std_20)
   # The alignment of Eigen types is part of our ABI: pinned here, so that a user's -march cannot
   # change the layout of a vertex or an edge.
-  target_compile_definitions(${target} ${scope} EIGEN_MAX_ALIGN_BYTES=64)
+  target_compile_definitions(${target} ${scope}
+    EIGEN_MAX_ALIGN_BYTES=64 EIGEN_MAX_STATIC_ALIGN_BYTES=64)
   target_include_directories(${target} ${scope}
     $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
@@ -36,7 +37,8 @@ function(locograph_folder name)
   install(TARGETS ${target} EXPORT locographTargets
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/locograph/${name} FILES_MATCHING PATTERN "*.h")
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/locograph/${name} FILES_MATCHING PATTERN "*.h"
+          PATTERN models EXCLUDE PATTERN scenarios EXCLUDE)
 endfunction()
 
 # locograph_test(NAME SOURCES... LINK targets...): one GoogleTest program, its cases listed in ctest.

@@ -9,7 +9,11 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/locographConfigVersion.cm
 install(FILES ${PROJECT_BINARY_DIR}/locographConfig.cmake
               ${PROJECT_BINARY_DIR}/locographConfigVersion.cmake
         DESTINATION ${locograph_config_dir})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 if(LOCOGRAPH_PLANNING)
+  # Where programs look for it: apps/data_folder.h.
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/robots/models
           DESTINATION ${CMAKE_INSTALL_DATADIR}/locograph/robots)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/planners/scenarios
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/locograph)
 endif()

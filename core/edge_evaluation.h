@@ -346,8 +346,10 @@ class EdgeEvaluator {
   template <class V>
   void dual_jacobian(int slot, double* data) const {
     using T = Dual<V::kDimension>;
+    const std::size_t mark = x_.scratch->mark();
     Eigen::Matrix<T, kD, 1> error;
     call_dual<T>(slot, Eigen::Ref<Eigen::Matrix<T, kD, 1>>(error), FixedSequence());
+    x_.scratch->rewind(mark);
     Eigen::Map<JacobianMatrix<E, V::kDimension>> jacobian(data);
     for (int r = 0; r < kD; ++r) jacobian.row(r) = error[r].v.transpose();
   }

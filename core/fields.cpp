@@ -38,13 +38,17 @@ double FieldReader::number() {
   std::string_view token = peek();
   if (token.empty()) fail("too few fields", "a number");
   double value = 0.0;
-  const char* begin = token.data() + (token.front() == '+' ? 1 : 0);
+  const bool plus = token.size() > 1 && token[0] == '+' && token[1] != '-';
+  const char* begin = token.data() + (plus ? 1 : 0);
   const char* end = token.data() + token.size();
-  const std::from_chars_result result = std::from_chars(begin, end, value);
-  // Denormals that underflow are reported as out of range; they are zero for every purpose here.
-  if (result.ec == std::errc::result_out_of_range && result.ptr == end && std::abs(value) <= 1.0) {
-    value = 0.0;
-  } else if (result.ec != std::errc() || result.ptr != end) {
+  std::from_chars_result result = std::from_chars(begin, end, value);
+  if (result.ec == std::errc::result_out_of_range) {
+    // Too small is zero for every purpose, too large is infinite; a wider type tells them apart.
+    long double wide = 0.0L;
+    result = std::from_chars(begin, end, wide);
+    value = static_cast<double>(wide);
+  }
+  if (result.ec != std::errc() || result.ptr != end) {
     fail("'" + std::string(token) + "' is not a number", "a number");
   }
   if (!std::isfinite(value)) fail("'" + std::string(token) + "' is not finite", "a finite number");
@@ -98,8 +102,11 @@ void FieldWriter::integer(long value) {
 }
 
 void FieldWriter::word(std::string_view value) {
+  if (value.find('\n') != std::string_view::npos) {
+    throw Error("'" + std::string(value) + "' cannot be written", "a word on one line");
+  }
   text_ += ' ';
-  if (!value.empty() && value.find_first_of(" \t\"\\#|") == std::string_view::npos) {
+  if (!value.empty() && value.find_first_of(" \t\r\"\\#|") == std::string_view::npos) {
     text_ += value;
     return;
   }

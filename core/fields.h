@@ -38,6 +38,7 @@ class FieldReader {
   std::string word();       ///< a word, or a "quoted string"
   std::string_view peek();  ///< the next token as it stands, empty at the end of the line
   bool at_end();
+  std::size_t characters_left() const { return text_.size(); }
   void expect_end();  ///< throws if fields are left
 
   const FileLine& where() const { return where_; }

@@ -114,6 +114,7 @@ class Graph {
                           VertexId<Ls>... leading) {
     static_assert(std::is_same_v<std::tuple<Ls...>, typename E::Leading>,
                   "the leading vertices are not those of the edge type, in its order");
+    if (many.empty()) throw Error("an edge without vertices", "at least one");
     edge.vertices = {leading.slot...};
     for (const VertexId<typename E::Many>& v : many) edge.vertices.push_back(v.slot);
     return add_typed_edge(std::move(edge));

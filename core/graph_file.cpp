@@ -74,6 +74,7 @@ class GraphReader {
     bool quoted = false;
     for (std::size_t i = 0; i < line.size(); ++i) {
       if (line[i] == '"') quoted = !quoted;
+      if (line[i] == '\\' && quoted) ++i;
       if (line[i] == '#' && !quoted) return i;
     }
     return line.size();
@@ -104,6 +105,7 @@ class GraphReader {
     std::unique_ptr<Parameter> parameter =
         (*static_cast<const TypeRegistry::MakeParameter*>(line.type))();
     const int number = in.integer();
+    in.set_parameters(&graph_.parameters_);
     parameter->read(in);
     in.expect_end();
     graph_.parameters_.set(number, std::move(parameter));

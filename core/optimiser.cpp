@@ -9,6 +9,8 @@ namespace {
 using Reason = OptimiserResult::Reason;
 using Vector = Eigen::Map<Eigen::VectorXd>;
 
+constexpr int kMostStatistics = 10000;
+
 Vector map(std::vector<double>& values) {
   return Vector(values.data(), static_cast<Eigen::Index>(values.size()));
 }
@@ -63,7 +65,7 @@ void Optimiser::start(Workspace& workspace, LinearSolver& solver) {
   // The statistics keep their memory: a moving horizon starts an optimisation every cycle.
   std::vector<IterationStatistics> statistics = std::move(result_.statistics);
   statistics.clear();
-  statistics.reserve(options_.max_iterations);
+  statistics.reserve(std::min(options_.max_iterations, kMostStatistics));
   result_ = {};
   result_.statistics = std::move(statistics);
   lambda_ = 0.0;

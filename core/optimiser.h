@@ -77,8 +77,8 @@ struct OptimiserResult {
   bool converged = false;
   int iterations = 0;
   Cost initial, final;
-  int singular_vertex = -1;  ///< slot, -1 when H was never singular
-  std::vector<IterationStatistics> statistics;
+  int singular_vertex = -1;                     ///< slot, -1 when H was never singular
+  std::vector<IterationStatistics> statistics;  ///< of the first 10 000 iterations
 
   std::string reason_text() const;
 };

@@ -4,6 +4,7 @@
 ///     scratch.reset();
 ///     double* jacobian = scratch.array<double>(rows * columns);
 
+#include <cassert>
 #include <cstddef>
 #include <memory>
 #include <new>
@@ -36,6 +37,7 @@ class Scratch {
     std::byte* aligned = static_cast<std::byte*>(std::align(kAlignment, 1, start, space));
     T* elements = reinterpret_cast<T*>(aligned + used_);
     used_ += bytes<T>(count);
+    assert(used_ + kAlignment <= storage_.size() && "scratch memory is too small");
     std::uninitialized_default_construct_n(elements, count);
     return elements;
   }

@@ -151,6 +151,10 @@ class TypedEdgePool final : public EdgePool {
   int read(std::span<const int> vertices, FieldReader& in) override {
     E edge;
     if constexpr (E::kDynamicArity) {
+      if (static_cast<int>(vertices.size()) <= kFixed) {
+        in.fail("an edge on " + std::to_string(vertices.size()) + " vertices",
+                std::to_string(kFixed + 1) + " or more");
+      }
       edge.vertices.assign(vertices.begin(), vertices.end());
     } else {
       std::copy(vertices.begin(), vertices.end(), edge.vertices.begin());
@@ -161,6 +165,11 @@ class TypedEdgePool final : public EdgePool {
       if (dimension < 1 || (kD != Eigen::Dynamic && dimension != kD)) {
         in.fail("error of size " + std::to_string(dimension),
                 kD == Eigen::Dynamic ? "a positive size" : "size " + std::to_string(kD));
+      }
+      // A digit and a blank for each number of Ω: do not reserve memory for what cannot follow.
+      if (!kHasWeights<E> && 1.0 * dimension * (dimension + 1) > 1.0 * in.characters_left() + 1.0) {
+        in.fail("too few fields for an error of size " + std::to_string(dimension),
+                "its information matrix");
       }
     }
     if constexpr (requires { edge.resize(dimension); }) edge.resize(dimension);

@@ -18,6 +18,8 @@
 ///     Derived make_derived() const;                          // allocates once
 ///     void derive(const double* state, Derived&) const;      // fills it; once per state
 ///
+/// What was made for one vertex must serve every other of the type with a state of the same size.
+///
 /// A type with a size known at run time only uses Eigen::Dynamic and hides dimension() and
 /// state_size(). Optional: read(FieldReader&) and write(FieldWriter&) const for its line in a file;
 /// without them the state's numbers are the fields.

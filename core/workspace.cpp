@@ -5,7 +5,6 @@
 namespace locograph {
 
 void Workspace::allocate(const Problem& problem) {
-  const bool same_graph = problem_ == &problem;
   problem_ = &problem;
   state_.resize(problem.state_size());
   trial_.resize(problem.state_size());
@@ -16,15 +15,31 @@ void Workspace::allocate(const Problem& problem) {
   damping_.assign(n, 0.0);
   const std::size_t pools = problem.active().size();
   derived_.resize(pools);
-  derived_count_.resize(pools, 0);
+  derived_for_.resize(pools);
   for (std::size_t p = 0; p < pools; ++p) {
+    const VertexPool& pool = *problem.graph().vertex_pools()[p];
     const std::vector<ActiveVertex>& active = problem.active()[p];
-    // A store with as many places serves a window that slid; vertices of one pool share their kind.
-    if (same_graph && derived_[p] && derived_count_[p] == active.size()) continue;
-    derived_[p] = problem.graph().vertex_pools()[p]->make_derived(active);
-    derived_count_[p] = active.size();
+    // A store whose places have the same sizes serves a window that slid.
+    if (derived_[p] && derived_for_[p].fits(pool, active)) continue;
+    derived_[p] = pool.make_derived(active);
+    if (derived_[p]) derived_for_[p].assign(pool, active);
   }
   scratch_.reserve(problem.scratch_bytes());
+}
+
+bool Workspace::DerivedFor::fits(const VertexPool& other,
+                                 std::span<const ActiveVertex> active) const {
+  if (pool != &other || type != other.type()) return false;
+  return std::equal(
+      active.begin(), active.end(), state_sizes.begin(), state_sizes.end(),
+      [&](const ActiveVertex& v, int size) { return other.state_size(v.index) == size; });
+}
+
+void Workspace::DerivedFor::assign(const VertexPool& other, std::span<const ActiveVertex> active) {
+  pool = &other;
+  type = other.type();
+  state_sizes.clear();
+  for (const ActiveVertex& v : active) state_sizes.push_back(other.state_size(v.index));
 }
 
 void Workspace::load_state() {

@@ -43,6 +43,16 @@ class Workspace {
   const Problem& problem() const { return *problem_; }
 
  private:
+  /// What a DerivedStore was made for.
+  struct DerivedFor {
+    const VertexPool* pool = nullptr;
+    std::type_index type = typeid(void);
+    std::vector<int> state_sizes;
+
+    bool fits(const VertexPool& other, std::span<const ActiveVertex> active) const;
+    void assign(const VertexPool& other, std::span<const ActiveVertex> active);
+  };
+
   Evaluation evaluation(const std::vector<double>& state) {
     return {state.data(), derived_, &scratch_};
   }
@@ -50,7 +60,7 @@ class Workspace {
   const Problem* problem_ = nullptr;
   std::vector<double> state_, trial_, hessian_, gradient_, step_, damping_;
   std::vector<std::unique_ptr<DerivedStore>> derived_;
-  std::vector<std::size_t> derived_count_;
+  std::vector<DerivedFor> derived_for_;
   Scratch scratch_;
 };
 

@@ -37,7 +37,21 @@ void subtract_product(double* c, int ldc, const double* a, int lda, const double
   Panel target(c, m, n, Eigen::OuterStride<>(ldc));
   const ConstPanel left(a, m, k, Eigen::OuterStride<>(lda));
   const ConstPanel right(b, n, k, Eigen::OuterStride<>(ldb));
-  target.noalias() -= left * right.transpose();
+  // Eigen packs both factors on the stack up to a limit, beyond it on the heap: stay below.
+  constexpr int kMostInner = 256;
+  constexpr int kMostPacked = EIGEN_STACK_ALLOCATION_LIMIT / sizeof(double);
+  for (int p = 0; p < k; p += kMostInner) {
+    const int inner = std::min(kMostInner, k - p);
+    const int most = kMostPacked / inner;
+    for (int j = 0; j < n; j += most) {
+      const int columns = std::min(most, n - j);
+      for (int i = 0; i < m; i += most) {
+        const int rows = std::min(most, m - i);
+        target.block(i, j, rows, columns).noalias() -=
+            left.block(i, p, rows, inner) * right.block(j, p, columns, inner).transpose();
+      }
+    }
+  }
 }
 
 int cholesky_in_place(double* panel, int ld, int rows, int columns) {

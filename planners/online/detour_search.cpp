@@ -19,6 +19,7 @@ DetourSearch::DetourSearch(std::shared_ptr<const RobotParameter> robot,
   half_ += half_ % kCoarse;
   slopes_ = 2 * options.steepest + 1;
   centres_.resize(robot_->spheres.size());
+  bound_centres_.resize(robot_->bounds.size());
 }
 
 Eigen::Vector3d DetourSearch::left(const double* configuration) {
@@ -31,10 +32,17 @@ Eigen::Vector3d DetourSearch::left(const double* configuration) {
 double DetourSearch::obstacle_cost(const WorldDistance& world, double time_s,
                                    const Eigen::Vector3d& shift) const {
   double sum = 0.0;
-  for (std::size_t s = 0; s < centres_.size(); ++s) {
-    const double distance = world.distance(centres_[s] + shift, time_s);
-    const double short_by = options_.margin_m + robot_->spheres[s].radius - distance;
-    if (short_by > 0.0) sum += short_by * short_by;
+  for (std::size_t b = 0; b < robot_->bounds.size(); ++b) {
+    const RobotParameter::LinkBound& bound = robot_->bounds[b];
+    const double reach = bound.radius + options_.margin_m;
+    if (reach < world.max_distance() && world.distance(bound_centres_[b] + shift, time_s) > reach) {
+      continue;
+    }
+    for (int s = bound.begin; s < bound.end; ++s) {
+      const double distance = world.distance(centres_[s] + shift, time_s);
+      const double short_by = options_.margin_m + robot_->spheres[s].radius - distance;
+      if (short_by > 0.0) sum += short_by * short_by;
+    }
   }
   return options_.obstacle_weight * sum;
 }
@@ -45,6 +53,10 @@ void DetourSearch::fill_obstacle_costs(const double* configuration, const WorldD
   for (std::size_t s = 0; s < centres_.size(); ++s) {
     const CollisionSphere& sphere = robot_->spheres[s];
     centres_[s] = state_.world_from_link(sphere.link) * sphere.center;
+  }
+  for (std::size_t b = 0; b < bound_centres_.size(); ++b) {
+    const RobotParameter::LinkBound& bound = robot_->bounds[b];
+    bound_centres_[b] = state_.world_from_link(bound.link) * bound.center;
   }
   const Eigen::Vector3d side = left(configuration);
   for (int o = -half_; o <= half_; o += kCoarse) {

@@ -25,7 +25,7 @@ struct DetourOptions {
   double grid_m = 0.02;
   double largest_offset_m = 1.6;
   int steepest = 4;  ///< change of offset from one configuration to the next, in grid steps
-  double lateral_weight = 0.2, step_weight = 50.0, turn_weight = 300.0;
+  double lateral_weight = 0.5, step_weight = 50.0, turn_weight = 300.0;
   double obstacle_weight = 1e4;
   double margin_m = 0.05;
 };
@@ -55,7 +55,7 @@ class DetourSearch {
   RobotState state_;
   int half_ = 0;    ///< offsets run from −half_ to half_ grid steps
   int slopes_ = 0;  ///< 2 · steepest + 1
-  std::vector<Eigen::Vector3d> centres_;
+  std::vector<Eigen::Vector3d> centres_, bound_centres_;
   std::vector<double> obstacle_, cost_, next_;
   std::vector<std::int8_t> choice_;
 };

@@ -31,6 +31,7 @@ void LocalPlannerOptions::validate() const {
   if (!(deadline_s >= 0.0)) throw Error("the deadline is negative", "0 (none) or more");
   if (max_iterations < 1) throw Error("max_iterations is less than 1", "1 or more");
   if (max_rounds < 0) throw Error("max_rounds is negative", "0 or more");
+  if (detour_pause < 0) throw Error("detour_pause is negative", "0 or more");
   if (!(raise > 1.0)) throw Error("weights are not raised", "a factor > 1");
 }
 
@@ -97,6 +98,14 @@ LocalPlanner::Attempt LocalPlanner::optimise(CycleReport& report, const Deadline
   attempt.violation = check_window(workspace_, violated_);
   report.time_check += watch.lap();
   return attempt;
+}
+
+/// How far the end of the window is behind its place in the plan, along the plan's heading.
+double LocalPlanner::lag(int last) {
+  workspace_.store_state();
+  const Eigen::Vector3d behind = planned_[last].head<3>() - configuration(last).head<3>();
+  const Eigen::Vector3d left = DetourSearch::left(planned_[last].data());
+  return behind.dot(left.cross(Eigen::Vector3d::UnitZ()));
 }
 
 /// The window as planned, moved sideways; wheels steered along the way and turned to match.
@@ -181,7 +190,8 @@ CycleReport LocalPlanner::cycle(int executed) {
     if (a.violation.any() != b.violation.any()) return !a.violation.any();
     return a.cost.robust < b.cost.robust;
   };
-  if (best.violation.any() && !deadline.passed()) {
+  const bool blocked = executed >= detour_not_before_ && lag(last) > options_.blocked_m;
+  if ((best.violation.any() || blocked) && !deadline.passed()) {
     report.detour = true;
     watch.lap();
     apply_detour(executed, last);
@@ -192,6 +202,7 @@ CycleReport LocalPlanner::cycle(int executed) {
       best = detour;
       best_state = workspace_.state();
     } else {
+      detour_not_before_ = executed + 1 + options_.detour_pause;
       workspace_.state() = best_state;
       workspace_.evaluate(workspace_.state());
       check_window(workspace_, violated_);

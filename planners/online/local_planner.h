@@ -10,10 +10,11 @@
 ///
 /// Each cycle frees the H configurations behind the executed one and holds the rest. They start
 /// from the last cycle's result; one that enters the window is moved along with the one before it.
-/// A few Levenberg-Marquardt steps follow. If constraints are still violated, a detour is searched
-/// (detour_search.h) and optimised from there, then the weights of violated edges are raised for a
-/// few rounds. The better result stays. Constraints that cannot be met are reported, with place and
-/// size; nothing is handed out as feasible that is not.
+/// A few Levenberg-Marquardt steps follow. If constraints are still violated, or the window falls
+/// behind the plan, a detour is searched (detour_search.h) and optimised from there; then the
+/// weights of edges that are still violated are raised for a few rounds. The better result stays.
+/// Constraints that cannot be met are reported, with place and size; nothing is handed out as
+/// feasible that is not.
 ///
 /// Time and memory of a cycle depend on H, not on the length of the plan; the structure of the
 /// compiled window is kept while it slides.
@@ -34,6 +35,8 @@ struct LocalPlannerOptions {
   int max_rounds = 3;       ///< in which violated edges gain weight
   double raise = 10.0;      ///< by which they gain it
   double gain = 1e-4;       ///< see OptimiserOptions
+  double blocked_m = 0.05;  ///< behind the plan at the end of the window: look for a detour
+  int detour_pause = 4;     ///< cycles to wait after a detour that did not help, unless violated
   DetourOptions detour;
 
   void validate() const;
@@ -80,6 +83,7 @@ class LocalPlanner {
   void enter(int executed, int last);
   void compile(int executed, int last);
   Attempt optimise(CycleReport& report, const Deadline& deadline);
+  double lag(int last);
   void apply_detour(int executed, int last);
   void raise_weights();
   void restore_weights();
@@ -89,6 +93,7 @@ class LocalPlanner {
   LocalPlannerOptions options_;
   Plan plan_;
   std::vector<Eigen::VectorXd> planned_;  ///< configurations as the plan came
+  int detour_not_before_ = 0;             ///< executed index; see detour_pause
   int entered_ = 0;                       ///< last index that has been in a window
   Problem problem_;
   Workspace workspace_;

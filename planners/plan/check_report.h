@@ -32,7 +32,8 @@ struct CheckOptions {
   double min_self_clearance_m = 0.0;  ///< of the pairs of Robot::self_collision_pairs()
   /// Distances are searched for between the vertices, too: nowhere along the motion is one smaller
   /// than the reported minimum by more than this, and a step on which one is smaller than required
-  /// by more than this is counted as violated.
+  /// by more than this is counted as violated. A depth (a negative distance) is as exact as that of
+  /// the CollisionWorld.
   double clearance_resolution_m = 1e-3;
   /// The obstacles of the world: how they move bounds what can happen between two samples. Not
   /// given: any of them may move at up to max_obstacle_speed_m_s at any time, which is safe up to

@@ -39,8 +39,9 @@ struct PlanEdgeOptions {
   double base_linear_m_s = 0.5;
   double base_angular_rad_s = 0.5;
 
-  // Tracking, of the plan and of its steps.
-  double track_forward = 1.0, track_lateral = 0.2, track_height = 20.0;
+  // Tracking, of the plan and of its steps. Falling behind weighs more than passing to the side:
+  // a robot that stops in front of an obstacle is safe, but gets nowhere.
+  double track_forward = 20.0, track_lateral = 0.5, track_height = 20.0;
   double track_tilt = 50.0, track_yaw = 5.0, track_joint = 1.0;
   double step_base = 50.0, step_joint = 5.0, step_steering = 0.5;
 };

@@ -1,6 +1,8 @@
 #include <locograph/plugins/configuration/robot_parameters.h>
 #include <locograph/world/octree.h>
 
+#include <algorithm>
+
 namespace locograph {
 namespace {
 
@@ -36,6 +38,23 @@ RobotParameter::RobotParameter(std::filesystem::path urdf_file, std::filesystem:
 void RobotParameter::load() {
   robot = std::make_shared<const Robot>(Robot::load(urdf, srdf, options));
   spheres = covering_spheres(*robot, kSphereOvershoot_m);
+  std::stable_sort(
+      spheres.begin(), spheres.end(),
+      [](const CollisionSphere& a, const CollisionSphere& b) { return a.link < b.link; });
+  bounds.clear();
+  for (int begin = 0, end = 0; begin < static_cast<int>(spheres.size()); begin = end) {
+    Eigen::AlignedBox3d box;
+    for (end = begin; end < static_cast<int>(spheres.size()); ++end) {
+      if (spheres[end].link != spheres[begin].link) break;
+      box.extend(spheres[end].center);
+    }
+    LinkBound bound{spheres[begin].link, box.center(), 0.0, begin, end};
+    for (int i = begin; i < end; ++i) {
+      const double reach = (spheres[i].center - bound.center).norm() + spheres[i].radius;
+      bound.radius = std::max(bound.radius, reach);
+    }
+    bounds.push_back(bound);
+  }
 }
 
 void RobotParameter::read(FieldReader& in) {
@@ -47,7 +66,18 @@ void RobotParameter::read(FieldReader& in) {
   }
   options.floating_base = base == "floating";
   const int count = in.integer();
+  if (count < 0) in.fail("number of active joints " + std::to_string(count), "0 (all) or more");
   for (int i = 0; i < count; ++i) options.active_joints.push_back(in.word());
+  while (!in.at_end()) {
+    const std::string option = in.word();
+    if (option == "lenient") {
+      options.lenient_srdf = true;
+    } else if (option == "frozen") {
+      options.frozen_state = in.word();
+    } else {
+      in.fail("'" + option + "'", "'lenient', 'frozen' or the end of the line");
+    }
+  }
   load();
 }
 
@@ -57,6 +87,11 @@ void RobotParameter::write(FieldWriter& out) const {
   out.word(options.floating_base ? "floating" : "fixed");
   out.integer(static_cast<long>(options.active_joints.size()));
   for (const std::string& name : options.active_joints) out.word(name);
+  if (options.lenient_srdf) out.word("lenient");
+  if (options.frozen_state != RobotOptions().frozen_state) {
+    out.word("frozen");
+    out.word(options.frozen_state);
+  }
 }
 
 WheelsParameter::WheelsParameter(const Robot& robot, int number, std::vector<Wheel> named)
@@ -68,7 +103,8 @@ WheelsParameter::WheelsParameter(const Robot& robot, int number, std::vector<Whe
                   "a radius > 0 m");
     }
     const int above = robot.links()[wheel.link].parent_joint;
-    if (above < 0 || robot.joints()[above].type == JointType::kFixed) {
+    if (above < 0 || robot.joints()[above].type == JointType::kFixed ||
+        robot.joints()[above].type == JointType::kPrismatic) {
       throw Error("wheel " + wheel.link_name + " cannot turn", "a link below a revolute joint");
     }
     const Joint& joint = robot.joints()[above];
@@ -89,10 +125,12 @@ void WheelsParameter::read(FieldReader& in) {
   const int number = in.integer();
   const int count = in.integer();
   if (count < 1) in.fail("number of wheels " + std::to_string(count), "at least one");
-  std::vector<Wheel> named(count);
-  for (Wheel& wheel : named) {
+  std::vector<Wheel> named;
+  for (int i = 0; i < count; ++i) {
+    Wheel wheel;
     wheel.link_name = in.word();
     wheel.radius_m = in.number();
+    named.push_back(std::move(wheel));
   }
   *this = WheelsParameter(*in.parameters()->get<RobotParameter>(number)->robot, number,
                           std::move(named));

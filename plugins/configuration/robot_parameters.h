@@ -24,12 +24,21 @@ namespace locograph {
 inline constexpr double kGroundVoxelTop_m = 1e-6;
 
 /// PARAMS_ROBOT: urdf, srdf, `floating` or `fixed`, number of names of active joints or groups
-/// (0: all), the names.
+/// (0: all), the names; then, where they differ from RobotOptions, `lenient` (lenient_srdf) and
+/// `frozen STATE` (frozen_state).
 struct RobotParameter final : Parameter {
   std::filesystem::path urdf, srdf;
   RobotOptions options;
   std::shared_ptr<const Robot> robot;
-  std::vector<CollisionSphere> spheres;  ///< cover every collision shape
+  std::vector<CollisionSphere> spheres;  ///< cover every collision shape, ordered by link
+  /// One sphere around all spheres of a link: what is far from it is far from all of them.
+  struct LinkBound {
+    int link;
+    Eigen::Vector3d center;  ///< link frame
+    double radius;
+    int begin, end;  ///< its spheres
+  };
+  std::vector<LinkBound> bounds;
 
   RobotParameter() = default;
   /// Loads the robot. Throws Error for unusable files.
@@ -71,13 +80,18 @@ struct WheelsParameter final : Parameter {
 };
 
 /// PARAMS_WORLD: OctoMap file and obstacle file. `now` is what the distance edges read: whoever
-/// plans online replaces it when the world shows something new; the files stay what they were.
+/// plans online replaces it when the world shows something new, and with set_files() what the plan
+/// will be saved with; the files are not read again.
 struct WorldParameter final : Parameter {
-  std::filesystem::path map, obstacles;  ///< empty: none
+  mutable std::filesystem::path map, obstacles;  ///< empty: none
   mutable WorldDistance now;
 
   WorldParameter() = default;
   WorldParameter(std::filesystem::path map, std::filesystem::path obstacles);
+  void set_files(std::filesystem::path map_file, std::filesystem::path obstacle_file) const {
+    map = std::move(map_file);
+    obstacles = std::move(obstacle_file);
+  }
 
   std::string_view tag() const override { return "PARAMS_WORLD"; }
   void read(FieldReader& in) override;

@@ -4,8 +4,20 @@
 
 namespace locograph {
 
+namespace {
+
+/// A file with edges only makes vertices that know no robot.
+std::shared_ptr<const RobotParameter> known(std::shared_ptr<const RobotParameter> robot) {
+  if (!robot || !robot->robot) {
+    throw Error("a configuration without a robot", "a VERTEX_CONFIGURATION that names it");
+  }
+  return robot;
+}
+
+}  // namespace
+
 ConfigurationState::ConfigurationState(std::shared_ptr<const RobotParameter> parameter)
-    : robot(std::move(parameter)),
+    : robot(known(std::move(parameter))),
       kinematics(*robot->robot),
       q(robot->robot->configuration_size()),
       sphere_centres(robot->spheres.size()) {}
@@ -36,11 +48,15 @@ void VertexConfiguration::read(FieldReader& in) {
   time_s = in.number();
   state.resize(robot->robot->configuration_size());
   for (Eigen::Index i = 0; i < state.size(); ++i) state[i] = in.number();
-  if (!robot->robot->floating_base()) return;
-  const double squared = state.segment<4>(3).squaredNorm();
+  if (robot->robot->floating_base()) read_quaternion(in, state);
+}
+
+void read_quaternion(const FieldReader& in, Eigen::VectorXd& configuration) {
+  if (configuration.size() < 7) return;
+  const double squared = configuration.segment<4>(3).squaredNorm();
   if (squared < 1e-12) in.fail("quaternion of length zero", "a unit quaternion qx qy qz qw");
   // As it was written if it is normalised: reading what was written gives the same bits.
-  if (std::abs(squared - 1.0) > 1e-14) state.segment<4>(3) /= std::sqrt(squared);
+  if (std::abs(squared - 1.0) > 1e-14) configuration.segment<4>(3) /= std::sqrt(squared);
 }
 
 void VertexConfiguration::write(FieldWriter& out) const {

@@ -53,6 +53,8 @@ struct VertexConfiguration : Vertex<Eigen::Dynamic, Eigen::Dynamic> {
   }
   Derived make_derived() const { return ConfigurationState(robot); }
   void derive(const double* s, Derived& derived) const {
+    // Made for a vertex of another robot whose state has the same size.
+    if (derived.robot != robot) derived = make_derived();
     derived.time_s = time_s;
     derived.update(s);
   }
@@ -60,6 +62,10 @@ struct VertexConfiguration : Vertex<Eigen::Dynamic, Eigen::Dynamic> {
   void read(FieldReader& in);
   void write(FieldWriter& out) const;
 };
+/// Normalises the base quaternion of a configuration that was just read, unless it is normalised.
+/// Throws Error when its length is zero.
+void read_quaternion(const FieldReader& in, Eigen::VectorXd& configuration);
+
 LOCOGRAPH_REGISTER_VERTEX("VERTEX_CONFIGURATION", VertexConfiguration)
 
 }  // namespace locograph

@@ -10,6 +10,7 @@ EdgeJointLimits::EdgeJointLimits(const Robot& robot, double margin_, double weig
 }
 
 void EdgeJointLimits::error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const {
+  require_rows(kTag, e.size(), q.model().active_joint_count());
   for (int i = 0; i < e.size(); ++i) {
     const Joint& joint = q.model().active_joint(i);
     const double position = q.joint(i);
@@ -23,11 +24,8 @@ void EdgeJointLimits::jacobians(const ConfigurationState& q,
   for (int i = 0; i < j.rows(); ++i) {
     const Joint& joint = q.model().active_joint(i);
     const double position = q.joint(i);
-    if (joint.lower + margin - position > 0.0) {
-      j(i, base + i) = -1.0;
-    } else if (position - joint.upper + margin > 0.0) {
-      j(i, base + i) = 1.0;
-    }
+    const double below = joint.lower + margin - position, above = position - joint.upper + margin;
+    if (std::max(below, above) > 0.0) j(i, base + i) = above > below ? 1.0 : -1.0;
   }
 }
 

@@ -8,14 +8,19 @@
 /// vanish at the boundary.
 
 #include <locograph/core/typed_edge_pool.h>
-#include <locograph/plugins/configuration/vertex_configuration.h>
+#include <locograph/plugins/configuration/edge_fit.h>
 
 namespace locograph {
 
 struct EdgeJointLimits : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
   static constexpr bool kOneSided = true;
+  static constexpr std::string_view kTag = "EDGE_JOINT_LIMITS";
   double margin = 0.0;
   auto fields() { return std::tie(margin); }
+  void bind(const Parameters& parameters) {
+    require_fitting_robot(parameters, kTag, dimension(),
+                          [](const RobotParameter& p) { return p.robot->active_joint_count(); });
+  }
 
   EdgeJointLimits() = default;
   EdgeJointLimits(const Robot& robot, double margin, double weight);
@@ -23,7 +28,7 @@ struct EdgeJointLimits : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
   void error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const ConfigurationState& q, JacobianRef<EdgeJointLimits, 0> j) const;
 };
-LOCOGRAPH_REGISTER_EDGE("EDGE_JOINT_LIMITS", EdgeJointLimits)
+LOCOGRAPH_REGISTER_EDGE(EdgeJointLimits::kTag, EdgeJointLimits)
 extern template class TypedEdgePool<EdgeJointLimits>;
 
 }  // namespace locograph

@@ -10,22 +10,40 @@ EdgeObstacleDistance::EdgeObstacleDistance(const RobotParameter& robot, int numb
   weights.setConstant(static_cast<Eigen::Index>(robot.spheres.size()), weight);
 }
 
+namespace {
+
+/// Calls f for every sphere of the links that are not wholly out of reach.
+template <class F>
+void each_near_sphere(const ConfigurationState& q, const WorldDistance& world, double margin_m,
+                      F&& f) {
+  for (const RobotParameter::LinkBound& bound : q.robot->bounds) {
+    const Eigen::Vector3d center = q.kinematics.world_from_link(bound.link) * bound.center;
+    // The field changes by no more than the way, so nothing inside the bound can be nearer.
+    const double reach = bound.radius + margin_m;
+    if (reach < world.max_distance() && world.distance(center, q.time_s) > reach) continue;
+    for (int i = bound.begin; i < bound.end; ++i) f(i);
+  }
+}
+
+}  // namespace
+
 void EdgeObstacleDistance::error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const {
-  for (int i = 0; i < e.size(); ++i) {
+  e.setZero();
+  each_near_sphere(q, world->now, margin_m, [&](int i) {
     const double distance = world->now.distance(q.sphere_centres[i], q.time_s);
     e[i] = std::max(0.0, margin_m + q.robot->spheres[i].radius - distance);
-  }
+  });
 }
 
 void EdgeObstacleDistance::jacobians(const ConfigurationState& q,
                                      JacobianRef<EdgeObstacleDistance, 0> j) const {
-  for (int i = 0; i < j.rows(); ++i) {
+  each_near_sphere(q, world->now, margin_m, [&](int i) {
     const CollisionSphere& sphere = q.robot->spheres[i];
     const DistanceSample sample = world->now.sample(q.sphere_centres[i], q.time_s);
-    if (margin_m + sphere.radius - sample.distance <= 0.0) continue;
+    if (margin_m + sphere.radius - sample.distance <= 0.0) return;
     q.kinematics.add_point_gradient(sphere.link, q.sphere_centres[i], sample.gradient, -1.0,
                                     j.row(i).data());
-  }
+  });
 }
 
 }  // namespace locograph

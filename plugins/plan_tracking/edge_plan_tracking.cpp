@@ -16,13 +16,27 @@ Eigen::Matrix3d inverse_right_jacobian(const Eigen::Vector3d& v) {
   return Eigen::Matrix3d::Identity() + 0.5 * cross + factor * cross * cross;
 }
 
+void ReferenceConfiguration::read(FieldReader& in) {
+  for (Eigen::Index i = 0; i < size(); ++i) (*this)[i] = in.number();
+  if (in.peek().find_first_of("+-.0123456789") != 0) return;
+  conservativeResize(size() + 1);
+  (*this)[size() - 1] = in.number();
+  read_quaternion(in, *this);
+}
+
+void ReferenceConfiguration::write(FieldWriter& out) const {
+  for (Eigen::Index i = 0; i < size(); ++i) out.number((*this)[i]);
+}
+
 EdgePlanTracking::EdgePlanTracking(const Eigen::VectorXd& reference_,
-                                   const Eigen::VectorXd& weights_)
-    : reference(reference_) {
+                                   const Eigen::VectorXd& weights_) {
+  reference = reference_;
   weights = weights_;
 }
 
 void EdgePlanTracking::error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const {
+  require_rows(kTag, e.size(), q.model().tangent_size());
+  require_rows("reference of EDGE_PLAN_TRACKING", reference.size(), q.q.size());
   q.model().difference(reference.data(), q.q.data(), e.data());
 }
 

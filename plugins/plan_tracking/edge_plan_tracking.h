@@ -7,15 +7,34 @@
 /// reference's base frame, then joints. Ω per coordinate: a weight of zero leaves it free.
 
 #include <locograph/core/typed_edge_pool.h>
-#include <locograph/plugins/configuration/vertex_configuration.h>
+#include <locograph/plugins/configuration/edge_fit.h>
 
 namespace locograph {
 
+/// A configuration inside an edge's line. Its size is the tangent size n of the edge, and one more
+/// with a floating base: a number before the weights tells.
+struct ReferenceConfiguration : Eigen::VectorXd {
+  using Eigen::VectorXd::VectorXd;
+  using Eigen::VectorXd::operator=;
+  /// size() is n before.
+  void read(FieldReader& in);
+  void write(FieldWriter& out) const;
+};
+
 struct EdgePlanTracking : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
-  Eigen::VectorXd reference;  ///< a configuration
+  static constexpr std::string_view kTag = "EDGE_PLAN_TRACKING";
+  ReferenceConfiguration reference;
   auto fields() { return std::tie(reference); }
-  /// n is the tangent size: a floating base has one number more in its configuration.
-  void resize(int n) { weights.resize(n); }
+  void resize(int n) {
+    weights.resize(n);
+    reference.resize(n);
+  }
+  void bind(const Parameters& parameters) {
+    require_fitting_robot(parameters, kTag, dimension(),
+                          [](const RobotParameter& p) { return p.robot->tangent_size(); });
+    require_fitting_robot(parameters, "reference of EDGE_PLAN_TRACKING", reference.size(),
+                          [](const RobotParameter& p) { return p.robot->configuration_size(); });
+  }
 
   EdgePlanTracking() = default;
   EdgePlanTracking(const Eigen::VectorXd& reference, const Eigen::VectorXd& weights);
@@ -23,7 +42,7 @@ struct EdgePlanTracking : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
   void error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const ConfigurationState& q, JacobianRef<EdgePlanTracking, 0> j) const;
 };
-LOCOGRAPH_REGISTER_EDGE("EDGE_PLAN_TRACKING", EdgePlanTracking)
+LOCOGRAPH_REGISTER_EDGE(EdgePlanTracking::kTag, EdgePlanTracking)
 extern template class TypedEdgePool<EdgePlanTracking>;
 
 /// Inverse of the right Jacobian of SO(3): log(R exp(δ)) ≈ log R + J δ (Chirikjian 2012,

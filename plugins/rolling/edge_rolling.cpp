@@ -1,5 +1,6 @@
 #include <locograph/plugins/rolling/edge_rolling.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -34,7 +35,8 @@ void add_pitch_gradient(const RobotState& kinematics, const Wheel& wheel, const 
                         double scale, double* row) {
   const Eigen::Vector3d side = pose.upright.cross(pose.axle);  // fixed to the carrier, as u and a
   const double x = pose.upright.z(), y = side.z();
-  const double squared = x * x + y * y;
+  // A wheel lying flat has no pitch, hence no gradient of it.
+  const double squared = std::max(1e-12, x * x + y * y);
   kinematics.add_axis_gradient(wheel.carrier, side, kUp, scale * x / squared, row);
   kinematics.add_axis_gradient(wheel.carrier, pose.upright, kUp, -scale * y / squared, row);
 }
@@ -48,6 +50,8 @@ EdgeRolling::EdgeRolling(const WheelsParameter& wheels_, int number, double weig
 
 void EdgeRolling::error(const ConfigurationState& a, const ConfigurationState& b,
                         Eigen::Ref<Eigen::VectorXd> e) const {
+  require_same_robot(kTag, a.robot, robot);
+  require_same_robot(kTag, b.robot, robot);
   for (std::size_t w = 0; w < wheels->wheels.size(); ++w) {
     const Wheel& wheel = wheels->wheels[w];
     const WheelPose from(a, wheel), to(b, wheel);

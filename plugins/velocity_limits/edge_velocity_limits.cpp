@@ -27,6 +27,8 @@ void EdgeVelocityLimits::error(const ConfigurationState& a, const ConfigurationS
   const Robot& robot = a.model();
   const double dt = b.time_s - a.time_s;
   const int n = robot.active_joint_count();
+  require_same_robot(kTag, a.robot, b.robot);
+  require_rows(kTag, e.size(), n + 2);
   for (int i = 0; i < n; ++i) {
     const double most = fraction * robot.active_joint(i).max_velocity * dt;
     e[i] = std::max(0.0, std::abs(b.joint(i) - a.joint(i)) - most);

@@ -10,16 +10,22 @@
 /// in m/s and rad/s, 0 for none.
 
 #include <locograph/core/typed_edge_pool.h>
-#include <locograph/plugins/configuration/vertex_configuration.h>
+#include <locograph/plugins/configuration/edge_fit.h>
 
 namespace locograph {
 
 struct EdgeVelocityLimits : WeightedEdge<Eigen::Dynamic, VertexConfiguration, VertexConfiguration> {
   static constexpr bool kOneSided = true;
+  static constexpr std::string_view kTag = "EDGE_VELOCITY_LIMITS";
   double fraction = 1.0;
   double base_linear_m_s = 0.0;
   double base_angular_rad_s = 0.0;
   auto fields() { return std::tie(fraction, base_linear_m_s, base_angular_rad_s); }
+  void bind(const Parameters& parameters) {
+    require_fitting_robot(parameters, kTag, dimension(), [](const RobotParameter& p) {
+      return p.robot->active_joint_count() + 2;
+    });
+  }
 
   EdgeVelocityLimits() = default;
   EdgeVelocityLimits(const Robot& robot, double fraction, double base_linear_m_s,
@@ -31,7 +37,7 @@ struct EdgeVelocityLimits : WeightedEdge<Eigen::Dynamic, VertexConfiguration, Ve
                  JacobianRef<EdgeVelocityLimits, 0> ja,
                  JacobianRef<EdgeVelocityLimits, 1> jb) const;
 };
-LOCOGRAPH_REGISTER_EDGE("EDGE_VELOCITY_LIMITS", EdgeVelocityLimits)
+LOCOGRAPH_REGISTER_EDGE(EdgeVelocityLimits::kTag, EdgeVelocityLimits)
 extern template class TypedEdgePool<EdgeVelocityLimits>;
 
 }  // namespace locograph

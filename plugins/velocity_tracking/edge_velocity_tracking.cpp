@@ -13,6 +13,8 @@ EdgeVelocityTracking::EdgeVelocityTracking(const Eigen::VectorXd& step_,
 
 void EdgeVelocityTracking::error(const ConfigurationState& a, const ConfigurationState& b,
                                  Eigen::Ref<Eigen::VectorXd> e) const {
+  require_same_robot(kTag, a.robot, b.robot);
+  require_rows(kTag, e.size(), a.model().tangent_size());
   a.model().difference(a.q.data(), b.q.data(), e.data());
   e -= step;
 }

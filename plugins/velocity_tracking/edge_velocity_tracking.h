@@ -8,17 +8,23 @@
 /// vector [rad], joints. Ω per coordinate.
 
 #include <locograph/core/typed_edge_pool.h>
-#include <locograph/plugins/configuration/vertex_configuration.h>
+#include <locograph/plugins/configuration/edge_fit.h>
 
 namespace locograph {
 
 struct EdgeVelocityTracking
     : WeightedEdge<Eigen::Dynamic, VertexConfiguration, VertexConfiguration> {
+  static constexpr std::string_view kTag = "EDGE_VELOCITY_TRACKING";
   Eigen::VectorXd step;  ///< of the plan
   auto fields() { return std::tie(step); }
   void resize(int n) {
     weights.resize(n);
     step.resize(n);
+  }
+  void bind(const Parameters& parameters) {
+    require_rows(kTag, step.size(), dimension());
+    require_fitting_robot(parameters, kTag, dimension(),
+                          [](const RobotParameter& p) { return p.robot->tangent_size(); });
   }
 
   EdgeVelocityTracking() = default;
@@ -30,7 +36,7 @@ struct EdgeVelocityTracking
                  JacobianRef<EdgeVelocityTracking, 0> ja,
                  JacobianRef<EdgeVelocityTracking, 1> jb) const;
 };
-LOCOGRAPH_REGISTER_EDGE("EDGE_VELOCITY_TRACKING", EdgeVelocityTracking)
+LOCOGRAPH_REGISTER_EDGE(EdgeVelocityTracking::kTag, EdgeVelocityTracking)
 extern template class TypedEdgePool<EdgeVelocityTracking>;
 
 }  // namespace locograph

@@ -12,6 +12,7 @@ EdgeWheelContact::EdgeWheelContact(const WheelsParameter& wheels_, int number, d
 }
 
 void EdgeWheelContact::error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const {
+  require_same_robot(kTag, q.robot, robot);
   for (std::size_t w = 0; w < wheels->wheels.size(); ++w) {
     const Wheel& wheel = wheels->wheels[w];
     const Eigen::Isometry3d& carrier = q.kinematics.world_from_link(wheel.carrier);

@@ -1,0 +1,10 @@
+#pragma once
+/// `locograph check PLAN.g2o`: the independent feasibility check.
+
+#include <locograph/apps/command.h>
+
+namespace locograph {
+
+Command add_check(CLI::App& app);
+
+}  // namespace locograph

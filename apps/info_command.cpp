@@ -1,0 +1,24 @@
+#include <locograph/apps/describe.h>
+#include <locograph/apps/info_command.h>
+
+#include <memory>
+#include <string>
+
+namespace locograph {
+
+Command add_info(CLI::App& app) {
+  struct Options {
+    std::string file;
+    bool json = false;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* parser = app.add_subcommand("info", "What is in a graph, robot, map or obstacles file");
+  parser->add_option("FILE", options->file, "A .g2o, .urdf, .bt, .ot or .xml file")->required();
+  parser->add_flag("--json", options->json, "Print one JSON object");
+  return {parser, [options] {
+            print_result(describe_file(options->file), options->json);
+            return kDone;
+          }};
+}
+
+}  // namespace locograph

@@ -1,0 +1,52 @@
+#include <locograph/apps/data_folder.h>
+#include <locograph/apps/graph_types.h>
+#include <locograph/apps/list_command.h>
+#include <locograph/apps/output.h>
+#include <locograph/core/robust_kernel.h>
+#include <locograph/planners/plan/scenario.h>
+#include <locograph/solvers/linear_solvers.h>
+
+#include <CLI/Validators.hpp>
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace locograph {
+namespace {
+
+std::vector<std::string> robot_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(data_folder() / "robots/models")) {
+    if (entry.is_directory()) names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::vector<std::string> names_of(const std::string& what) {
+  if (what == "types") return graph_types().tags();
+  if (what == "solvers") return linear_solver_names();
+  if (what == "kernels") return RobustKernel::names();
+  if (what == "robots") return robot_names();
+  if (what == "scenarios") return scenario_names(data_folder());
+  return scenario_names(data_folder());
+}
+
+}  // namespace
+
+Command add_list(CLI::App& app) {
+  const auto what = std::make_shared<std::string>();
+  CLI::App* parser = app.add_subcommand("list", "What is registered, one name per line");
+  parser->add_option("WHAT", *what, "types, solvers, kernels, robots or scenarios")
+      ->required()
+      ->check(CLI::IsMember({"types", "solvers", "kernels", "robots", "scenarios"}));
+  return {parser, [what] {
+            std::string text;
+            for (const std::string& name : names_of(*what)) text += name + '\n';
+            print_text(text);
+            return kDone;
+          }};
+}
+
+}  // namespace locograph

@@ -1,0 +1,252 @@
+#include <locograph/apps/gauge.h>
+#include <locograph/apps/graph_types.h>
+#include <locograph/apps/optimize_command.h>
+#include <locograph/apps/output.h>
+#include <locograph/apps/progress.h>
+#include <locograph/common/deadline.h>
+#include <locograph/core/graph_file.h>
+#include <locograph/core/initial_guess.h>
+#include <locograph/core/optimiser.h>
+#include <locograph/solvers/linear_solvers.h>
+
+#include <CLI/Validators.hpp>
+#include <cmath>
+#include <iostream>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <string>
+
+namespace locograph {
+namespace {
+
+struct OptimizeOptions {
+  std::string input, output;
+  std::string algorithm = "lm";
+  std::string linear_solver = "auto";
+  std::string kernel = "none";
+  std::string initial_guess = "none";
+  OptimiserOptions optimiser;
+  int threads = 1;
+  bool lenient = false, json = false;
+
+  std::string input_name() const { return input == "-" ? "stdin" : input; }
+};
+
+struct Times {
+  double load = 0.0, compile = 0.0, optimize = 0.0, total = 0.0;
+};
+
+const std::map<std::string, Algorithm> kAlgorithms = {
+    {"lm", Algorithm::kLevenbergMarquardt},
+    {"gn", Algorithm::kGaussNewton},
+    {"dogleg", Algorithm::kDogleg},
+};
+
+Graph load(const OptimizeOptions& options, ReadReport& report) {
+  const ReadOptions read = {.lenient = options.lenient};
+  Graph graph;
+  if (options.input == "-") {
+    const std::string text((std::istreambuf_iterator<char>(std::cin)),
+                           std::istreambuf_iterator<char>());
+    graph = read_graph_text(text, options.input_name(), ".", graph_types(), read, &report);
+  } else {
+    graph = read_graph(options.input, graph_types(), read, &report);
+  }
+  for (const std::string& unknown : report.unknown) print_warning(unknown + ": line left out");
+  if (report.indefinite_information > 0) {
+    print_warning(options.input_name() + ":" + std::to_string(report.first_indefinite_line) +
+                  ": the first of " + std::to_string(report.indefinite_information) +
+                  " indefinite information matrices, all projected to the nearest positive "
+                  "semi-definite ones");
+  }
+  return graph;
+}
+
+void guess(Graph& graph, const OptimizeOptions& options) {
+  int unreached = 0;
+  if (options.initial_guess == "odometry") unreached = guess_from_odometry(graph);
+  if (options.initial_guess == "spanning-tree") unreached = guess_from_spanning_tree(graph);
+  if (unreached > 0) {
+    print_warning(counted(unreached, "vertex", "vertices") +
+                  " cannot be predicted from any edge: first values kept");
+  }
+}
+
+OptimiserResult run(Graph& graph, const OptimizeOptions& options, LinearSolver& solver,
+                    int& dimension, Times& times) {
+  Stopwatch watch;
+  Problem problem;
+  problem.compile(graph);
+  Workspace workspace;
+  workspace.allocate(problem);
+  workspace.load_state();
+  Optimiser optimiser(options.optimiser);
+  optimiser.start(workspace, solver);
+  times.compile = watch.lap();
+  dimension = problem.dimension();
+  Progress progress;
+  while (optimiser.iterate()) {
+    progress.show([&] {
+      const OptimiserResult& so_far = optimiser.result();
+      return "iteration " + std::to_string(so_far.iterations) + ", chi2 " +
+             short_number(so_far.final.chi2);
+    });
+  }
+  workspace.store_state();
+  times.optimize = watch.seconds();
+  return optimiser.result();
+}
+
+Json iterations_json(const OptimiserResult& result) {
+  Json all = Json::array();
+  for (const IterationStatistics& now : result.statistics) {
+    all.push_back({{"cost", now.cost},
+                   {"chi2", now.chi2},
+                   {"gain_ratio", now.gain_ratio},
+                   {"lambda", now.lambda},
+                   {"step_norm", now.step_norm},
+                   {"refusals", now.refusals},
+                   {"time",
+                    {{"linearise", now.time_linearise},
+                     {"solve", now.time_solve},
+                     {"evaluate", now.time_evaluate}}}});
+  }
+  return all;
+}
+
+std::string reason(const OptimiserResult& result, const Graph& graph) {
+  std::string text = result.reason_text();
+  if (result.reason == OptimiserResult::Reason::kSingular && result.singular_vertex >= 0) {
+    text += " at vertex " + std::to_string(graph.vertex_record(result.singular_vertex).id);
+  }
+  return text;
+}
+
+/// JSON has no NaN: a cost that is none is null.
+Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+void print_summary(const OptimizeOptions& options, const Json& result) {
+  const auto number = [&result](const char* key) {
+    return result[key].is_null() ? "not a number" : short_number(result[key].get<double>());
+  };
+  std::string text = options.input_name() + ": " +
+                     counted(result["vertices"], "vertex", "vertices") + ", " +
+                     counted(result["edges"], "edge", "edges") + ", " +
+                     counted(result["dimension"], "unknown", "unknowns") + ", " +
+                     result["gauge"].get<std::string>() + '\n';
+  text += "chi2 " + number("initial_chi2") + " -> " + number("final_chi2");
+  if (options.kernel != "none") {
+    text += ", robust cost " + number("initial_cost") + " -> " + number("final_cost") + " (" +
+            options.kernel + ")";
+  }
+  text += ", " + counted(result["iterations"], "iteration", "iterations") + ", " +
+          short_number(result["time"]["total"]) + " s (" + result["algorithm"].get<std::string>() +
+          ", " + result["linear_solver"].get<std::string>() + ")\n";
+  text += std::string(result["converged"] ? "" : "not converged: ") +
+          result["reason"].get<std::string>() + '\n';
+  if (result.contains("output")) {
+    text += "written: " + result["output"].get<std::string>() + '\n';
+  }
+  print_text(text);
+}
+
+ExitCode optimize(const OptimizeOptions& options) {
+  if (!options.output.empty()) check_writable(options.output);
+  options.optimiser.validate();
+  const std::unique_ptr<LinearSolver> solver = make_linear_solver(options.linear_solver);
+  const RobustKernel kernel = RobustKernel::parse(options.kernel);
+
+  Times times;
+  const Stopwatch total;
+  ReadReport report;
+  Graph graph = load(options, report);
+  times.load = total.seconds();
+  if (kernel.kind != RobustKernel::Kind::kNone) graph.set_kernel(kernel);
+  const Gauge gauge = hold_gauge(graph, options.input_name(), options.lenient);
+  guess(graph, options);
+  int dimension = 0;
+  const OptimiserResult result = run(graph, options, *solver, dimension, times);
+  gauge.release(graph);
+  times.total = total.seconds();
+
+  Json json = {
+      {"vertices", graph.vertex_count()},
+      {"edges", graph.edge_count()},
+      {"dimension", dimension},
+      {"gauge", gauge.text},
+      {"information_projected", report.indefinite_information},
+      {"lines_left_out", report.unknown.size()},
+      {"initial_chi2", finite(result.initial.chi2)},
+      {"final_chi2", finite(result.final.chi2)},
+      {"initial_cost", finite(result.initial.robust)},
+      {"final_cost", finite(result.final.robust)},
+      {"kernel", options.kernel},
+      {"iterations", result.iterations},
+      {"converged", result.converged},
+      {"reason", reason(result, graph)},
+      {"algorithm", options.algorithm},
+      {"linear_solver", solver->name()},
+      {"threads", 1},
+      {"time",
+       {{"load", times.load},
+        {"compile", times.compile},
+        {"optimize", times.optimize},
+        {"total", times.total}}},
+      {"iterations_detail", iterations_json(result)},
+  };
+  if (!options.output.empty() && std::isfinite(result.final.robust)) {
+    write_graph(graph, options.output);
+    json["output"] = options.output;
+  }
+  if (options.json) {
+    print_result(json, true);
+  } else {
+    print_summary(options, json);
+  }
+  return result.converged ? kDone : kNo;
+}
+
+}  // namespace
+
+Command add_optimize(CLI::App& app) {
+  const auto options = std::make_shared<OptimizeOptions>();
+  OptimizeOptions& o = *options;
+  CLI::App* parser = app.add_subcommand("optimize", "Optimise a graph file");
+  parser->add_option("IN", o.input, "Graph file (.g2o), - reads standard input")->required();
+  parser->add_option("-o,--output", o.output, "Where to write the optimised graph");
+  parser->add_option("--algorithm", o.algorithm, "lm, gn or dogleg")
+      ->check(CLI::IsMember({"lm", "gn", "dogleg"}))
+      ->capture_default_str();
+  parser
+      ->add_option("--linear-solver", o.linear_solver, "NAME (see: locograph list solvers) or auto")
+      ->capture_default_str();
+  parser
+      ->add_option("--kernel", o.kernel,
+                   "Robust kernel of every edge, NAME[:WIDTH] (see: locograph list kernels)")
+      ->capture_default_str();
+  parser->add_option("--initial-guess", o.initial_guess, "none, odometry or spanning-tree")
+      ->check(CLI::IsMember({"none", "odometry", "spanning-tree"}))
+      ->capture_default_str();
+  parser->add_option("--iterations", o.optimiser.max_iterations, "Most iterations to make")
+      ->capture_default_str();
+  parser
+      ->add_option("--gain", o.optimiser.gain,
+                   "Converged when a step lowers the cost by less than this fraction")
+      ->capture_default_str();
+  parser
+      ->add_option("--threads", o.threads,
+                   "Most threads to use (this version uses one); the result never depends on it")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  parser->add_flag(
+      "--lenient", o.lenient,
+      "Leave out unknown tags, project indefinite information, hold unconnected parts");
+  parser->add_flag("--json", o.json, "Print one JSON object");
+  return {parser, [options] {
+            options->optimiser.algorithm = kAlgorithms.at(options->algorithm);
+            return optimize(*options);
+          }};
+}
+
+}  // namespace locograph

@@ -1,0 +1,136 @@
+#include <locograph/apps/output.h>
+#include <locograph/common/error.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <sstream>
+#include <utility>
+
+namespace locograph {
+namespace {
+
+std::string one_line(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+std::string scalar_text(const Json& value) {
+  if (value.is_null()) return "none";
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) return short_number(value.get<double>());
+  return value.dump();
+}
+
+bool is_flat(const Json& value) {
+  return std::none_of(value.begin(), value.end(),
+                      [](const Json& item) { return item.is_structured(); });
+}
+
+/// "mass_kg" of a number → {"mass", " kg"}
+std::pair<std::string, std::string> label_and_unit(const std::string& key, const Json& value) {
+  const bool numeric =
+      value.is_number() || (value.is_array() && !value.empty() && value.front().is_number());
+  for (const std::string unit : {"m", "kg", "s", "rad"}) {
+    if (numeric && key.ends_with("_" + unit)) {
+      return {key.substr(0, key.size() - unit.size() - 1), ' ' + unit};
+    }
+  }
+  return {key, ""};
+}
+
+/// One line: "a, b unit", or "x 1 m, y 2 s"; the values must be flat.
+std::string inline_text(const Json& value, const std::string& unit) {
+  if (!value.is_structured()) return scalar_text(value) + (value.is_number() ? unit : "");
+  if (value.empty()) return "none";
+  std::string text;
+  for (const auto& [key, item] : value.items()) {
+    text += text.empty() ? "" : ", ";
+    if (value.is_object()) {
+      const auto [label, own_unit] = label_and_unit(key, item);
+      text += label + ' ' + scalar_text(item) + own_unit;
+    } else {
+      text += scalar_text(item);
+    }
+  }
+  return text + (value.is_array() ? unit : "");
+}
+
+void write_value(std::ostream& out, const Json& value, const std::string& unit,
+                 const std::string& indent) {
+  constexpr std::size_t kWidth = 100, kMostItems = 8;
+  if (!value.is_structured() || is_flat(value)) {
+    const std::string text = inline_text(value, unit);
+    if (text.size() <= kWidth || !value.is_array()) {
+      out << ' ' << text << '\n';
+      return;
+    }
+  }
+  out << '\n';
+  std::size_t count = 0;
+  for (const auto& [key, item] : value.items()) {
+    if (value.is_array() && ++count > kMostItems) {
+      out << indent << "and " << value.size() - kMostItems << " more (see --json)\n";
+      return;
+    }
+    const auto [label, own_unit] = label_and_unit(key, item);
+    out << indent << (value.is_array() ? "-" : label + ':');
+    write_value(out, item, value.is_array() ? unit : own_unit, indent + "  ");
+  }
+}
+
+}  // namespace
+
+void print_text(const std::string& text) {
+  std::cout << text << std::flush;
+  if (!std::cout) throw Error("standard output", 0, "cannot be written", "an open stream");
+}
+
+void print_result(const Json& result, bool as_json) {
+  std::ostringstream text;
+  if (as_json) {
+    // Names of files may hold bytes that are no UTF-8: they are replaced, JSON must stay JSON.
+    text << result.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  } else {
+    for (const auto& [key, value] : result.items()) {
+      const auto [label, unit] = label_and_unit(key, value);
+      text << label << ':';
+      write_value(text, value, unit, "  ");
+    }
+  }
+  print_text(text.str());
+}
+
+void print_warning(const std::string& text) {
+  std::cerr << "locograph: warning: " << one_line(text) << '\n';
+}
+
+void print_error(const std::string& what) {
+  std::cerr << "locograph: " << one_line(what) << std::endl;
+}
+
+void check_writable(const std::filesystem::path& path) {
+  const std::filesystem::path parent = path.parent_path();
+  const std::filesystem::path folder = parent.empty() ? "." : parent;
+  if (path.filename().empty() || std::filesystem::is_directory(path)) {
+    throw Error(path.string(), 0, "is a folder", "the name of a file to write");
+  }
+  if (!std::filesystem::is_directory(folder) || ::access(folder.c_str(), W_OK) != 0) {
+    throw Error(path.string(), 0, "cannot be written", "an existing, writable folder");
+  }
+}
+
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.6g", value);
+  return text;
+}
+
+std::string counted(long count, const std::string& singular, const std::string& plural) {
+  return std::to_string(count) + ' ' + (count == 1 ? singular : plural);
+}
+
+}  // namespace locograph

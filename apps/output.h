@@ -1,0 +1,37 @@
+#pragma once
+/// What commands print, and where: results to standard output, everything else to stderr.
+///
+///     Json result = {{"file", "hall.bt"}, {"resolution_m", 0.05}};
+///     print_result(result, as_json);
+///     print_warning("3 meshes are missing");
+///
+/// With --json standard output is one JSON object and nothing else. Without, the same object is
+/// printed as indented lines `key: value unit`, the unit taken from the key's suffix (_m, _kg, _s,
+/// _rad); long lists are cut.
+
+#include <exception>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace locograph {
+
+using Json = nlohmann::ordered_json;
+
+/// Throws Error when standard output cannot be written.
+void print_result(const Json& result, bool as_json);
+void print_text(const std::string& text);
+void print_warning(const std::string& text);
+
+/// `locograph: FILE:LINE: what, expected` on one line of stderr.
+void print_error(const std::string& what);
+
+/// Throws Error when a file could not be created at this path: asked before a long job, not after.
+void check_writable(const std::filesystem::path& path);
+
+/// Six significant digits.
+std::string short_number(double value);
+/// "1 edge", "2 edges"
+std::string counted(long count, const std::string& singular, const std::string& plural);
+
+}  // namespace locograph

@@ -1,0 +1,85 @@
+#include <locograph/apps/data_folder.h>
+#include <locograph/apps/output.h>
+#include <locograph/apps/plan_command.h>
+#include <locograph/common/deadline.h>
+#include <locograph/core/graph_file.h>
+#include <locograph/planners/offline/wheeled_drive.h>
+#include <locograph/planners/plan/plan.h>
+
+#include <CLI/Validators.hpp>
+#include <memory>
+#include <string>
+
+namespace locograph {
+namespace {
+
+struct PlanOptions {
+  std::string scenario, output;
+  unsigned seed = 0;
+  double timeout_s = 0.0;
+  int threads = 1;
+  bool json = false;
+};
+
+ExitCode plan(const PlanOptions& options) {
+  check_writable(options.output);
+  const Stopwatch total;
+  const Scenario scenario = load_scenario(options.scenario, data_folder());
+  Stopwatch watch;
+  Graph graph = plan_wheeled_drive(scenario);
+  const double whole_body_s = watch.seconds();
+  const bool in_time = options.timeout_s <= 0.0 || total.seconds() <= options.timeout_s;
+  const Motion motion = motion_of(graph, plan_of(graph));
+  if (in_time) write_graph(graph, options.output);
+  const Json json = {
+      {"success", in_time},
+      {"reason", in_time ? "planned" : "the time allowed is used up"},
+      {"seed", options.seed},
+      {"stances", 1},
+      {"vertices_in_tree", 0},
+      {"iterations", 0},
+      {"configurations", motion.configurations.size()},
+      {"duration_s", motion.time_s.back() - motion.time_s.front()},
+      {"time",
+       {{"stance_planner", 0.0},
+        {"transitions", 0.0},
+        {"whole_body", whole_body_s},
+        {"timing", 0.0},
+        {"total", total.seconds()}}},
+  };
+  if (options.json) {
+    print_result(json, true);
+  } else if (in_time) {
+    print_text(scenario.name + ": " +
+               counted(json["configurations"], "configuration", "configurations") + " in " +
+               short_number(json["duration_s"]) + " s, planned in " +
+               short_number(total.seconds()) + " s\nwritten: " + options.output + '\n');
+  } else {
+    print_text(scenario.name + ": no plan: " + json["reason"].get<std::string>() + '\n');
+  }
+  return in_time ? kDone : kNo;
+}
+
+}  // namespace
+
+Command add_plan(CLI::App& app) {
+  const auto options = std::make_shared<PlanOptions>();
+  PlanOptions& o = *options;
+  CLI::App* parser =
+      app.add_subcommand("plan", "Plan a scenario offline and emit the plan's graph");
+  parser
+      ->add_option("SCENARIO", o.scenario, "File, or a name that `locograph list scenarios` gives")
+      ->required();
+  parser->add_option("-o,--output", o.output, "Plan file to write (.g2o)")->required();
+  parser->add_option("--seed", o.seed, "Of everything random (a drive has nothing random)")
+      ->capture_default_str();
+  parser->add_option("--timeout", o.timeout_s, "Seconds the planner may take; 0: no limit")
+      ->check(CLI::NonNegativeNumber);
+  parser->add_option("--threads", o.threads, "Most threads to use (this version uses one)")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  parser->add_flag("--json", o.json, "Print one JSON object");
+  return {parser, [options] { return plan(*options); }};
+}
+
+}  // namespace locograph

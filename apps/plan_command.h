@@ -1,0 +1,10 @@
+#pragma once
+/// `locograph plan SCENARIO -o PLAN.g2o`: the offline planner.
+
+#include <locograph/apps/command.h>
+
+namespace locograph {
+
+Command add_plan(CLI::App& app);
+
+}  // namespace locograph

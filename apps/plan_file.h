@@ -1,0 +1,46 @@
+#pragma once
+/// Plan files as the commands use them: read, put into a world, checked.
+///
+///     PlanFile file = load_plan("plan.g2o");
+///     WorldFiles files = world_of(file, "hall.bt", "");        // or the plan's own
+///     CheckReport report = check_plan(file, load_world(files));
+
+#include <locograph/core/graph_file.h>
+#include <locograph/planners/plan/feasibility_checker.h>
+#include <locograph/planners/plan/plan.h>
+#include <octomap/OcTree.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace locograph {
+
+struct PlanFile {
+  std::string name;
+  Graph graph;
+  Plan plan;
+};
+
+/// Throws Error naming the file when it is unusable or holds no plan.
+PlanFile load_plan(const std::string& file);
+
+/// Files that describe a world; empty: none.
+struct WorldFiles {
+  std::filesystem::path map, obstacles;
+};
+
+/// The files given on the command line or, when neither is, the plan's own.
+WorldFiles world_of(const PlanFile& file, const std::string& map, const std::string& obstacles);
+
+struct LoadedWorld {
+  std::shared_ptr<const octomap::OcTree> map;  ///< null: none
+  std::vector<Obstacle> obstacles;
+};
+
+LoadedWorld load_world(const WorldFiles& files);
+
+CheckReport check_plan(const PlanFile& file, const LoadedWorld& world, CheckOptions options = {});
+
+}  // namespace locograph

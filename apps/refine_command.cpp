@@ -1,0 +1,156 @@
+#include <locograph/apps/output.h>
+#include <locograph/apps/plan_file.h>
+#include <locograph/apps/progress.h>
+#include <locograph/apps/refine_command.h>
+#include <locograph/apps/statistics.h>
+#include <locograph/planners/online/refine.h>
+
+#include <CLI/Validators.hpp>
+#include <memory>
+#include <string>
+
+namespace locograph {
+namespace {
+
+struct CommandOptions {
+  std::string input, output, map, obstacles;
+  int horizon = 20;
+  double deadline_ms = 0.0;
+  int threads = 1;
+  bool json = false;
+};
+
+/// How far from the plan the map still matters [m].
+constexpr double kFieldMargin_m = 2.5;
+
+WorldDistance distances(const PlanFile& file, const LoadedWorld& world) {
+  WorldDistance result;
+  result.obstacles = world.obstacles;
+  if (!world.map) return result;
+  Eigen::AlignedBox3d box;
+  for (const int slot : file.plan.slots) {
+    box.extend(Eigen::Vector3d(Eigen::Map<const Eigen::Vector3d>(file.graph.state(slot))));
+  }
+  DistanceFieldOptions options;
+  options.lower = box.min().array() - kFieldMargin_m;
+  options.upper = box.max().array() + kFieldMargin_m;
+  options.lower->z() = std::min(box.min().z(), 0.0) - 0.5;
+  options.upper->z() = box.max().z() + 1.5;
+  options.ground_z = kGroundVoxelTop_m;
+  result.map =
+      std::make_shared<const DistanceField>(DistanceField::from_octree(*world.map, options));
+  return result;
+}
+
+template <class F>
+Json over_cycles(const RefineReport& report, F&& figure) {
+  std::vector<double> values;
+  for (const CycleReport& cycle : report.cycles) values.push_back(figure(cycle));
+  return statistics_json(std::move(values));
+}
+
+Json phases_json(const RefineReport& report) {
+  return {
+      {"compile", over_cycles(report, [](const CycleReport& c) { return c.time_compile; })},
+      {"linearise", over_cycles(report, [](const CycleReport& c) { return c.time_linearise; })},
+      {"solve", over_cycles(report, [](const CycleReport& c) { return c.time_solve; })},
+      {"evaluate", over_cycles(report, [](const CycleReport& c) { return c.time_evaluate; })},
+      {"detour", over_cycles(report, [](const CycleReport& c) { return c.time_detour; })},
+      {"check", over_cycles(report, [](const CycleReport& c) { return c.time_check; })},
+  };
+}
+
+Json report_json(const RefineReport& report, const CommandOptions& options, double field_s) {
+  int iterations = 0, detours = 0;
+  for (const CycleReport& cycle : report.cycles) {
+    iterations += cycle.iterations;
+    detours += cycle.detour ? 1 : 0;
+  }
+  return {
+      {"success", report.success},
+      {"reason", report.reason},
+      {"cycles", report.cycles.size()},
+      {"horizon", options.horizon},
+      {"dof", report.dof},
+      {"configurations", report.configurations},
+      {"feasible_cycles", report.feasible_cycles},
+      {"deadline_misses", report.deadline_misses},
+      {"iterations", iterations},
+      {"detours_searched", detours},
+      {"cycle_time", over_cycles(report, [](const CycleReport& c) { return c.time_total; })},
+      {"optimize_time", over_cycles(report, [](const CycleReport& c) { return c.time_optimise; })},
+      {"map_update_time", statistics_json(report.map_update_s)},
+      {"phases", phases_json(report)},
+      {"distance_field_s", field_s},
+  };
+}
+
+ExitCode refine_plan(const CommandOptions& options) {
+  check_writable(options.output);
+  RefineOptions refine_options;
+  refine_options.planner.horizon = options.horizon;
+  refine_options.planner.deadline_s = 1e-3 * options.deadline_ms;
+  refine_options.planner.validate();
+  PlanFile file = load_plan(options.input);
+  const WorldFiles files = world_of(file, options.map, options.obstacles);
+  const LoadedWorld world = load_world(files);
+  const Stopwatch watch;
+  const WorldDistance seen = distances(file, world);
+  const double field_s = watch.seconds();
+  if (!file.plan.world) throw Error(file.name, 0, "the plan has no world", "a PARAMS_WORLD line");
+  // From now on this is the plan's world: the file that is written needs nothing else.
+  file.plan.world->set_files(files.map, files.obstacles);
+
+  Progress progress;
+  refine_options.on_cycle = [&](const CycleReport& cycle) {
+    progress.show([&] {
+      return "configuration " + std::to_string(cycle.executed + 1) + " of " +
+             std::to_string(file.plan.slots.size());
+    });
+  };
+  const RefineReport report = refine(
+      file.graph, [&seen](int executed) { return executed == 0 ? &seen : nullptr; },
+      refine_options);
+  write_graph(file.graph, options.output);
+
+  const Json json = report_json(report, options, field_s);
+  if (options.json) {
+    print_result(json, true);
+    return report.success ? kDone : kNo;
+  }
+  const auto ms = [&json](const char* which) {
+    return short_number(1e3 * json["cycle_time"][which].get<double>());
+  };
+  print_text(options.input + ": " + counted(report.feasible_cycles, "cycle", "cycles") + " of " +
+             std::to_string(report.cycles.size()) + " feasible, horizon " +
+             std::to_string(options.horizon) + ", " + std::to_string(report.dof) +
+             " degrees of freedom\n" + (report.success ? "" : "not refined: ") + report.reason +
+             "\ncycle time " + ms("p50") + " ms (p95 " + ms("p95") + ", max " + ms("max") +
+             ")\nwritten: " + options.output + '\n');
+  return report.success ? kDone : kNo;
+}
+
+}  // namespace
+
+Command add_refine(CLI::App& app) {
+  const auto options = std::make_shared<CommandOptions>();
+  CommandOptions& o = *options;
+  CLI::App* parser =
+      app.add_subcommand("refine", "Walk along a plan and re-optimise a moving horizon of it");
+  parser->add_option("PLAN", o.input, "Plan file (.g2o)")->required();
+  parser->add_option("-o,--output", o.output, "Refined plan to write (.g2o)")->required();
+  parser->add_option("--map", o.map, "OctoMap that is seen instead of the plan's own world");
+  parser->add_option("--obstacles", o.obstacles, "Obstacle file (.xml), also moving ones");
+  parser->add_option("--horizon", o.horizon, "Configurations that one cycle optimises")
+      ->capture_default_str();
+  parser->add_option("--deadline-ms", o.deadline_ms, "Time one cycle may take; 0: no limit")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  parser->add_option("--threads", o.threads, "Most threads to use (this version uses one)")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  parser->add_flag("--json", o.json, "Print one JSON object");
+  return {parser, [options] { return refine_plan(*options); }};
+}
+
+}  // namespace locograph

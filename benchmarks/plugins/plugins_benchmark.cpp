@@ -1,0 +1,210 @@
+// Edges of a plan of CENTAURO's lower body (24 joints, floating base): ns for one edge, error and
+// linearisation, and the kinematics that all edges on a configuration share.
+#include <benchmark/benchmark.h>
+#include <locograph/core/workspace.h>
+#include <locograph/plugins/joint_limits/edge_joint_limits.h>
+#include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
+#include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
+#include <locograph/plugins/rolling/edge_rolling.h>
+#include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
+#include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
+#include <locograph/plugins/wheel_contact/edge_wheel_contact.h>
+#include <locograph/world/octree.h>
+
+#include <filesystem>
+
+namespace {
+
+using namespace locograph;  // NOLINT: a program, not a header
+
+constexpr int kRobot = 0, kWheels = 1, kWorld = 2, kConfigurations = 21;
+
+/// A straight drive along x, 0.08 m for each configuration, past boxes on both sides.
+class Drive {
+ public:
+  explicit Drive(bool with_map) {
+    const std::filesystem::path folder =
+        std::filesystem::path(LOCOGRAPH_SOURCE_DIR) / "robots/models/centauro";
+    robot_ =
+        std::make_shared<const RobotParameter>(folder / "centauro.urdf", folder / "centauro.srdf",
+                                               RobotOptions{.active_joints = {"lower_body"}});
+    std::vector<Wheel> wheels(4);
+    for (int i = 0; i < 4; ++i) {
+      wheels[i].link_name = "wheel_" + std::to_string(i + 1);
+      wheels[i].radius_m = 0.078;
+    }
+    wheels_ = std::make_shared<const WheelsParameter>(*robot_->robot, kRobot, wheels);
+    auto world = std::make_shared<WorldParameter>();
+    std::vector<Box> boxes(2);
+    for (int side : {0, 1}) {
+      boxes[side].world_from_box.translation() << 0.8, side == 0 ? 0.8 : -0.8, 0.4;
+      boxes[side].size << 2.0, 0.3, 0.8;
+    }
+    if (with_map) {
+      world->now.map = std::make_shared<const DistanceField>(
+          DistanceField::from_octree(*octree_from_boxes(boxes, 0.05)));
+    } else {
+      world->now.obstacles.resize(4);
+      for (std::size_t i = 0; i < 4; ++i) {
+        Obstacle& obstacle = world->now.obstacles[i];
+        obstacle.shape = i == 0   ? Obstacle::Shape::kBox
+                         : i == 1 ? Obstacle::Shape::kSphere
+                                  : Obstacle::Shape::kCylinder;
+        obstacle.size << 0.4, 0.8, 0.4;
+        obstacle.world_from_obstacle.translation() << 0.5 * double(i), i % 2 ? 0.9 : -0.9, 0.4;
+      }
+    }
+    graph_.parameters().set(kRobot, robot_);
+    graph_.parameters().set(kWheels, wheels_);
+    graph_.parameters().set(kWorld, world);
+    const Robot& model = *robot_->robot;
+    Eigen::VectorXd q = model.named_configuration("home");
+    q[2] = 0.7188;
+    for (int i = 0; i < kConfigurations; ++i) {
+      ids_.push_back(graph_.add_vertex(i, VertexConfiguration(kRobot, robot_, 0.2 * i, q)));
+      q[0] += 0.08;
+      q[7 + i % 24] += 0.01;
+    }
+  }
+
+  template <class E>
+  void add_unary(const E& edge) {
+    for (const auto& id : ids_) graph_.add_edge(edge, id);
+  }
+  template <class E>
+  void add_binary(const E& edge) {
+    for (std::size_t i = 1; i < ids_.size(); ++i) graph_.add_edge(edge, ids_[i - 1], ids_[i]);
+  }
+  void compile() {
+    problem_.compile(graph_);
+    workspace_.allocate(problem_);
+    workspace_.load_state();
+    workspace_.evaluate(workspace_.state());
+  }
+  const RobotParameter& robot() const { return *robot_; }
+  const WheelsParameter& wheels() const { return *wheels_; }
+  const Robot& model() const { return *robot_->robot; }
+  Workspace& workspace() { return workspace_; }
+  const Problem& problem() const { return problem_; }
+
+ private:
+  std::shared_ptr<const RobotParameter> robot_;
+  std::shared_ptr<const WheelsParameter> wheels_;
+  Graph graph_;
+  std::vector<VertexId<VertexConfiguration>> ids_;
+  Problem problem_;
+  Workspace workspace_;
+};
+
+/// Times for one edge: `error` without kinematics, `linearise` with error, Jacobian and JᵀΩJ but
+/// without clearing H.
+void measure(benchmark::State& run, Drive& drive, bool linearise) {
+  drive.compile();
+  const Problem& problem = drive.problem();
+  const EdgePool& pool = *problem.graph().edge_pools()[0];
+  std::vector<std::unique_ptr<DerivedStore>> derived;
+  for (std::size_t p = 0; p < problem.active().size(); ++p) {
+    const VertexPool& vertices = *problem.graph().vertex_pools()[p];
+    derived.push_back(vertices.make_derived(problem.active()[p]));
+    vertices.derive(problem.active()[p], drive.workspace().state().data(), *derived.back());
+  }
+  Scratch scratch;
+  scratch.reserve(problem.scratch_bytes());
+  const Evaluation x{drive.workspace().state().data(), derived, &scratch};
+  for (auto _ : run) {
+    const Cost cost =
+        linearise ? pool.linearise(problem.edges()[0], x, drive.workspace().hessian().data(),
+                                   drive.workspace().gradient().data())
+                  : pool.cost(problem.edges()[0], x);
+    benchmark::DoNotOptimize(cost.chi2);
+    benchmark::ClobberMemory();
+  }
+  const double edges = problem.edge_count();
+  run.counters["edges"] = edges;
+  run.counters["rows"] = problem.residual_count() / edges;
+  run.counters["ns_per_edge"] = benchmark::Counter(
+      1e-9 * edges, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void JointLimits(benchmark::State& run, bool linearise, double margin) {
+  Drive drive(true);
+  drive.add_unary(EdgeJointLimits(drive.model(), margin, 1e4));
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(JointLimits, error, false, 0.01);
+BENCHMARK_CAPTURE(JointLimits, linearise, true, 0.01);
+BENCHMARK_CAPTURE(JointLimits, linearise_all_violated, true, 10.0);
+
+void VelocityLimits(benchmark::State& run, bool linearise, double fraction) {
+  Drive drive(true);
+  drive.add_binary(EdgeVelocityLimits(drive.model(), fraction, 0.5, 0.5, 1e4));
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(VelocityLimits, error, false, 0.95);
+BENCHMARK_CAPTURE(VelocityLimits, linearise, true, 0.95);
+BENCHMARK_CAPTURE(VelocityLimits, linearise_all_violated, true, -1.0);
+
+void ObstacleDistance(benchmark::State& run, bool linearise, bool with_map, double margin_m) {
+  Drive drive(with_map);
+  drive.add_unary(EdgeObstacleDistance(drive.robot(), kWorld, margin_m, 1e4));
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(ObstacleDistance, map_error, false, true, 0.05);
+BENCHMARK_CAPTURE(ObstacleDistance, map_linearise, true, true, 0.05);
+BENCHMARK_CAPTURE(ObstacleDistance, map_linearise_margin_0_5_m, true, true, 0.5);
+BENCHMARK_CAPTURE(ObstacleDistance, four_obstacles_error, false, false, 0.05);
+BENCHMARK_CAPTURE(ObstacleDistance, four_obstacles_linearise, true, false, 0.05);
+
+void WheelContact(benchmark::State& run, bool linearise) {
+  Drive drive(true);
+  drive.add_unary(EdgeWheelContact(drive.wheels(), kWheels, 1e5));
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(WheelContact, error, false);
+BENCHMARK_CAPTURE(WheelContact, linearise, true);
+
+void Rolling(benchmark::State& run, bool linearise) {
+  Drive drive(true);
+  drive.add_binary(EdgeRolling(drive.wheels(), kWheels, 1e5));
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(Rolling, error, false);
+BENCHMARK_CAPTURE(Rolling, linearise, true);
+
+void PlanTracking(benchmark::State& run, bool linearise) {
+  Drive drive(true);
+  Eigen::VectorXd reference = drive.model().named_configuration("home");
+  reference.segment<4>(3) << 0.01, -0.02, 0.03, 1.0;
+  reference.segment<4>(3).normalize();
+  drive.add_unary(EdgePlanTracking(reference, Eigen::VectorXd::Ones(drive.model().tangent_size())));
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(PlanTracking, error, false);
+BENCHMARK_CAPTURE(PlanTracking, linearise, true);
+
+void VelocityTracking(benchmark::State& run, bool linearise) {
+  Drive drive(true);
+  const int n = drive.model().tangent_size();
+  drive.add_binary(EdgeVelocityTracking(Eigen::VectorXd::Zero(n), Eigen::VectorXd::Ones(n)));
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(VelocityTracking, error, false);
+BENCHMARK_CAPTURE(VelocityTracking, linearise, true);
+
+/// Kinematics and sphere centres of one configuration.
+void Derive(benchmark::State& run) {
+  Drive drive(true);
+  ConfigurationState state(std::make_shared<const RobotParameter>(drive.robot()));
+  const Eigen::VectorXd q = drive.model().named_configuration("home");
+  for (auto _ : run) {
+    state.update(q.data());
+    benchmark::DoNotOptimize(state.sphere_centres.data());
+    benchmark::ClobberMemory();
+  }
+  run.counters["spheres"] = static_cast<double>(state.sphere_centres.size());
+}
+BENCHMARK(Derive);
+
+}  // namespace
+
+BENCHMARK_MAIN();

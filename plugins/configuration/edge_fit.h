@@ -1,0 +1,52 @@
+#pragma once
+/// Whether an edge fits the robot of its vertices: as many rows, and the same robot throughout.
+///
+///     void bind(const Parameters& parameters) {                      // with the edge's line
+///       require_fitting_robot(parameters, tag, dimension(),
+///                             [](const Robot& r) { return r.active_joint_count(); });
+///     }
+///     void error(const ConfigurationState& q, …) const {
+///       require_rows(tag, e.size(), q.model().active_joint_count());
+///
+/// bind() sees the parameters but no vertices: it refuses an edge that fits none of the graph's
+/// robots. What several robots leave open is settled where the edge is evaluated, before anything
+/// is read or written out of bounds. All throw Error.
+
+#include <locograph/core/parameters.h>
+#include <locograph/plugins/configuration/vertex_configuration.h>
+
+#include <string_view>
+
+namespace locograph {
+
+namespace detail {
+[[noreturn]] void refuse_rows(std::string_view tag, long rows, const std::string& expected);
+[[noreturn]] void refuse_robot(std::string_view tag);
+}  // namespace detail
+
+inline void require_rows(std::string_view tag, long rows, long expected) {
+  if (rows != expected) detail::refuse_rows(tag, rows, std::to_string(expected));
+}
+
+inline void require_same_robot(std::string_view tag, const std::shared_ptr<const RobotParameter>& a,
+                               const std::shared_ptr<const RobotParameter>& b) {
+  if (a != b) detail::refuse_robot(tag);
+}
+
+/// rows_of(const RobotParameter&): the rows that an edge on this robot has. A graph without a
+/// PARAMS_ROBOT says nothing.
+template <class RowsOf>
+void require_fitting_robot(const Parameters& parameters, std::string_view tag, long rows,
+                           RowsOf rows_of) {
+  std::string expected;
+  for (const auto& [number, parameter] : parameters.all()) {
+    const auto* robot = dynamic_cast<const RobotParameter*>(parameter.get());
+    if (robot == nullptr) continue;
+    const long wanted = rows_of(*robot);
+    if (wanted == rows) return;
+    expected += (expected.empty() ? "" : " or ") + std::to_string(wanted);
+  }
+  if (!expected.empty()) detail::refuse_rows(tag, rows, expected);
+}
+
+}  // namespace locograph

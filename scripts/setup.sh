@@ -1,0 +1,73 @@
+#!/bin/bash
+# Shared by the other scripts: installs what is missing, configures and builds.
+#
+#   . "$(dirname "$0")/setup.sh"
+#   install_missing                        # everything in dependencies.txt
+#   build build --target locograph         # Release, into build/
+#
+# Called by itself it does both for everything.
+
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+jobs=$(nproc)
+
+say() { printf '== %s\n' "$*" >&2; }
+die() {
+  printf '%s: %s\n' "$(basename "$0")" "$*" >&2
+  exit 1
+}
+
+as_root() {
+  if [ "$(id -u)" -eq 0 ]; then
+    "$@"
+  elif command -v sudo >/dev/null; then
+    sudo -n "$@" || die "cannot become root without a password: run 'sudo $*' first"
+  else
+    die "run as root: $*"
+  fi
+}
+
+listed_packages() { sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$root/scripts/dependencies.txt"; }
+
+# install_missing [PACKAGE…]: the packages given, or all of dependencies.txt.
+install_missing() {
+  local package missing=()
+  command -v dpkg-query >/dev/null || die "needs Debian 12; elsewhere install the equivalents of
+$(listed_packages)"
+  for package in ${*:-$(listed_packages)}; do
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
+      missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return
+  say "installing ${missing[*]}"
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get update -qq >&2
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
+    "${missing[@]}" >&2
+}
+
+# configure FOLDER [cmake options…]: Release by default, in silence unless it fails.
+configure() {
+  local folder=$root/$1 options=(-DCMAKE_BUILD_TYPE=Release)
+  shift
+  command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  mkdir -p "$folder"
+  cmake -S "$root" -B "$folder" -G Ninja "${options[@]}" "$@" >"$folder/configure.log" 2>&1 ||
+    {
+      cat "$folder/configure.log" >&2
+      die "CMake failed"
+    }
+}
+
+# build FOLDER [cmake --build options…]
+build() {
+  local folder=$1
+  shift
+  say "building $folder"
+  cmake --build "$root/$folder" --parallel "$jobs" "$@" >&2
+}
+
+if [ "${BASH_SOURCE[0]}" = "$0" ]; then
+  install_missing
+  configure build
+  build build
+fi

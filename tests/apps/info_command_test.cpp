@@ -1,0 +1,188 @@
+#include <apps/command_runner.h>
+
+namespace locograph {
+namespace {
+
+const char kArm[] =
+    "<robot name=\"arm\">\n"
+    "  <link name=\"base\"><inertial><mass value=\"2\"/>\n"
+    "    <inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>\n"
+    "  <link name=\"hand\">\n"
+    "    <collision><geometry><mesh filename=\"package://arm/hand.stl\"/></geometry></collision>\n"
+    "  </link>\n"
+    "  <joint name=\"elbow\" type=\"revolute\">\n"
+    "    <parent link=\"base\"/><child link=\"hand\"/><axis xyz=\"0 0 1\"/>\n"
+    "    <limit lower=\"-1\" upper=\"2\" velocity=\"3\" effort=\"4\"/>\n"
+    "  </joint>\n"
+    "</robot>\n";
+
+std::string with(std::string text, const std::string& what, const std::string& instead) {
+  text.replace(text.find(what), what.size(), instead);
+  return text;
+}
+
+nlohmann::json info(const CommandRunner& runner, const std::string& file) {
+  const Outcome outcome = runner.run("info " + file + " --json");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  return outcome.json();
+}
+
+TEST(Info, CountsWhatIsInAGraph) {
+  const CommandRunner runner;
+  runner.write("a.g2o",
+               "VERTEX_SE2 3 0 0 0\nVERTEX_SE2 9 0 0 0\nVERTEX_XY 5 0 0\nFIX 3\n"
+               "EDGE_SE2 3 9 1 0 0 2 0 0 3 0 4\nUNKNOWN 1\n");
+  const nlohmann::json json = info(runner, "a.g2o");
+  EXPECT_EQ(json["kind"], "graph");
+  EXPECT_EQ(json["vertices"]["count"], 3);
+  EXPECT_EQ(json["vertices"]["by_tag"]["VERTEX_SE2"], 2);
+  EXPECT_EQ(json["vertices"]["ids"], nlohmann::json({3, 9}));
+  EXPECT_EQ(json["vertices"]["dimension"], 8);
+  EXPECT_EQ(json["vertices"]["fixed"], 1);
+  EXPECT_EQ(json["edges"]["by_tag"]["EDGE_SE2"]["count"], 1);
+  EXPECT_EQ(json["edges"]["by_tag"]["EDGE_SE2"]["smallest_information_eigenvalue"], 2.0);
+  EXPECT_EQ(json["edges"]["by_tag"]["EDGE_SE2"]["largest_information_eigenvalue"], 4.0);
+  EXPECT_EQ(json["connected_parts"], 2);
+  EXPECT_EQ(json["parts_held_in_place"], 1);
+  EXPECT_EQ(json["unknown_lines"], 1);
+}
+
+struct PublicGraph {
+  const char* name;
+  int vertices, edges, indefinite;
+};
+class PublicGraphInfo : public testing::TestWithParam<PublicGraph> {};
+
+TEST_P(PublicGraphInfo, AgreesWithItsReference) {
+  LOCOGRAPH_NEEDS_SHARED_DATA();
+  const CommandRunner runner;
+  const nlohmann::json json =
+      info(runner, shared(std::string("pose_graphs/") + GetParam().name + ".g2o"));
+  EXPECT_EQ(json["vertices"]["count"], GetParam().vertices);
+  EXPECT_EQ(json["edges"]["count"], GetParam().edges);
+  EXPECT_EQ(json["indefinite_information"], GetParam().indefinite);
+  EXPECT_EQ(json["connected_parts"], 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Info, PublicGraphInfo,
+    testing::Values(PublicGraph{"tinyGrid3D", 9, 11, 0},
+                    PublicGraph{"parking-garage", 1661, 6275, 0},
+                    PublicGraph{"sphere2500", 2500, 4949, 0}, PublicGraph{"torus3D", 5000, 9048, 0},
+                    PublicGraph{"cubicle", 5750, 16869, 5021}, PublicGraph{"intel", 1728, 2512, 0},
+                    PublicGraph{"manhattan", 3500, 5453, 0}, PublicGraph{"CSAIL", 1045, 1172, 0},
+                    PublicGraph{"kitti_00", 4541, 4677, 0}));
+
+TEST(Info, DescribesARobotAndItsMissingMeshes) {
+  const CommandRunner runner;
+  runner.write("arm.urdf", kArm);
+  const nlohmann::json json = info(runner, "arm.urdf");
+  EXPECT_EQ(json["kind"], "robot");
+  EXPECT_EQ(json["name"], "arm");
+  EXPECT_EQ(json["links"], 2);
+  EXPECT_EQ(json["movable_joints"], 1);
+  EXPECT_EQ(json["mass_kg"], 2.0);
+  EXPECT_EQ(json["missing_meshes"], nlohmann::json({"package://arm/hand.stl"}));
+  EXPECT_EQ(json["limits"]["elbow"]["lower"], -1.0);
+  EXPECT_EQ(json["limits"]["elbow"]["max_effort"], 4.0);
+  EXPECT_TRUE(json["srdf"].is_null());
+}
+
+TEST(Info, DescribesTheRobotThatComesAlong) {
+  const CommandRunner runner;
+  const nlohmann::json json =
+      info(runner, "'" LOCOGRAPH_SOURCE_DIR "/robots/models/centauro/centauro.urdf'");
+  EXPECT_EQ(json["name"], "centauro");
+  EXPECT_EQ(json["missing_meshes"], nlohmann::json::array());
+  EXPECT_EQ(json["names_unknown_to_the_urdf"], nlohmann::json::array());
+  EXPECT_EQ(json["configurations"], nlohmann::json({"home"}));
+}
+
+TEST(Info, RefusesUnusableRobots) {
+  const CommandRunner runner;
+  runner.write("rootless.urdf", with(kArm, "</robot>",
+                                     "<joint name=\"back\" type=\"fixed\">\n"
+                                     "<parent link=\"hand\"/><child link=\"base\"/></joint>\n"
+                                     "</robot>"));
+  const Outcome rootless = runner.run("info rootless.urdf");
+  EXPECT_EQ(rootless.exit_code, 2);
+  EXPECT_EQ(rootless.err.substr(0, 25), "locograph: rootless.urdf:") << rootless.err;
+  runner.write("free.urdf",
+               with(kArm, "<limit lower=\"-1\" upper=\"2\" velocity=\"3\" effort=\"4\"/>", ""));
+  expect_refusal(runner.run("info free.urdf"), "free.urdf:7", "limit");
+  runner.write("broken.urdf", std::string(kArm).substr(0, 300));
+  const Outcome broken = runner.run("info broken.urdf");
+  EXPECT_EQ(broken.exit_code, 2);
+  EXPECT_EQ(broken.err.substr(0, 23), "locograph: broken.urdf:") << broken.err;
+}
+
+TEST(Info, DescribesAMap) {
+  LOCOGRAPH_NEEDS_SHARED_DATA();
+  const CommandRunner runner;
+  const nlohmann::json json = info(runner, shared("octomap/geb079.bt"));
+  EXPECT_EQ(json["kind"], "map");
+  EXPECT_NEAR(json["resolution_m"], 0.08, 1e-12);
+  EXPECT_GT(json["occupied_leaves"], 1000);
+  EXPECT_EQ(json["occupied_bounds"]["lower_m"].size(), 3u);
+}
+
+TEST(Info, RefusesUnusableMaps) {
+  const CommandRunner runner;
+  runner.write("colour.bt",
+               "# Octomap OcTree binary file\nid ColorOcTree\nsize 1\nres 0.1\ndata\n....");
+  const Outcome colour = runner.run("info colour.bt");
+  EXPECT_EQ(colour.exit_code, 2);
+  EXPECT_EQ(colour.err.substr(0, 20), "locograph: colour.bt") << colour.err;
+  runner.write("short.bt", "# Octomap OcTree binary file\nid OcTree\nsize 100\nres 0.1\ndata\n.");
+  const Outcome truncated = runner.run("info short.bt");
+  EXPECT_EQ(truncated.exit_code, 2);
+  EXPECT_EQ(truncated.err.substr(0, 19), "locograph: short.bt") << truncated.err;
+}
+
+TEST(Info, DescribesObstacles) {
+  const CommandRunner runner;
+  runner.write("o.xml",
+               "<?xml version=\"1.0\"?>\n<!-- <robot> -->\n<obstacles version=\"1\">\n"
+               "<box name=\"door\" center=\"1 0 1\" size=\"0.1 0.9 2\"/>\n</obstacles>\n");
+  const nlohmann::json json = info(runner, "o.xml");
+  EXPECT_EQ(json["kind"], "obstacles");
+  EXPECT_EQ(json["obstacles"][0]["name"], "door");
+  EXPECT_EQ(json["obstacles"][0]["extents_m"], nlohmann::json({0.1, 0.9, 2.0}));
+  runner.write("bad.xml", "<obstacles version=\"1\">\n<box center=\"1 0\"/>\n</obstacles>\n");
+  const Outcome bad = runner.run("info bad.xml");
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_EQ(bad.err.substr(0, 21), "locograph: bad.xml:2:") << bad.err;
+}
+
+TEST(Info, TellsTheKindByContentWhenTheNameDoesNot) {
+  const CommandRunner runner;
+  runner.write("robot", kArm);
+  EXPECT_EQ(info(runner, "robot")["kind"], "robot");
+  runner.write("graph.txt", "VERTEX_XY 0 0 0\n");
+  EXPECT_EQ(info(runner, "graph.txt")["kind"], "graph");
+}
+
+TEST(Info, PrintsUnitsForPeople) {
+  const CommandRunner runner;
+  runner.write("arm.urdf", kArm);
+  const Outcome outcome = runner.run("info arm.urdf");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("mass: 2 kg\n"), std::string::npos) << outcome.out;
+}
+
+TEST(Info, RefusesWhatItDoesNotKnow) {
+  const CommandRunner runner;
+  runner.write("empty", "");
+  runner.write("page.html", "<html></html>");
+  runner.write("notes.txt", "shopping list\n");
+  expect_refusal(runner.run("info none"), "none", "cannot be opened");
+  expect_refusal(runner.run("info ."), ".", "is a folder");
+  expect_refusal(runner.run("info empty"), "empty", "is empty");
+  expect_refusal(runner.run("info page.html"), "page.html", "root element 'html'");
+  expect_refusal(runner.run("info notes.txt"), "notes.txt", "unknown tag 'shopping'");
+  expect_refusal(runner.run("info"), "", "FILE");
+}
+
+}  // namespace
+}  // namespace locograph

@@ -1,0 +1,317 @@
+#include <apps/command_runner.h>
+
+#include <sstream>
+
+namespace locograph {
+namespace {
+
+/// Three planar poses in a row, a measurement between neighbours and one around.
+const char kTriangle[] =
+    "VERTEX_SE2 0 0 0 0\n"
+    "VERTEX_SE2 1 0.9 0.1 0.1\n"
+    "VERTEX_SE2 2 2.2 0.1 -0.1\n"
+    "EDGE_SE2 0 1 1 0 0 100 0 0 100 0 100\n"
+    "EDGE_SE2 1 2 1 0 0 100 0 0 100 0 100\n"
+    "EDGE_SE2 0 2 2.1 0 0 100 0 0 100 0 100\n";
+
+std::vector<std::string> lines(const std::string& text) {
+  std::vector<std::string> all;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) all.push_back(line);
+  return all;
+}
+
+struct KnownOptimum {
+  const char* graph;
+  double chi2;
+};
+
+class KnownGraph : public testing::TestWithParam<KnownOptimum> {};
+
+TEST_P(KnownGraph, IsOptimisedToItsBestKnownCost) {
+  LOCOGRAPH_NEEDS_SHARED_DATA();
+  const CommandRunner runner;
+  const Outcome outcome =
+      runner.run("optimize " + shared(std::string("pose_graphs/") + GetParam().graph) + " --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NEAR(outcome.json()["final_chi2"], GetParam().chi2, 1e-3 * GetParam().chi2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Optimize, KnownGraph,
+                         testing::Values(KnownOptimum{"tinyGrid3D.g2o", 6.7278816},
+                                         KnownOptimum{"CSAIL.g2o", 40.555129},
+                                         KnownOptimum{"intel.g2o", 45.004696},
+                                         KnownOptimum{"kitti_00.g2o", 98.322012}));
+
+TEST(Optimize, PrintsOneJsonObjectWithEveryField) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle);
+  const Outcome outcome = runner.run("optimize a.g2o --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const nlohmann::json json = outcome.json();
+  EXPECT_EQ(json["vertices"], 3);
+  EXPECT_EQ(json["edges"], 3);
+  EXPECT_EQ(json["dimension"], 6);
+  EXPECT_EQ(json["converged"], true);
+  EXPECT_EQ(json["algorithm"], "lm");
+  EXPECT_EQ(json["linear_solver"], "dense");
+  EXPECT_EQ(json["threads"], 1);
+  EXPECT_EQ(json["gauge"], "vertex 0 held");
+  EXPECT_EQ(json["information_projected"], 0);
+  EXPECT_GT(json["initial_chi2"].get<double>(), json["final_chi2"].get<double>());
+  // Two steps of 1 m against one of 2.1 m, all equally certain: 3 × 100 × (0.1 m / 3)².
+  EXPECT_NEAR(json["final_chi2"], 1.0 / 3.0, 1e-6);
+  EXPECT_EQ(json["final_cost"], json["final_chi2"]);
+  EXPECT_FALSE(json["reason"].get<std::string>().empty());
+  EXPECT_EQ(json["iterations_detail"].size(), json["iterations"].get<std::size_t>());
+  for (const char* phase : {"load", "compile", "optimize", "total"}) {
+    EXPECT_GE(json["time"][phase].get<double>(), 0.0) << phase;
+  }
+}
+
+TEST(Optimize, PrintsAReadableSummaryWithoutJson) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle);
+  const Outcome outcome = runner.run("optimize a.g2o -o b.g2o");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("3 vertices, 3 edges"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("written: b.g2o"), std::string::npos) << outcome.out;
+}
+
+TEST(Optimize, ReadsStandardInput) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle);
+  const Outcome outcome = runner.run("optimize - --json < a.g2o");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["vertices"], 3);
+}
+
+TEST(Optimize, NamesStandardInputInErrors) {
+  const CommandRunner runner;
+  runner.write("a.g2o", "VERTEX_SE2 0 0 0 0\nNONSENSE 1\n");
+  expect_refusal(runner.run("optimize - < a.g2o"), "stdin:2", "unknown tag 'NONSENSE'");
+}
+
+TEST(Optimize, WritesAnOptimumThatStaysWhereItIs) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle);
+  const Outcome first = runner.run("optimize a.g2o -o b.g2o --json");
+  const Outcome second = runner.run("optimize b.g2o --json");
+  ASSERT_EQ(second.exit_code, 0) << second.err;
+  EXPECT_EQ(first.json()["final_chi2"], second.json()["initial_chi2"]);
+}
+
+TEST(Optimize, AddsNoFixLineToTheOutput) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle);
+  ASSERT_EQ(runner.run("optimize a.g2o -o b.g2o").exit_code, 0);
+  EXPECT_EQ(runner.read("b.g2o").find("FIX"), std::string::npos);
+  EXPECT_EQ(lines(runner.read("b.g2o"))[0], "VERTEX_SE2 0 0 0 0") << "the held vertex moved";
+}
+
+TEST(Optimize, KeepsTheFixLinesOfTheInput) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle + std::string("FIX 2\n"));
+  const Outcome outcome = runner.run("optimize a.g2o -o b.g2o --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["gauge"], "held by the file");
+  EXPECT_NE(runner.read("b.g2o").find("FIX 2\n"), std::string::npos);
+}
+
+TEST(Optimize, HoldsAPoseRatherThanAPoint) {
+  const CommandRunner runner;
+  runner.write("a.g2o",
+               "VERTEX_XY 0 1 0\nVERTEX_SE2 7 0 0 0\nVERTEX_SE2 8 1 0 0\n"
+               "EDGE_SE2 7 8 1 0 0 1 0 0 1 0 1\nEDGE_SE2_XY 7 0 1 0.5 1 0 1\n");
+  const Outcome outcome = runner.run("optimize a.g2o --algorithm gn --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["gauge"], "vertex 7 held");
+}
+
+TEST(Optimize, EveryAlgorithmAndSolverReachesTheSameCost) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle);
+  for (const char* options : {"--algorithm gn", "--algorithm dogleg", "--linear-solver dense",
+                              "--linear-solver banded", "--linear-solver block-cholesky",
+                              "--initial-guess odometry", "--initial-guess spanning-tree"}) {
+    const Outcome outcome = runner.run(std::string("optimize a.g2o --json ") + options);
+    ASSERT_EQ(outcome.exit_code, 0) << options << ": " << outcome.err;
+    EXPECT_NEAR(outcome.json()["final_chi2"], 1.0 / 3.0, 1e-6) << options;
+  }
+}
+
+TEST(Optimize, GivesTheSameBitsAgainAndForAnyNumberOfThreads) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle);
+  ASSERT_EQ(runner.run("optimize a.g2o -o b.g2o").exit_code, 0);
+  ASSERT_EQ(runner.run("optimize a.g2o -o c.g2o").exit_code, 0);
+  ASSERT_EQ(runner.run("optimize a.g2o -o d.g2o --threads 4").exit_code, 0);
+  EXPECT_EQ(runner.read("b.g2o"), runner.read("c.g2o"));
+  EXPECT_EQ(runner.read("b.g2o"), runner.read("d.g2o"));
+}
+
+TEST(Optimize, ARobustKernelLowersTheCostOfAnOutlier) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle + std::string("EDGE_SE2 0 1 50 0 0 100 0 0 100 0 100\n"));
+  const Outcome outcome = runner.run("optimize a.g2o --kernel cauchy:1 --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_LT(outcome.json()["final_cost"].get<double>(), 100.0);
+  EXPECT_GT(outcome.json()["final_chi2"].get<double>(), 100.0);
+}
+
+TEST(Optimize, SaysNoWhenTheIterationsRunOutAndStillWritesWhatItHas) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle);
+  const Outcome outcome = runner.run("optimize a.g2o --iterations 1 -o b.g2o --json");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_EQ(outcome.json()["converged"], false);
+  EXPECT_EQ(outcome.json()["reason"], "the number of iterations is used up");
+  EXPECT_TRUE(runner.exists("b.g2o"));
+}
+
+TEST(Optimize, NamesTheVertexWhereTheSystemIsSingular) {
+  const CommandRunner runner;
+  // Nothing says where vertex 5 is along y, nor how it is turned.
+  runner.write("a.g2o",
+               "VERTEX_SE2 4 0 0 0\nVERTEX_SE2 5 1 0 0\nFIX 4\n"
+               "EDGE_SE2 4 5 2 0 0 1 0 0 0 0 0\n");
+  const Outcome outcome = runner.run("optimize a.g2o --algorithm gn --json");
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  EXPECT_EQ(outcome.json()["reason"], "the linear system is singular at vertex 5");
+}
+
+TEST(Optimize, RefusesADisconnectedGraphNamingTheSecondPart) {
+  const CommandRunner runner;
+  const std::string graph = kTriangle + std::string(
+                                            "VERTEX_SE2 7 0 0 0\nVERTEX_SE2 8 1 0 0\n"
+                                            "EDGE_SE2 7 8 1 0 0 1 0 0 1 0 1\n");
+  runner.write("a.g2o", graph);
+  expect_refusal(runner.run("optimize a.g2o -o b.g2o"), "a.g2o:7",
+                 "vertex 7 begins part 2 of 2 (2 of 5 vertices)");
+  EXPECT_FALSE(runner.exists("b.g2o"));
+  runner.write("a.g2o", "FIX 0\n" + graph);
+  expect_refusal(runner.run("optimize a.g2o"), "a.g2o:8", "vertex 7 begins part 2 of 2");
+  runner.write("a.g2o", "FIX 0 8\n" + graph);
+  EXPECT_EQ(runner.run("optimize a.g2o").exit_code, 0) << "both parts are held by the file";
+}
+
+TEST(Optimize, HoldsAVertexOfEachPartWhenLenient) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle + std::string("VERTEX_SE2 7 0 0 0\nVERTEX_SE2 8 1 0 0\n"
+                                                "EDGE_SE2 7 8 2 0 0 1 0 0 1 0 1\n"));
+  const Outcome outcome = runner.run("optimize a.g2o --lenient -o b.g2o --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["gauge"], "vertices 0, 7 held");
+  EXPECT_NE(outcome.err.find("warning"), std::string::npos);
+  EXPECT_EQ(runner.read("b.g2o").find("FIX"), std::string::npos);
+}
+
+TEST(Optimize, ProjectsIndefiniteInformationWhenLenient) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle + std::string("EDGE_SE2 0 2 2 0 0 1 2 0 1 0 1\n"));
+  const Outcome outcome = runner.run("optimize a.g2o --lenient --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["information_projected"], 1);
+  EXPECT_NE(outcome.err.find("a.g2o:7"), std::string::npos) << outcome.err;
+}
+
+TEST(Optimize, RefusesCubicleWithTheNumberOfIndefiniteMatrices) {
+  LOCOGRAPH_NEEDS_SHARED_DATA();
+  const CommandRunner runner;
+  const Outcome outcome = runner.run("optimize " + shared("pose_graphs/cubicle.g2o"));
+  expect_refusal(outcome, LOCOGRAPH_SHARED_DATA "/pose_graphs/cubicle.g2o:5753",
+                 "the first of 5021 such among 16869 edges");
+}
+
+struct BadInput {
+  const char* name;
+  std::string text;
+  int line;  ///< 0: of the file as a whole
+  const char* words;
+};
+
+class BadGraph : public testing::TestWithParam<BadInput> {};
+
+TEST_P(BadGraph, IsRefusedInOneLineAndNothingIsWritten) {
+  const CommandRunner runner;
+  runner.write("bad.g2o", GetParam().text);
+  const std::string place =
+      "bad.g2o" + (GetParam().line > 0 ? ":" + std::to_string(GetParam().line) : "");
+  expect_refusal(runner.run("optimize bad.g2o -o out.g2o"), place, GetParam().words);
+  expect_refusal(runner.run("optimize bad.g2o -o out.g2o --json"), place, GetParam().words);
+  EXPECT_EQ(runner.files(), 1) << "only the input";
+}
+
+const char kPose[] = "VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n";
+const char kTwo[] = "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    Optimize, BadGraph,
+    testing::Values(
+        BadInput{"Empty", "", 0, "holds no graph"},
+        BadInput{"OnlyComments", "# nothing\n\n", 0, "holds no graph"},
+        BadInput{"Binary", std::string("\0\1\2\3\n", 5), 1, "unknown tag"},
+        BadInput{"UnknownTag", "VERTEX_SE2 0 0 0 0\n\n  VERTEX_SE9 1 0 0\n", 3,
+                 "unknown tag 'VERTEX_SE9'"},
+        BadInput{"TruncatedLine", std::string(kTriangle).substr(0, sizeof(kTriangle) - 8), 6, ""},
+        BadInput{"TooFewFields", "VERTEX_SE2 0 0 0\n", 1, "expected"},
+        BadInput{"TooManyFields", "VERTEX_SE2 0 0 0 0 0\n", 1, "expected"},
+        BadInput{"NotANumber", "VERTEX_SE2 0 0 x 0\n", 1, "'x'"},
+        BadInput{"Nan", "VERTEX_SE2 0 0 nan 0\n", 1, "nan"},
+        BadInput{"Infinity", "VERTEX_SE2 0 0 inf 0\n", 1, "inf"},
+        BadInput{"FractionalId", "VERTEX_SE2 0.5 0 0 0\n", 1, "0.5"},
+        BadInput{"DanglingId", kTwo + std::string("EDGE_SE2 0 9 1 0 0 1 0 0 1 0 1\n"), 3,
+                 "unknown vertex 9"},
+        BadInput{"DuplicatedId", kTwo + std::string("VERTEX_SE2 1 0 0 0\n"), 3,
+                 "vertex 1 is declared twice, first on line 2"},
+        BadInput{"VertexOfAnotherType", kTwo + std::string("EDGE_SE2_XY 0 1 1 0 1 0 1\n"), 3,
+                 "vertex 1 is a VERTEX_SE2"},
+        BadInput{"EdgeToItself", kTwo + std::string("EDGE_SE2 1 1 1 0 0 1 0 0 1 0 1\n"), 3,
+                 "names vertex 1 twice"},
+        BadInput{"IndefiniteInformation", kTwo + std::string("EDGE_SE2 0 1 1 0 0 1 2 0 1 0 1\n"), 3,
+                 "indefinite"},
+        BadInput{"NegativeInformation", kTwo + std::string("EDGE_SE2 0 1 1 0 0 -1 0 0 1 0 1\n"), 3,
+                 "indefinite"},
+        BadInput{"ZeroQuaternion", "VERTEX_SE3:QUAT 0 0 0 0 0 0 0 0\n", 1,
+                 "quaternion of length zero"},
+        BadInput{"FixOfNothing", kTwo + std::string("FIX 4\n"), 3, "unknown vertex 4"},
+        BadInput{"UnknownParameter",
+                 kPose + std::string("EDGE_SE3_PRIOR 0 3 0 0 0 0 0 0 1 "
+                                     "1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 "
+                                     "1 0 0 1 0 1\n"),
+                 2, "unknown parameter 3"}),
+    [](const testing::TestParamInfo<BadInput>& info) { return std::string(info.param.name); });
+
+TEST(Optimize, RefusesAFileThatIsNotThere) {
+  const CommandRunner runner;
+  expect_refusal(runner.run("optimize none.g2o"), "none.g2o", "cannot be opened");
+  expect_refusal(runner.run("optimize ."), ".", "is a folder");
+}
+
+TEST(Optimize, RefusesAnOutputItCannotWriteBeforeItStarts) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle);
+  expect_refusal(runner.run("optimize a.g2o -o none/b.g2o"), "none/b.g2o", "writable folder");
+  expect_refusal(runner.run("optimize a.g2o -o ."), ".", "is a folder");
+  EXPECT_EQ(runner.files(), 1);
+}
+
+TEST(Optimize, RefusesWrongUsageInOneLine) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle);
+  for (const char* usage :
+       {"optimize", "optimize a.g2o --bogus", "optimize a.g2o b.g2o",
+        "optimize a.g2o --algorithm newton", "optimize a.g2o --linear-solver magic",
+        "optimize a.g2o --kernel soft", "optimize a.g2o --kernel huber:0",
+        "optimize a.g2o --kernel huber:x", "optimize a.g2o --initial-guess lucky",
+        "optimize a.g2o --iterations -1", "optimize a.g2o --iterations many",
+        "optimize a.g2o --gain 2", "optimize a.g2o --gain nan", "optimize a.g2o --threads 0", "",
+        "frobnicate", "--bogus"}) {
+    SCOPED_TRACE(usage);
+    expect_refusal(runner.run(usage), "", "");
+  }
+}
+
+}  // namespace
+}  // namespace locograph

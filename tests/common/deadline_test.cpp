@@ -1,0 +1,26 @@
+#include <gtest/gtest.h>
+#include <locograph/common/deadline.h>
+
+namespace locograph {
+namespace {
+
+TEST(Deadline, NeverPassesUnlessOneWasSet) { EXPECT_FALSE(Deadline().passed()); }
+
+TEST(Deadline, OfNoTimeOrInThePastHasPassed) {
+  EXPECT_TRUE(Deadline::after(0.0).passed());
+  EXPECT_TRUE(Deadline::after(-1.0).passed());
+}
+
+TEST(Deadline, FarAwayHasNotPassed) { EXPECT_FALSE(Deadline::after(3600.0).passed()); }
+
+TEST(Stopwatch, NeverRunsBackwards) {
+  Stopwatch watch;
+  const double first = watch.seconds();
+  const double second = watch.seconds();
+  EXPECT_GE(first, 0.0);
+  EXPECT_GE(second, first);
+  EXPECT_GE(watch.lap(), second);
+}
+
+}  // namespace
+}  // namespace locograph

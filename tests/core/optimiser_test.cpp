@@ -1,0 +1,510 @@
+#include <gtest/gtest.h>
+#include <locograph/core/optimiser.h>
+#include <locograph/solvers/linear_solvers.h>
+#include <locograph/types/slam2d/edges.h>
+#include <locograph/types/slam3d/edges.h>
+
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <random>
+
+#include "common/allocation_counter.h"
+#include "core/toy_types.h"
+
+namespace locograph::test {
+namespace {
+
+using Reason = OptimiserResult::Reason;
+
+constexpr Algorithm kAlgorithms[] = {Algorithm::kGaussNewton, Algorithm::kLevenbergMarquardt,
+                                     Algorithm::kDogleg};
+std::string name_of(Algorithm algorithm) {
+  switch (algorithm) {
+    case Algorithm::kGaussNewton:
+      return "GaussNewton";
+    case Algorithm::kLevenbergMarquardt:
+      return "LevenbergMarquardt";
+    case Algorithm::kDogleg:
+      return "Dogleg";
+  }
+  return "";
+}
+
+/// A ring of noisy planar poses with a chord, the first one fixed.
+Graph ring_2d(int size, double noise = 0.05) {
+  std::mt19937 engine(1);
+  std::normal_distribution<double> normal(0.0, noise);
+  Graph graph;
+  std::vector<VertexId<VertexSE2>> ids;
+  SE2<double> pose;
+  const SE2<double> motion(1.0, 0.0, 2.0 * std::numbers::pi / size);
+  std::vector<SE2<double>> truth;
+  for (int i = 0; i < size; ++i) {
+    truth.push_back(pose);
+    pose = pose * motion;
+    const SE2<double> wrong(normal(engine), normal(engine), normal(engine));
+    ids.push_back(graph.add_vertex(i, VertexSE2(i == 0 ? truth[0] : truth.back() * wrong)));
+  }
+  const auto tie = [&](int a, int b) {
+    EdgeSE2 edge;
+    edge.measurement =
+        truth[a].inverse() * truth[b] * SE2<double>(normal(engine), normal(engine), normal(engine));
+    edge.information = Eigen::Vector3d(10.0, 20.0, 50.0).asDiagonal();
+    graph.add_edge(edge, ids[a], ids[b]);
+  };
+  for (int i = 0; i < size; ++i) tie(i, (i + 1) % size);
+  tie(0, size / 2);
+  graph.set_fixed(ids[0], true);
+  return graph;
+}
+
+/// The same in space: a helix of poses with ties between its turns.
+Graph helix_3d(int size, double noise = 0.05) {
+  std::mt19937 engine(2);
+  std::normal_distribution<double> normal(0.0, noise);
+  const auto small_motion = [&] {
+    const Eigen::Vector3d t(normal(engine), normal(engine), normal(engine));
+    const Eigen::Vector3d r(normal(engine), normal(engine), normal(engine));
+    return SE3<double>(t, quaternion_exp<double>(r));
+  };
+  Graph graph;
+  std::vector<VertexId<VertexSE3>> ids;
+  std::vector<SE3<double>> truth;
+  SE3<double> pose;
+  const SE3<double> motion({1.0, 0.0, 0.1}, quaternion_exp<double>(Eigen::Vector3d(0.1, 0.2, 0.9)));
+  for (int i = 0; i < size; ++i) {
+    truth.push_back(pose);
+    pose = pose * motion;
+    ids.push_back(graph.add_vertex(i, VertexSE3(i == 0 ? pose : truth.back() * small_motion())));
+  }
+  graph.vertex(ids[0]) = VertexSE3(truth[0]);
+  for (const int apart : {1, 6}) {
+    for (int i = 0; i + apart < size; ++i) {
+      EdgeSE3 edge;
+      edge.measurement = truth[i].inverse() * truth[i + apart] * small_motion();
+      edge.information.diagonal() << 10.0, 20.0, 30.0, 100.0, 200.0, 300.0;
+      graph.add_edge(edge, ids[i], ids[i + apart]);
+    }
+  }
+  graph.set_fixed(ids[0], true);
+  return graph;
+}
+
+OptimiserResult run(Graph& graph, const OptimiserOptions& options,
+                    const std::string& solver = "auto") {
+  return optimise(graph, options, *make_linear_solver(solver));
+}
+
+TEST(Optimiser, AllAlgorithmsAndSolversReachTheSameOptimum) {
+  for (const auto& build : {std::function<Graph()>([] { return ring_2d(30); }),
+                            std::function<Graph()>([] { return helix_3d(30); })}) {
+    std::vector<double> finals;
+    for (const Algorithm algorithm : kAlgorithms) {
+      for (const std::string& solver : linear_solver_names()) {
+        Graph graph = build();
+        OptimiserOptions options;
+        options.algorithm = algorithm;
+        options.gain = 1e-12;
+        const OptimiserResult result = run(graph, options, solver);
+        EXPECT_TRUE(result.converged) << name_of(algorithm) << ": " << result.reason_text();
+        EXPECT_LT(result.final.chi2, 0.5 * result.initial.chi2);
+        finals.push_back(result.final.chi2);
+      }
+    }
+    for (const double chi2 : finals) EXPECT_NEAR(chi2, finals[0], 1e-9 * finals[0]);
+  }
+}
+
+TEST(Optimiser, LeavesFixedVerticesBitForBit) {
+  Graph graph = ring_2d(12);
+  graph.set_fixed(4, true);
+  const Eigen::Vector3d before = graph.vertex(VertexId<VertexSE2>{4}).state;
+  run(graph, {});
+  EXPECT_EQ(graph.vertex(VertexId<VertexSE2>{4}).state, before);
+}
+
+TEST(Optimiser, ReportsTheCostItReached) {
+  Graph graph = ring_2d(12);
+  graph.set_kernel(RobustKernel::parse("cauchy:0.3"));
+  const OptimiserResult result = run(graph, {});
+  Problem problem;
+  problem.compile(graph);
+  Workspace workspace;
+  workspace.allocate(problem);
+  workspace.load_state();
+  const Cost cost = workspace.evaluate(workspace.state());
+  EXPECT_NEAR(cost.robust, result.final.robust, 1e-12 * cost.robust);
+  EXPECT_NEAR(cost.chi2, result.final.chi2, 1e-12 * cost.chi2);
+  EXPECT_LT(cost.robust, cost.chi2);
+}
+
+TEST(Optimiser, ARobustKernelHoldsOffAnOutlier) {
+  const auto error_with = [](const std::string& kernel) {
+    Graph graph = ring_2d(20, 1e-3);
+    EdgeSE2 outlier;
+    outlier.measurement = SE2<double>(50.0, -30.0, 2.0);
+    outlier.information *= 10.0;
+    graph.add_edge(outlier, VertexId<VertexSE2>{3}, VertexId<VertexSE2>{11});
+    Graph truth = ring_2d(20, 0.0);
+    graph.set_kernel(RobustKernel::parse(kernel));
+    run(graph, {});
+    double worst = 0.0;
+    for (int i = 0; i < 20; ++i) {
+      const VertexId<VertexSE2> v{i};
+      worst = std::max(worst, (graph.vertex(v).state - truth.vertex(v).state).head<2>().norm());
+    }
+    return worst;
+  };
+  EXPECT_GT(error_with("none"), 1.0);
+  EXPECT_LT(error_with("geman-mcclure:1"), 0.1);
+  EXPECT_LT(error_with("cauchy:0.1"), 0.1);
+}
+
+class EveryAlgorithm : public testing::TestWithParam<Algorithm> {
+ protected:
+  OptimiserOptions options() const {
+    OptimiserOptions options;
+    options.algorithm = GetParam();
+    return options;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Optimiser, EveryAlgorithm, testing::ValuesIn(kAlgorithms),
+                         [](const auto& info) { return name_of(info.param); });
+
+TEST_P(EveryAlgorithm, StopsWhenTheGainIsSmall) {
+  Graph graph = ring_2d(20);
+  const OptimiserResult result = run(graph, options());
+  EXPECT_EQ(result.reason, Reason::kGain) << result.reason_text();
+  EXPECT_TRUE(result.converged);
+  EXPECT_EQ(result.singular_vertex, -1);
+  EXPECT_EQ(result.statistics.back().cost, result.final.robust);
+}
+
+TEST_P(EveryAlgorithm, StopsWhereTheGradientVanishes) {
+  Graph graph = ring_2d(20, 0.0);
+  graph.vertex(VertexId<VertexSE2>{1}).state[0] += 1e-14;
+  const OptimiserResult result = run(graph, options());
+  EXPECT_EQ(result.reason, Reason::kGradient) << result.reason_text();
+  EXPECT_TRUE(result.converged);
+  EXPECT_EQ(result.iterations, 0);
+}
+
+TEST_P(EveryAlgorithm, StopsWhenTheStepVanishes) {
+  Graph graph = ring_2d(20);
+  OptimiserOptions loose = options();
+  loose.step_tolerance = 100.0;
+  const OptimiserResult result = run(graph, loose);
+  EXPECT_EQ(result.reason, Reason::kStep) << result.reason_text();
+  EXPECT_TRUE(result.converged);
+  EXPECT_LE(result.iterations, 1);
+}
+
+TEST_P(EveryAlgorithm, StopsWhenItsIterationsAreUsedUp) {
+  Graph graph = ring_2d(20);
+  OptimiserOptions few = options();
+  few.max_iterations = 1;
+  const OptimiserResult result = run(graph, few);
+  EXPECT_EQ(result.reason, Reason::kMaxIterations) << result.reason_text();
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.iterations, 1);
+  EXPECT_LT(result.final.chi2, result.initial.chi2);
+}
+
+TEST_P(EveryAlgorithm, WithoutIterationsOnlyEvaluates) {
+  Graph graph = ring_2d(20);
+  OptimiserOptions none = options();
+  none.max_iterations = 0;
+  const OptimiserResult result = run(graph, none);
+  EXPECT_EQ(result.reason, Reason::kMaxIterations);
+  EXPECT_EQ(result.final.chi2, result.initial.chi2);
+}
+
+TEST_P(EveryAlgorithm, ThatMayRunForEverNeedsNoMemoryForIt) {
+  Graph graph = ring_2d(20);
+  OptimiserOptions many = options();
+  many.max_iterations = std::numeric_limits<int>::max();
+  EXPECT_TRUE(run(graph, many).converged);
+}
+
+TEST_P(EveryAlgorithm, StopsAtItsDeadline) {
+  Graph graph = ring_2d(20);
+  OptimiserOptions late = options();
+  late.deadline = Deadline::after(-1.0);
+  const OptimiserResult result = run(graph, late);
+  EXPECT_EQ(result.reason, Reason::kDeadline) << result.reason_text();
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.iterations, 0);
+}
+
+TEST_P(EveryAlgorithm, RefusesAnInitialStateWhoseCostIsNotANumber) {
+  Graph graph = ring_2d(5);
+  graph.add_dynamic_edge(ToyMoments<Derivatives::kDual>(), {graph.add_vertex(50, VertexXY())});
+  graph.add_edge(ToyNotANumber(), graph.find<VertexXY>(50));
+  const OptimiserResult result = run(graph, options());
+  EXPECT_EQ(result.reason, Reason::kNotFinite) << result.reason_text();
+  EXPECT_FALSE(result.converged);
+}
+
+TEST_P(EveryAlgorithm, HasNothingToDoWhenEveryVertexIsFixed) {
+  for (const std::string& solver : linear_solver_names()) {
+    Graph graph = ring_2d(5);
+    for (int v = 0; v < graph.vertex_slots(); ++v) graph.set_fixed(v, true);
+    const OptimiserResult result = run(graph, options(), solver);
+    EXPECT_EQ(result.reason, Reason::kNothingToDo) << result.reason_text();
+    EXPECT_TRUE(result.converged);
+    EXPECT_GT(result.final.chi2, 0.0);
+  }
+}
+
+TEST(Optimiser, GaussNewtonNamesTheVertexThatNothingHolds) {
+  for (const std::string& solver : linear_solver_names()) {
+    Graph graph = ring_2d(40);
+    const VertexId<VertexXY> loose = graph.add_vertex(99, VertexXY({1.0, 2.0}));
+    OptimiserOptions options;
+    options.algorithm = Algorithm::kGaussNewton;
+    const OptimiserResult result = run(graph, options, solver);
+    EXPECT_EQ(result.reason, Reason::kSingular) << result.reason_text();
+    EXPECT_FALSE(result.converged);
+    EXPECT_EQ(result.singular_vertex, loose.slot) << solver;
+  }
+}
+
+TEST(Optimiser, GaussNewtonSeesTheFreeGaugeOfAGraphWithoutFixedVertex) {
+  // Whole numbers: the gauge is exactly singular, not only up to rounding.
+  Graph graph;
+  std::vector<VertexId<VertexXY>> points;
+  for (int i = 0; i < 6; ++i) points.push_back(graph.add_vertex(i, VertexXY({2.0 * i, 0.0})));
+  for (int i = 0; i + 1 < 6; ++i) graph.add_edge(EdgePointXY(), points[i], points[i + 1]);
+  OptimiserOptions options;
+  options.algorithm = Algorithm::kGaussNewton;
+  const OptimiserResult result = run(graph, options, "dense");
+  EXPECT_EQ(result.reason, Reason::kSingular) << result.reason_text();
+  EXPECT_EQ(result.singular_vertex, points.back().slot);
+}
+
+TEST(Optimiser, DampingCopesWithAFreeGauge) {
+  for (const Algorithm algorithm : {Algorithm::kLevenbergMarquardt, Algorithm::kDogleg}) {
+    Graph held = ring_2d(30), loose = ring_2d(30);
+    loose.set_fixed(0, false);
+    loose.add_vertex(99, VertexXY({1.0, 2.0}));
+    OptimiserOptions options;
+    options.algorithm = algorithm;
+    const double expected = run(held, options).final.chi2;
+    const OptimiserResult result = run(loose, options);
+    EXPECT_TRUE(result.converged) << name_of(algorithm) << ": " << result.reason_text();
+    EXPECT_NEAR(result.final.chi2, expected, 1e-6 * expected) << name_of(algorithm);
+    EXPECT_EQ(loose.vertex(loose.find<VertexXY>(99)).state, Eigen::Vector2d(1.0, 2.0));
+  }
+}
+
+Graph arctan_graph() {
+  Graph graph;
+  graph.add_edge(ToyArctan(), graph.add_vertex(0, VertexXY({3.0, 0.0})));
+  return graph;
+}
+
+TEST(Optimiser, GaussNewtonThatRaisesTheCostKeepsTheBetterState) {
+  Graph graph = arctan_graph();
+  OptimiserOptions options;
+  options.algorithm = Algorithm::kGaussNewton;
+  const OptimiserResult result = run(graph, options);
+  EXPECT_EQ(result.reason, Reason::kDiverged) << result.reason_text();
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.final.chi2, result.initial.chi2);
+  EXPECT_EQ(graph.vertex(VertexId<VertexXY>{0}).state, Eigen::Vector2d(3.0, 0.0));
+}
+
+TEST(Optimiser, DampedAlgorithmsConvergeWhereGaussNewtonDiverges) {
+  for (const Algorithm algorithm : {Algorithm::kLevenbergMarquardt, Algorithm::kDogleg}) {
+    Graph graph = arctan_graph();
+    OptimiserOptions options;
+    options.algorithm = algorithm;
+    const OptimiserResult result = run(graph, options);
+    EXPECT_TRUE(result.converged) << result.reason_text();
+    EXPECT_LT(graph.vertex(VertexId<VertexXY>{0}).state.norm(), 1e-5) << name_of(algorithm);
+    EXPECT_GT(result.statistics.front().refusals, 0) << name_of(algorithm);
+  }
+}
+
+TEST(Optimiser, GivesUpWhenNoStepLowersTheCost) {
+  for (const Algorithm algorithm : {Algorithm::kLevenbergMarquardt, Algorithm::kDogleg}) {
+    Graph graph = arctan_graph();
+    OptimiserOptions options;
+    options.algorithm = algorithm;
+    options.max_refusals = 1;
+    const OptimiserResult result = run(graph, options);
+    EXPECT_EQ(result.reason, Reason::kNoProgress) << result.reason_text();
+    EXPECT_EQ(graph.vertex(VertexId<VertexXY>{0}).state, Eigen::Vector2d(3.0, 0.0));
+  }
+}
+
+TEST(Optimiser, MarquardtsScaledDampingReachesTheSameOptimum) {
+  Graph plain = helix_3d(20), scaled = helix_3d(20);
+  OptimiserOptions options;
+  const double expected = run(plain, options).final.chi2;
+  options.scale_by_diagonal = true;
+  EXPECT_NEAR(run(scaled, options).final.chi2, expected, 1e-6 * expected);
+}
+
+TEST(Optimiser, EveryReasonHasItsText) {
+  std::vector<std::string> texts;
+  for (int reason = 0; reason <= static_cast<int>(Reason::kNothingToDo); ++reason) {
+    OptimiserResult result;
+    result.reason = static_cast<Reason>(reason);
+    EXPECT_FALSE(result.reason_text().empty());
+    texts.push_back(result.reason_text());
+  }
+  std::sort(texts.begin(), texts.end());
+  EXPECT_EQ(std::unique(texts.begin(), texts.end()), texts.end());
+}
+
+TEST(OptimiserOptions, OutOfRangeAreErrorsThatNameTheOption) {
+  const auto refused = [](const char* name, auto&& change) {
+    OptimiserOptions options;
+    change(options);
+    try {
+      options.validate();
+      ADD_FAILURE() << name << " was accepted";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
+    }
+    EXPECT_THROW(Optimiser{options}, Error);
+  };
+  const double nan = std::nan("");
+  refused("max_iterations", [](OptimiserOptions& o) { o.max_iterations = -1; });
+  refused("gain", [](OptimiserOptions& o) { o.gain = -1e-9; });
+  refused("gain", [](OptimiserOptions& o) { o.gain = 1.0; });
+  refused("gain", [&](OptimiserOptions& o) { o.gain = nan; });
+  refused("gradient_tolerance", [](OptimiserOptions& o) { o.gradient_tolerance = -1.0; });
+  refused("step_tolerance", [&](OptimiserOptions& o) { o.step_tolerance = nan; });
+  refused("initial_lambda", [](OptimiserOptions& o) { o.initial_lambda = 0.0; });
+  refused("initial_radius", [](OptimiserOptions& o) { o.initial_radius = -2.0; });
+  refused("max_refusals", [](OptimiserOptions& o) { o.max_refusals = 0; });
+  EXPECT_NO_THROW(OptimiserOptions().validate());
+}
+
+// No allocation, determinism ---------------------------------------------------------------------
+
+/// Points tied by edges of run-time arity, and arms that reach for them.
+template <Derivatives D>
+Graph mixed_graph() {
+  std::mt19937 engine(3);
+  std::normal_distribution<double> normal;
+  Graph graph;
+  std::vector<VertexId<VertexXY>> points;
+  std::vector<VertexId<VertexSE2>> poses;
+  for (int i = 0; i < 12; ++i) {
+    points.push_back(graph.add_vertex(i, VertexXY({normal(engine), normal(engine)})));
+    poses.push_back(graph.add_vertex(
+        100 + i, VertexSE2(SE2<double>(normal(engine), normal(engine), normal(engine)))));
+    EdgePriorSE2 prior;
+    prior.measurement = SE2<double>(normal(engine), normal(engine), normal(engine));
+    graph.add_edge(prior, poses.back());
+  }
+  for (int i = 0; i < 12; ++i) {
+    ToyRange<D> range;
+    range.measurement << 2.0, 0.5;
+    graph.add_edge(range, poses[i], points[(i + 1) % 12]);
+    ToyView<D> view;
+    view.measurement << 1.0, 2.0, 3.0;
+    graph.add_dynamic_edge(view, {points[i], points[(i + 3) % 12], points[(i + 5) % 12]}, poses[i]);
+    ToyMoments<D> moments;
+    graph.add_dynamic_edge(moments, {points[i], points[(i + 6) % 12]});
+  }
+  graph.set_fixed(poses[0], true);
+  return graph;
+}
+
+/// Posture, reach and a signal: sizes known at run time, derived quantities by hand.
+Graph sized_graph() {
+  Graph graph;
+  for (int i = 0; i < 5; ++i) {
+    const auto arm = graph.add_vertex(i, VertexJoints(Eigen::VectorXd::Constant(4 + i, 0.3)));
+    const auto point = graph.add_vertex(100 + i, VertexXY({2.0, 1.0 + i}));
+    ToyReach<Derivatives::kByHand> reach;
+    graph.add_edge(reach, arm, point);
+    ToySignal signal;
+    signal.measurement = Eigen::VectorXd::LinSpaced(6, 0.0, 1.0);
+    signal.information = Eigen::MatrixXd::Identity(6, 6);
+    graph.add_dynamic_edge(signal, {point});
+  }
+  return graph;
+}
+
+struct NamedGraph {
+  const char* name;
+  std::function<Graph()> build;
+};
+void PrintTo(const NamedGraph& graph, std::ostream* out) { *out << graph.name; }
+
+class EveryGraphAndSolver
+    : public testing::TestWithParam<std::tuple<NamedGraph, std::string, Algorithm>> {
+ protected:
+  OptimiserOptions options() const {
+    OptimiserOptions options;
+    options.algorithm = std::get<2>(GetParam());
+    options.max_iterations = 20;
+    return options;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(
+    Optimiser, EveryGraphAndSolver,
+    testing::Combine(
+        testing::Values(NamedGraph{"Ring", [] { return ring_2d(40); }},
+                        NamedGraph{"Helix", [] { return helix_3d(40); }},
+                        NamedGraph{"ByHand", [] { return mixed_graph<Derivatives::kByHand>(); }},
+                        NamedGraph{"Dual", [] { return mixed_graph<Derivatives::kDual>(); }},
+                        NamedGraph{"Numeric", [] { return mixed_graph<Derivatives::kNumeric>(); }},
+                        NamedGraph{"Sized", [] { return sized_graph(); }}),
+        testing::Values("dense", "banded", "block-cholesky"), testing::ValuesIn(kAlgorithms)),
+    [](const auto& info) {
+      std::string name = std::get<1>(info.param);
+      std::erase(name, '-');
+      return std::get<0>(info.param).name + name + name_of(std::get<2>(info.param));
+    });
+
+TEST_P(EveryGraphAndSolver, IteratesWithoutAllocating) {
+  if (!allocations_are_counted()) GTEST_SKIP() << "a sanitizer brings its own malloc";
+  Graph graph = std::get<0>(GetParam()).build();
+  Problem problem;
+  problem.compile(graph);
+  Workspace workspace;
+  workspace.allocate(problem);
+  workspace.load_state();
+  const std::unique_ptr<LinearSolver> solver = make_linear_solver(std::get<1>(GetParam()));
+  Optimiser optimiser(options());
+  optimiser.start(workspace, *solver);
+  const long before = allocation_count();
+  while (optimiser.iterate()) {
+  }
+  const long after = allocation_count();
+  EXPECT_EQ(after - before, 0);
+  EXPECT_FALSE(optimiser.result().statistics.empty());
+}
+
+TEST_P(EveryGraphAndSolver, GivesTheSameBitsEveryTime) {
+  const auto states = [&] {
+    Graph graph = std::get<0>(GetParam()).build();
+    run(graph, options(), std::get<1>(GetParam()));
+    std::vector<double> all;
+    for (int v = 0; v < graph.vertex_slots(); ++v) {
+      all.insert(all.end(), graph.state(v), graph.state(v) + graph.state_size(v));
+    }
+    return all;
+  };
+  const std::vector<double> first = states(), second = states();
+  ASSERT_EQ(first.size(), second.size());
+  EXPECT_EQ(std::memcmp(first.data(), second.data(), first.size() * sizeof(double)), 0);
+}
+
+TEST(AllocationCounter, Counts) {
+  if (!allocations_are_counted()) GTEST_SKIP() << "a sanitizer brings its own malloc";
+  const long before = allocation_count();
+  const std::unique_ptr<std::vector<int>> numbers = std::make_unique<std::vector<int>>(100);
+  EXPECT_EQ(numbers->size(), 100u);
+  EXPECT_GE(allocation_count() - before, 2);
+}
+
+}  // namespace
+}  // namespace locograph::test

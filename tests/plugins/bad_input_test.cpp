@@ -1,0 +1,336 @@
+#include "plugins/plugin_test_support.h"
+#include "plugins/small_robot.h"
+
+namespace locograph::test {
+namespace {
+
+struct BadLine {
+  const char* name;
+  const char* text;
+  const char* message;  ///< a part of it
+};
+
+void PrintTo(const BadLine& bad, std::ostream* out) { *out << bad.name; }
+
+// A good plan: parameters 0 to 2 and vertices 0 and 1; the bad line is line 6.
+constexpr const char* kGood =
+    "PARAMS_ROBOT 0 cart.urdf cart.srdf floating 0\n"
+    "PARAMS_WHEELS 1 0 1 wheel 0.1\n"
+    "PARAMS_WORLD 2 - -\n"
+    "VERTEX_CONFIGURATION 0 0 0 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
+    "VERTEX_CONFIGURATION 1 0 1 0 0 0 0 0 0 1 0.1 0.2 0.3\n";
+
+const BadLine kBadLines[] = {
+    // VERTEX_CONFIGURATION
+    {"VertexOfAnUnknownRobot", "VERTEX_CONFIGURATION 9 5 0 0 0 0 0 0 0 1 0 0 0",
+     "unknown parameter 5"},
+    {"VertexOfAParameterThatIsNoRobot", "VERTEX_CONFIGURATION 9 2 0 0 0 0 0 0 0 1 0 0 0",
+     "parameter 2 is a PARAMS_WORLD"},
+    {"VertexWithTooFewJoints", "VERTEX_CONFIGURATION 9 0 0 0 0 0 0 0 0 1 0 0", "too few fields"},
+    {"VertexWithTooManyJoints", "VERTEX_CONFIGURATION 9 0 0 0 0 0 0 0 0 1 0 0 0 7",
+     "too many fields, from '7' on"},
+    {"VertexWithoutTime", "VERTEX_CONFIGURATION 9 0", "too few fields"},
+    {"VertexWithAZeroQuaternion", "VERTEX_CONFIGURATION 9 0 0 1 2 3 0 0 0 0 0 0 0",
+     "quaternion of length zero"},
+    {"VertexWithANaNJoint", "VERTEX_CONFIGURATION 9 0 0 0 0 0 0 0 0 1 0 nan 0",
+     "'nan' is not finite"},
+    {"VertexWithANaNTime", "VERTEX_CONFIGURATION 9 0 nan 0 0 0 0 0 0 1 0 0 0",
+     "'nan' is not finite"},
+    {"VertexWithAnInfinitePosition", "VERTEX_CONFIGURATION 9 0 0 inf 0 0 0 0 0 1 0 0 0",
+     "'inf' is not finite"},
+    {"VertexTwice", "VERTEX_CONFIGURATION 1 0 0 0 0 0 0 0 0 1 0 0 0", "declared twice"},
+    // PARAMS_ROBOT
+    {"RobotWithoutUrdf", "PARAMS_ROBOT 4 nowhere.urdf - floating 0", "nowhere.urdf"},
+    {"RobotWithoutSrdf", "PARAMS_ROBOT 4 cart.urdf nowhere.srdf floating 0", "nowhere.srdf"},
+    {"RobotWithAnUnknownBase", "PARAMS_ROBOT 4 cart.urdf - swimming 0",
+     "base 'swimming', expected 'floating' or 'fixed'"},
+    {"RobotWithAnUnknownActiveJoint", "PARAMS_ROBOT 4 cart.urdf - floating 1 leg", "leg"},
+    {"RobotWithFewerNamesThanAnnounced", "PARAMS_ROBOT 4 cart.urdf - floating 2 arm_joint",
+     "too few fields"},
+    {"RobotWithMoreNamesThanAnnounced", "PARAMS_ROBOT 4 cart.urdf - floating 0 arm_joint",
+     "'arm_joint', expected 'lenient', 'frozen' or the end of the line"},
+    {"RobotWithANegativeNumberOfNames", "PARAMS_ROBOT 4 cart.urdf - floating -1",
+     "number of active joints -1"},
+    {"RobotWithAnUnknownFrozenState", "PARAMS_ROBOT 4 cart.urdf cart.srdf floating 0 frozen asleep",
+     "asleep"},
+    {"RobotWhoseFrozenStateIsMissing", "PARAMS_ROBOT 4 cart.urdf cart.srdf floating 0 frozen",
+     "too few fields"},
+    {"RobotWithATakenNumber", "PARAMS_ROBOT 0 cart.urdf - floating 0",
+     "parameter 0 is given twice"},
+    // PARAMS_WHEELS
+    {"WheelsOfAnUnknownRobot", "PARAMS_WHEELS 4 8 1 wheel 0.1", "unknown parameter 8"},
+    {"WheelsOfAWorld", "PARAMS_WHEELS 4 2 1 wheel 0.1", "parameter 2 is a PARAMS_WORLD"},
+    {"WheelThatIsNoLink", "PARAMS_WHEELS 4 0 1 wheal 0.1", "wheal"},
+    {"WheelOfRadiusZero", "PARAMS_WHEELS 4 0 1 wheel 0", "a radius > 0 m"},
+    {"WheelOfNegativeRadius", "PARAMS_WHEELS 4 0 1 wheel -0.1", "a radius > 0 m"},
+    {"WheelOfNoRadius", "PARAMS_WHEELS 4 0 1 wheel nan", "'nan' is not finite"},
+    {"WheelOnAFixedJoint", "PARAMS_WHEELS 4 0 1 mast 0.1", "wheel mast cannot turn"},
+    {"WheelOnAPrismaticJoint", "PARAMS_WHEELS 4 0 1 lift 0.1", "wheel lift cannot turn"},
+    {"WheelThatIsTheBase", "PARAMS_WHEELS 4 0 1 base 0.1", "wheel base cannot turn"},
+    {"NoWheels", "PARAMS_WHEELS 4 0 0", "number of wheels 0"},
+    {"ANegativeNumberOfWheels", "PARAMS_WHEELS 4 0 -3", "number of wheels -3"},
+    {"FewerWheelsThanAnnounced", "PARAMS_WHEELS 4 0 2 wheel 0.1", "too few fields"},
+    {"MillionsOfWheelsAnnounced", "PARAMS_WHEELS 4 0 2000000000 wheel 0.1", "too few fields"},
+    // PARAMS_WORLD and PARAMS_SCENARIO
+    {"WorldWithoutItsMap", "PARAMS_WORLD 4 nowhere.bt -", "nowhere.bt"},
+    {"WorldWithoutItsObstacles", "PARAMS_WORLD 4 - nowhere.xml", "nowhere.xml"},
+    {"WorldWithOneFile", "PARAMS_WORLD 4 -", "too few fields"},
+    {"ScenarioWithoutName", "PARAMS_SCENARIO 4", "too few fields"},
+    // EDGE_JOINT_LIMITS
+    {"JointLimitsWithTooFewRows", "EDGE_JOINT_LIMITS 0 2 0.1 scalar 1",
+     "EDGE_JOINT_LIMITS with n = 2, expected n = 3"},
+    {"JointLimitsWithTooManyRows", "EDGE_JOINT_LIMITS 0 4000 0.1 scalar 1",
+     "EDGE_JOINT_LIMITS with n = 4000, expected n = 3"},
+    {"JointLimitsWithNoRows", "EDGE_JOINT_LIMITS 0 0 0.1 scalar 1", "error of size 0"},
+    {"JointLimitsWithScalarMisspelt", "EDGE_JOINT_LIMITS 0 3 0.1 scaler 1",
+     "weights begin with 'scaler', expected 'scalar' or 'diagonal'"},
+    {"JointLimitsWithDiagonalMisspelt", "EDGE_JOINT_LIMITS 0 3 0.1 diagonals 1 1 1",
+     "weights begin with 'diagonals'"},
+    {"JointLimitsWithANegativeWeight", "EDGE_JOINT_LIMITS 0 3 0.1 scalar -1", "a negative weight"},
+    {"JointLimitsWithANegativeWeightAmongOthers", "EDGE_JOINT_LIMITS 0 3 0.1 diagonal 1 -2 1",
+     "a negative weight"},
+    {"JointLimitsWithTooFewWeights", "EDGE_JOINT_LIMITS 0 3 0.1 diagonal 1 1", "too few fields"},
+    {"JointLimitsWithTooManyWeights", "EDGE_JOINT_LIMITS 0 3 0.1 scalar 1 1", "too many fields"},
+    {"JointLimitsWithANaNMargin", "EDGE_JOINT_LIMITS 0 3 nan scalar 1", "'nan' is not finite"},
+    {"JointLimitsOnAnUnknownVertex", "EDGE_JOINT_LIMITS 5 3 0.1 scalar 1", "unknown vertex 5"},
+    // EDGE_VELOCITY_LIMITS
+    {"VelocityLimitsWithoutTheRowsOfTheBase", "EDGE_VELOCITY_LIMITS 0 1 3 1 0.5 0.5 scalar 1",
+     "EDGE_VELOCITY_LIMITS with n = 3, expected n = 5"},
+    {"VelocityLimitsWithANaNWeight", "EDGE_VELOCITY_LIMITS 0 1 5 1 0.5 0.5 scalar nan",
+     "'nan' is not finite"},
+    {"VelocityLimitsFromAVertexToItself", "EDGE_VELOCITY_LIMITS 0 0 5 1 0.5 0.5 scalar 1",
+     "names vertex 0 twice"},
+    {"VelocityLimitsWithOneVertex", "EDGE_VELOCITY_LIMITS 0", "too few fields"},
+    // EDGE_OBSTACLE_DISTANCE
+    {"ObstacleDistanceInAnUnknownWorld", "EDGE_OBSTACLE_DISTANCE 0 3 6 0.1 scalar 1",
+     "unknown parameter 6"},
+    {"ObstacleDistanceInARobot", "EDGE_OBSTACLE_DISTANCE 0 3 0 0.1 scalar 1",
+     "parameter 0 is a PARAMS_ROBOT"},
+    {"ObstacleDistanceWithTooManyRows", "EDGE_OBSTACLE_DISTANCE 0 4 2 0.1 scalar 1",
+     "EDGE_OBSTACLE_DISTANCE with n = 4, expected n = 3"},
+    {"ObstacleDistanceWithTooFewRows", "EDGE_OBSTACLE_DISTANCE 0 1 2 0.1 scalar 1",
+     "EDGE_OBSTACLE_DISTANCE with n = 1, expected n = 3"},
+    {"ObstacleDistanceWithAMisspeltWord", "EDGE_OBSTACLE_DISTANCE 0 3 2 0.1 skalar 1",
+     "weights begin with 'skalar'"},
+    // EDGE_WHEEL_CONTACT and EDGE_ROLLING
+    {"WheelContactOfUnknownWheels", "EDGE_WHEEL_CONTACT 0 2 6 scalar 1", "unknown parameter 6"},
+    {"WheelContactOfAWorld", "EDGE_WHEEL_CONTACT 0 2 2 scalar 1", "parameter 2 is a PARAMS_WORLD"},
+    {"WheelContactWithTooFewRows", "EDGE_WHEEL_CONTACT 0 1 1 scalar 1",
+     "EDGE_WHEEL_CONTACT with n = 1, expected n = 2"},
+    {"WheelContactWithTooManyRows", "EDGE_WHEEL_CONTACT 0 8 1 scalar 1",
+     "EDGE_WHEEL_CONTACT with n = 8, expected n = 2"},
+    {"WheelContactWithANegativeWeight", "EDGE_WHEEL_CONTACT 0 2 1 diagonal 1 -1",
+     "a negative weight"},
+    {"RollingOfUnknownWheels", "EDGE_ROLLING 0 1 2 6 scalar 1", "unknown parameter 6"},
+    {"RollingWithTooFewRows", "EDGE_ROLLING 0 1 1 1 scalar 1",
+     "EDGE_ROLLING with n = 1, expected n = 2"},
+    {"RollingWithTooManyRows", "EDGE_ROLLING 0 1 3 1 scalar 1",
+     "EDGE_ROLLING with n = 3, expected n = 2"},
+    {"RollingWithAMisspeltWord", "EDGE_ROLLING 0 1 2 1 Diagonal 1 1",
+     "weights begin with 'Diagonal'"},
+    // EDGE_PLAN_TRACKING
+    {"PlanTrackingWithTooFewRows", "EDGE_PLAN_TRACKING 0 8 0 0 0 0 0 0 1 0 0 scalar 1",
+     "EDGE_PLAN_TRACKING with n = 8, expected n = 9"},
+    {"PlanTrackingWithTheReferenceOfAFixedBase",
+     "EDGE_PLAN_TRACKING 0 9 0 0 0 0 0 0 1 0 0 scalar 1",
+     "reference of EDGE_PLAN_TRACKING with n = 9, expected n = 10"},
+    {"PlanTrackingWithATruncatedReference", "EDGE_PLAN_TRACKING 0 9 0 0 0 0 0 0 1 0 scalar 1",
+     "'scalar' is not a number"},
+    {"PlanTrackingWithTooLongAReference", "EDGE_PLAN_TRACKING 0 9 0 0 0 0 0 0 1 0 0 0 5 scalar 1",
+     "weights begin with '5'"},
+    {"PlanTrackingWithAZeroQuaternion", "EDGE_PLAN_TRACKING 0 9 0 0 0 0 0 0 0 0 0 0 scalar 1",
+     "quaternion of length zero"},
+    {"PlanTrackingWithANaN", "EDGE_PLAN_TRACKING 0 9 0 0 0 0 0 0 1 nan 0 0 scalar 1",
+     "'nan' is not finite"},
+    {"PlanTrackingWithANaNAtTheEnd", "EDGE_PLAN_TRACKING 0 9 0 0 0 0 0 0 1 0 0 nan scalar 1",
+     "nan"},
+    {"PlanTrackingWithANegativeWeight", "EDGE_PLAN_TRACKING 0 9 0 0 0 0 0 0 1 0 0 0 scalar -1",
+     "a negative weight"},
+    // EDGE_VELOCITY_TRACKING
+    {"VelocityTrackingWithTooFewRows", "EDGE_VELOCITY_TRACKING 0 1 3 1 2 3 scalar 1",
+     "EDGE_VELOCITY_TRACKING with n = 3, expected n = 9"},
+    {"VelocityTrackingWithTooManyRows",
+     "EDGE_VELOCITY_TRACKING 0 1 10 1 2 3 4 5 6 7 8 9 10 scalar 1",
+     "EDGE_VELOCITY_TRACKING with n = 10, expected n = 9"},
+    {"VelocityTrackingWithATruncatedStep", "EDGE_VELOCITY_TRACKING 0 1 9 1 2 3 4 5 6 7 8 scalar 1",
+     "'scalar' is not a number"},
+    {"VelocityTrackingWithAMisspeltWord", "EDGE_VELOCITY_TRACKING 0 1 9 1 2 3 4 5 6 7 8 9 scalr 1",
+     "weights begin with 'scalr'"},
+};
+
+class BadInput : public testing::TestWithParam<BadLine> {
+ protected:
+  void SetUp() override {
+    folder.write("cart.urdf", kCartUrdf);
+    folder.write("cart.srdf", kCartSrdf);
+  }
+  TemporaryFolder folder;
+};
+
+TEST_P(BadInput, IsAnErrorWithFileAndLine) {
+  const std::filesystem::path plan = folder.write("plan.g2o", kGood);
+  ASSERT_NO_THROW(read_graph(plan, robot_types()));
+  folder.write("plan.g2o", std::string(kGood) + GetParam().text + "\n");
+  try {
+    read_graph(plan, robot_types());
+    FAIL() << "was read: " << GetParam().text;
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    EXPECT_NE(what.find(GetParam().message), std::string::npos) << what;
+    EXPECT_EQ(what.find(plan.string() + ":6: "), 0u) << what;
+    EXPECT_EQ(error.file(), plan.string());
+    EXPECT_EQ(error.line(), 6);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Plugins, BadInput, testing::ValuesIn(kBadLines),
+                         [](const testing::TestParamInfo<BadLine>& info) {
+                           return std::string(info.param.name);
+                         });
+
+TEST(BadFiles, NamedByAPlanAreBlamedThemselves) {
+  const TemporaryFolder folder;
+  folder.write("cart.urdf", kCartUrdf);
+  folder.write("broken.urdf", "<robot name=\"cart\">\n<link>\n</robot>\n");
+  folder.write("broken.srdf", "<robot name=\"cart\">\n<group_state group=\"all\"/>\n</robot>\n");
+  folder.write("broken.xml", "<obstacles version=\"1\">\n<box center=\"0 0 0\"/>\n</obstacles>\n");
+  folder.write("broken.bt", "no map\n");
+  const struct {
+    const char *line, *file;
+  } cases[] = {{"PARAMS_ROBOT 0 broken.urdf - fixed 0", "broken.urdf"},
+               {"PARAMS_ROBOT 0 cart.urdf broken.srdf fixed 0", "broken.srdf"},
+               {"PARAMS_WORLD 0 - broken.xml", "broken.xml"},
+               {"PARAMS_WORLD 0 broken.bt -", "broken.bt"}};
+  for (const auto& bad : cases) {
+    try {
+      read_graph(folder.write("plan.g2o", bad.line), robot_types());
+      FAIL() << "was read: " << bad.line;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.file(), folder.file(bad.file).string()) << error.what();
+      EXPECT_GT(error.line(), 0) << error.what();
+    }
+  }
+}
+
+TEST(GoodInput, OfEveryKindIsRead) {
+  const TemporaryFolder folder;
+  folder.write("cart.urdf", kCartUrdf);
+  folder.write("cart.srdf", kCartSrdf);
+  const std::filesystem::path plan =
+      folder.write("plan.g2o", std::string(kGood) +
+                                   "EDGE_JOINT_LIMITS 0 3 0.1 scalar 1\n"
+                                   "EDGE_VELOCITY_LIMITS 0 1 5 1 0.5 0.5 scalar 1\n"
+                                   "EDGE_OBSTACLE_DISTANCE 0 3 2 0.1 diagonal 1 2 3\n"
+                                   "EDGE_WHEEL_CONTACT 0 2 1 scalar 1\n"
+                                   "EDGE_ROLLING 0 1 2 1 scalar 1\n"
+                                   "EDGE_PLAN_TRACKING 0 9 0 0 0 0 0 0 2 0 0 -.5 scalar 1\n"
+                                   "EDGE_VELOCITY_TRACKING 0 1 9 1 2 3 4 5 6 7 8 9 scalar 0\n");
+  const Graph graph = read_graph(plan, robot_types());
+  EXPECT_EQ(graph.edge_count(), 7);
+  Eigen::VectorXd reference(10);
+  reference << 0, 0, 0, 0, 0, 0, 1, 0, 0, -0.5;
+  EXPECT_TRUE(graph.edges_of<EdgePlanTracking>()[0].reference == reference)
+      << "its quaternion is normalised";
+}
+
+/// Two robots in one graph: a cart with three joints, and one whose arm alone moves.
+class TwoRobots : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder.write("cart.urdf", kCartUrdf);
+    folder.write("cart.srdf", kCartSrdf);
+  }
+  void expect_refused(const std::string& edge, const std::string& message) {
+    const std::string text = std::string(kGood) +
+                             "PARAMS_ROBOT 4 cart.urdf - floating 1 arm_joint\n"
+                             "VERTEX_CONFIGURATION 2 4 0 0 0 0 0 0 0 1 0.1\n"
+                             "VERTEX_CONFIGURATION 3 4 1 0 0 0 0 0 0 1 0.1\n" +
+                             edge + "\n";
+    Graph graph = read_graph(folder.write("plan.g2o", text), robot_types());
+    Problem problem;
+    problem.compile(graph);
+    Workspace workspace;
+    try {
+      workspace.allocate(problem);
+      workspace.load_state();
+      workspace.evaluate(workspace.state());
+      FAIL() << "was evaluated: " << edge;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
+    }
+  }
+  TemporaryFolder folder;
+};
+
+TEST_F(TwoRobots, AreNotMixedUpByAnEdgeThatFitsTheOtherOne) {
+  expect_refused("EDGE_JOINT_LIMITS 2 3 0.1 scalar 1", "EDGE_JOINT_LIMITS with n = 3");
+  expect_refused("EDGE_JOINT_LIMITS 0 1 0.1 scalar 1", "EDGE_JOINT_LIMITS with n = 1");
+  expect_refused("EDGE_VELOCITY_LIMITS 2 3 5 1 0 0 scalar 1", "EDGE_VELOCITY_LIMITS with n = 5");
+  expect_refused("EDGE_PLAN_TRACKING 2 9 0 0 0 0 0 0 1 0 0 0 scalar 1",
+                 "EDGE_PLAN_TRACKING with n = 9");
+  expect_refused("EDGE_PLAN_TRACKING 0 7 0 0 0 0 0 0 1 0 scalar 1",
+                 "EDGE_PLAN_TRACKING with n = 7");
+  expect_refused("EDGE_VELOCITY_TRACKING 0 1 7 0 0 0 0 0 0 0 scalar 1",
+                 "EDGE_VELOCITY_TRACKING with n = 7");
+}
+
+TEST_F(TwoRobots, AreNotTiedTogether) {
+  const std::string message = "configurations of different robots";
+  expect_refused("EDGE_VELOCITY_LIMITS 0 2 5 1 0 0 scalar 1", message);
+  expect_refused("EDGE_VELOCITY_LIMITS 2 0 3 1 0 0 scalar 1", message);
+  expect_refused("EDGE_VELOCITY_TRACKING 0 2 9 0 0 0 0 0 0 0 0 0 scalar 1", message);
+  expect_refused("EDGE_ROLLING 0 2 2 1 scalar 1", message);
+}
+
+TEST_F(TwoRobots, KeepTheirOwnWheels) {
+  expect_refused("EDGE_WHEEL_CONTACT 2 2 1 scalar 1", "configurations of different robots");
+  expect_refused("EDGE_ROLLING 2 3 2 1 scalar 1", "configurations of different robots");
+}
+
+TEST(EdgesOnly, AreRefusedWhereNoVertexNamesARobot) {
+  const TemporaryFolder folder;
+  folder.write("cart.urdf", kCartUrdf);
+  const std::filesystem::path plan = folder.write(
+      "plan.g2o", "PARAMS_ROBOT 0 cart.urdf - floating 0\nEDGE_JOINT_LIMITS 0 3 0.1 scalar 1\n");
+  EXPECT_THROW(
+      {
+        Graph graph = read_graph(plan, robot_types());
+        Problem problem;
+        problem.compile(graph);
+        Workspace workspace;
+        workspace.allocate(problem);
+      },
+      Error);
+}
+
+TEST(EdgesInAGraph, AreRefusedWhenAddedWithTheWrongSize) {
+  const RobotCase robot = centauro_lower_body();
+  Graph graph = graph_of(robot);
+  graph.parameters().set(kWorld, std::make_shared<const WorldParameter>());
+  const auto a = add_configuration(graph, robot, 0, 0.0, home(robot));
+  const auto b = add_configuration(graph, robot, 1, 1.0, home(robot));
+  const Robot& model = robot.model();
+  const auto wrong = [](auto edge) {
+    edge.weights.setOnes(edge.weights.size() + 1);
+    return edge;
+  };
+  EXPECT_THROW(graph.add_edge(wrong(EdgeJointLimits(model, 0.1, 1.0)), a), Error);
+  EXPECT_THROW(graph.add_edge(wrong(EdgeObstacleDistance(*robot.robot, kWorld, 0.1, 1.0)), a),
+               Error);
+  EXPECT_THROW(graph.add_edge(wrong(EdgeWheelContact(*robot.wheels, kWheels, 1.0)), a), Error);
+  EXPECT_THROW(graph.add_edge(wrong(EdgePlanTracking(home(robot), Eigen::VectorXd::Ones(30))), a),
+               Error);
+  EXPECT_THROW(graph.add_edge(EdgePlanTracking(home(robot).head(30), Eigen::VectorXd::Ones(30)), a),
+               Error);
+  EXPECT_THROW(graph.add_edge(wrong(EdgeVelocityLimits(model, 1.0, 1.0, 1.0, 1.0)), a, b), Error);
+  EXPECT_THROW(graph.add_edge(wrong(EdgeRolling(*robot.wheels, kWheels, 1.0)), a, b), Error);
+  EXPECT_THROW(
+      graph.add_edge(EdgeVelocityTracking(Eigen::VectorXd::Zero(29), Eigen::VectorXd::Ones(30)), a,
+                     b),
+      Error);
+  EXPECT_EQ(graph.edge_count(), 0);
+  EXPECT_THROW(VertexConfiguration(kRobot, robot.robot, 0.0, home(robot).head(30)), Error);
+}
+
+}  // namespace
+}  // namespace locograph::test

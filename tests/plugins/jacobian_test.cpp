@@ -1,0 +1,388 @@
+#include "plugins/plugin_test_support.h"
+
+namespace locograph::test {
+namespace {
+
+constexpr int kStates = 120;
+constexpr double kTolerance = 1e-6;
+/// Numeric differences reach 6e-6 rad or m to either side, times an arm of a metre or two.
+constexpr double kKink = 1e-4;
+
+/// What was compared: rows with and without derivatives.
+struct Compared {
+  int rows = 0, nonzero = 0, zero = 0;
+};
+
+/// Compares the analytic Jacobian of edge k with numeric differences, in the rows that are smooth.
+template <class Smooth>
+void compare(Evaluated& evaluated, int k, int slot, Smooth smooth, Compared& compared) {
+  const Eigen::MatrixXd analytic = evaluated.jacobian(k, slot, false);
+  const Eigen::MatrixXd numeric = evaluated.jacobian(k, slot, true);
+  ASSERT_EQ(analytic.rows(), numeric.rows());
+  ASSERT_EQ(analytic.cols(), numeric.cols());
+  ASSERT_TRUE(analytic.allFinite());
+  for (int r = 0; r < analytic.rows(); ++r) {
+    if (!smooth(r)) continue;
+    const double scale = std::max(1.0, numeric.row(r).cwiseAbs().maxCoeff());
+    ASSERT_LE((analytic.row(r) - numeric.row(r)).cwiseAbs().maxCoeff(), kTolerance * scale)
+        << "edge " << k << ", slot " << slot << ", row " << r << "\nanalytic " << analytic.row(r)
+        << "\nnumeric  " << numeric.row(r);
+    ++compared.rows;
+    ++(analytic.row(r).isZero(0.0) ? compared.zero : compared.nonzero);
+  }
+}
+
+constexpr auto kEverywhere = [](int) { return true; };
+
+class JacobianOf : public testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    if (!available(GetParam())) GTEST_SKIP() << go2_urdf() << " is not on this machine";
+    robot = robot_case(GetParam());
+  }
+  /// Vertices in pairs 0-1, 2-3, …: the second is `step` away from the first.
+  std::vector<VertexId<VertexConfiguration>> pairs(Graph& graph, Random& random, double linear,
+                                                   double angular, double joint, double dt_s) {
+    std::vector<VertexId<VertexConfiguration>> ids;
+    const Robot& model = robot.model();
+    Eigen::VectorXd to(model.configuration_size());
+    for (int i = 0; i < kStates; ++i) {
+      const Eigen::VectorXd from = random.configuration(model, 2.0, 0.0);
+      Eigen::VectorXd step = random.vector(model.tangent_size(), joint);
+      if (model.floating_base()) {
+        step.head<3>() = random.uniform(0.0, linear) * random.direction();
+        step.segment<3>(3) = random.uniform(0.0, angular) * random.direction();
+      }
+      model.integrate(from.data(), step.data(), to.data());
+      ids.push_back(add_configuration(graph, robot, 2 * i, 1.0, from));
+      ids.push_back(add_configuration(graph, robot, 2 * i + 1, 1.0 + dt_s, to));
+    }
+    return ids;
+  }
+  template <class E>
+  void compare_pairs(const E& edge, double linear, double angular, double joint) {
+    Random random(3);
+    Graph graph = graph_of(robot);
+    const auto ids = pairs(graph, random, linear, angular, joint, 0.5);
+    for (int i = 0; i < kStates; ++i) graph.add_edge(edge, ids[2 * i], ids[2 * i + 1]);
+    Evaluated evaluated(graph);
+    Compared compared;
+    for (int k = 0; k < kStates; ++k) {
+      for (const int slot : {0, 1}) compare(evaluated, k, slot, kEverywhere, compared);
+    }
+    EXPECT_EQ(compared.rows, 2 * kStates * edge.dimension());
+    EXPECT_EQ(compared.zero, 0);
+  }
+
+  RobotCase robot;
+};
+
+TEST_P(JacobianOf, JointLimitsIsThatOfNumericDifferences) {
+  Random random(1);
+  const Robot& model = robot.model();
+  Graph graph = graph_of(robot);
+  // The second margin is wider than half the range of most joints: both limits are violated at
+  // once, and the worse one counts.
+  const double margins[] = {0.1, 2.5};
+  for (int i = 0; i < kStates; ++i) {
+    const double margin = margins[i % 2];
+    Eigen::VectorXd q = random.configuration(model, 2.0, 0.4);
+    for (int j = 0; j < model.active_joint_count(); ++j) {
+      const Joint& joint = model.active_joint(j);
+      const double kinks[] = {joint.lower + margin, joint.upper - margin,
+                              0.5 * (joint.lower + joint.upper)};
+      double& position = q[model.base_configuration_size() + j];
+      for (const double kink : kinks) {
+        if (std::abs(position - kink) < kKink) position = kink + 2.0 * kKink;
+      }
+    }
+    graph.add_edge(EdgeJointLimits(model, margin, 1.0), add_configuration(graph, robot, i, 0.0, q));
+  }
+  Evaluated evaluated(graph);
+  Compared compared;
+  for (int k = 0; k < kStates; ++k) compare(evaluated, k, 0, kEverywhere, compared);
+  EXPECT_GT(compared.nonzero, compared.rows / 10);
+  EXPECT_GT(compared.zero, compared.rows / 10);
+}
+
+TEST_P(JacobianOf, VelocityLimitsIsThatOfNumericDifferences) {
+  Random random(2);
+  const Robot& model = robot.model();
+  constexpr double kDt = 0.2, kFraction = 0.9, kLinear = 1.0, kAngular = 2.0;
+  Graph graph = graph_of(robot);
+  for (int i = 0; i < kStates; ++i) {
+    const Eigen::VectorXd from = random.configuration(model, 2.0, 0.0);
+    Eigen::VectorXd step(model.tangent_size()), to(model.configuration_size());
+    // Zero to twice the limit, off the limit itself.
+    const auto away = [&](double limit) {
+      const double size = random.uniform(kKink, 2.0 * limit);
+      return std::abs(size - limit) < kKink ? limit + 2.0 * kKink : size;
+    };
+    if (model.floating_base()) {
+      step.head<3>() = away(kLinear * kDt) * random.direction();
+      step.segment<3>(3) = away(kAngular * kDt) * random.direction();
+    }
+    for (int j = 0; j < model.active_joint_count(); ++j) {
+      step[model.base_tangent_size() + j] =
+          random.sign() * away(kFraction * model.active_joint(j).max_velocity * kDt);
+    }
+    model.integrate(from.data(), step.data(), to.data());
+    const auto a = add_configuration(graph, robot, 2 * i, 3.0, from);
+    const auto b = add_configuration(graph, robot, 2 * i + 1, 3.0 + kDt, to);
+    graph.add_edge(EdgeVelocityLimits(model, kFraction, kLinear, kAngular, 1.0), a, b);
+  }
+  Evaluated evaluated(graph);
+  Compared compared;
+  for (int k = 0; k < kStates; ++k) {
+    for (const int slot : {0, 1}) compare(evaluated, k, slot, kEverywhere, compared);
+  }
+  EXPECT_GT(compared.nonzero, compared.rows / 3);
+  EXPECT_GT(compared.zero, compared.rows / 3);
+}
+
+TEST_P(JacobianOf, PlanTrackingIsThatOfNumericDifferences) {
+  Random random(4);
+  const Robot& model = robot.model();
+  Graph graph = graph_of(robot);
+  for (int i = 0; i < kStates; ++i) {
+    const Eigen::VectorXd reference = random.configuration(model, 2.0, 0.0);
+    Eigen::VectorXd step = random.vector(model.tangent_size(), 1.0), q(reference.size());
+    if (model.floating_base()) {
+      // From hardly turned to nearly half a turn, where the logarithm still is smooth.
+      const double angle = i % 3 == 0 ? 1e-6 : i % 3 == 1 ? random.uniform(0.0, 1.0) : 3.1;
+      step.segment<3>(3) = angle * random.direction();
+    }
+    model.integrate(reference.data(), step.data(), q.data());
+    graph.add_edge(EdgePlanTracking(reference, Eigen::VectorXd::Ones(model.tangent_size())),
+                   add_configuration(graph, robot, i, 0.0, q));
+  }
+  Evaluated evaluated(graph);
+  Compared compared;
+  for (int k = 0; k < kStates; ++k) compare(evaluated, k, 0, kEverywhere, compared);
+  EXPECT_EQ(compared.rows, kStates * model.tangent_size());
+  EXPECT_EQ(compared.zero, 0);
+}
+
+TEST_P(JacobianOf, VelocityTrackingIsThatOfNumericDifferences) {
+  Random random(5);
+  const int n = robot.model().tangent_size();
+  compare_pairs(EdgeVelocityTracking(random.vector(n, 0.3), Eigen::VectorXd::Ones(n)), 1.0, 3.0,
+                0.5);
+}
+
+class WheelJacobianOf : public JacobianOf {};
+
+TEST_P(WheelJacobianOf, WheelContactIsThatOfNumericDifferences) {
+  Random random(6);
+  Graph graph = graph_of(robot);
+  for (int i = 0; i < kStates; ++i) {
+    graph.add_edge(
+        EdgeWheelContact(*robot.wheels, kWheels, 1.0),
+        add_configuration(graph, robot, i, 0.0, random.configuration(robot.model(), 2.0, 0.0)));
+  }
+  Evaluated evaluated(graph);
+  Compared compared;
+  for (int k = 0; k < kStates; ++k) compare(evaluated, k, 0, kEverywhere, compared);
+  EXPECT_EQ(compared.rows, kStates * 8);
+  EXPECT_EQ(compared.zero, 0);
+}
+
+TEST_P(WheelJacobianOf, RollingIsThatOfNumericDifferences) {
+  compare_pairs(EdgeRolling(*robot.wheels, kWheels, 1.0), 0.5, 0.8, 0.4);
+}
+
+/// Distance from a kink of the distance to an obstacle: where another of its faces or edges becomes
+/// the nearest. (On some of these only the curvature jumps; differences notice that, too.)
+double kink_distance(const Obstacle& obstacle, const Eigen::Vector3d& point, double time_s) {
+  const Eigen::Vector3d local = obstacle.pose_at(time_s).inverse() * point;
+  switch (obstacle.shape) {
+    case Obstacle::Shape::kSphere:
+      return local.norm();
+    case Obstacle::Shape::kBox: {
+      Eigen::Vector3d excess = local.cwiseAbs() - 0.5 * obstacle.size;
+      double nearest = std::min(excess.cwiseAbs().minCoeff(), local.cwiseAbs().minCoeff());
+      std::sort(excess.data(), excess.data() + 3);
+      return std::min({nearest, excess[2] - excess[1]});
+    }
+    case Obstacle::Shape::kCylinder: {
+      const double rho = std::hypot(local.x(), local.y());
+      const double radial = rho - obstacle.size[0];
+      const double axial = std::abs(local.z()) - 0.5 * obstacle.size[1];
+      return std::min(
+          {rho, std::abs(local.z()), std::abs(radial), std::abs(axial), std::abs(radial - axial)});
+    }
+  }
+  return 0.0;
+}
+
+double kink_distance(const DistanceField& field, const Eigen::Vector3d& point) {
+  double nearest = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cell = (point[axis] - field.lower()[axis]) / field.resolution();
+    nearest = std::min(nearest, std::abs(cell - std::round(cell)) * field.resolution());
+  }
+  return nearest;
+}
+
+void compare_distances(const RobotCase& robot, const WorldDistance& now, unsigned seed) {
+  constexpr double kMargin = 0.15;
+  Random random(seed);
+  Graph graph = graph_of(robot);
+  auto world = std::make_shared<WorldParameter>();
+  world->now = now;
+  graph.parameters().set(kWorld, world);
+  std::vector<ConfigurationState> states;
+  for (int i = 0; i < kStates; ++i) {
+    const double time_s = random.uniform(-1.0, 12.0);
+    const Eigen::VectorXd q = random.configuration(robot.model(), 1.0, 0.0);
+    graph.add_edge(EdgeObstacleDistance(*robot.robot, kWorld, kMargin, 1.0),
+                   add_configuration(graph, robot, i, time_s, q));
+    states.emplace_back(robot.robot);
+    states.back().time_s = time_s;
+    states.back().update(q.data());
+  }
+  Evaluated evaluated(graph);
+  Compared compared;
+  for (int k = 0; k < kStates; ++k) {
+    const ConfigurationState& state = states[k];
+    const auto smooth = [&](int row) {
+      const Eigen::Vector3d& centre = state.sphere_centres[row];
+      std::vector<double> distances = {now.max_distance()};
+      if (now.map) {
+        if (kink_distance(*now.map, centre) < kKink) return false;
+        distances.push_back(now.map->distance(centre));
+      }
+      for (const Obstacle& obstacle : now.obstacles) {
+        if (kink_distance(obstacle, centre, state.time_s) < 0.01) return false;
+        distances.push_back(obstacle.distance(centre, state.time_s));
+      }
+      std::sort(distances.begin(), distances.end());
+      const double hinge = kMargin + robot.robot->spheres[row].radius - distances[0];
+      return distances[1] - distances[0] > kKink && std::abs(hinge) > kKink;
+    };
+    compare(evaluated, k, 0, smooth, compared);
+  }
+  const int all = kStates * static_cast<int>(robot.robot->spheres.size());
+  EXPECT_GT(compared.rows, all / 2);
+  EXPECT_GT(compared.nonzero, 500);
+  EXPECT_GT(compared.zero, 500);
+}
+
+TEST_P(JacobianOf, DistanceToPrimitivesIsThatOfNumericDifferences) {
+  WorldDistance now;
+  now.obstacles = some_obstacles();
+  compare_distances(robot, now, 7);
+}
+
+TEST_P(JacobianOf, DistanceToAMapIsThatOfNumericDifferences) {
+  WorldDistance now;
+  now.map = std::make_shared<const DistanceField>(DistanceField::from_octree(*some_map(false)));
+  compare_distances(robot, now, 8);
+}
+
+TEST_P(JacobianOf, DistanceToAMapAndPrimitivesIsThatOfNumericDifferences) {
+  WorldDistance now;
+  now.map = std::make_shared<const DistanceField>(DistanceField::from_octree(*some_map(false)));
+  now.obstacles = some_obstacles();
+  compare_distances(robot, now, 9);
+}
+
+const auto name_of = [](const testing::TestParamInfo<std::string>& info) { return info.param; };
+INSTANTIATE_TEST_SUITE_P(Plugins, JacobianOf, testing::ValuesIn(all_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(Plugins, WheelJacobianOf, testing::ValuesIn(wheeled_cases()), name_of);
+
+TEST(HingeGradient, DoesNotVanishJustBeyondAJointLimit) {
+  const RobotCase robot = centauro_lower_body();
+  const Robot& model = robot.model();
+  constexpr double kMargin = 0.05, kBeyond = 1e-9;
+  Graph graph = graph_of(robot);
+  for (int side = 0; side < 2; ++side) {
+    Eigen::VectorXd q = home(robot);
+    for (int i = 0; i < model.active_joint_count(); ++i) {
+      const Joint& joint = model.active_joint(i);
+      if (joint.type == JointType::kContinuous) continue;
+      q[robot.base() + i] =
+          side == 0 ? joint.lower + kMargin - kBeyond : joint.upper - kMargin + kBeyond;
+    }
+    graph.add_edge(EdgeJointLimits(model, kMargin, 1.0),
+                   add_configuration(graph, robot, side, 0.0, q));
+  }
+  Evaluated evaluated(graph);
+  for (int side = 0; side < 2; ++side) {
+    const Eigen::VectorXd e = evaluated.error(side);
+    const Eigen::MatrixXd j = evaluated.jacobian(side, 0, false);
+    for (int i = 0; i < model.active_joint_count(); ++i) {
+      const bool limited = model.active_joint(i).type != JointType::kContinuous;
+      EXPECT_NEAR(e[i], limited ? kBeyond : 0.0, 1e-15);
+      EXPECT_EQ(j(i, model.base_tangent_size() + i), !limited ? 0.0 : side == 0 ? -1.0 : 1.0);
+    }
+  }
+}
+
+TEST(HingeGradient, DoesNotVanishJustBeyondAVelocityLimit) {
+  const RobotCase robot = centauro_lower_body();
+  const Robot& model = robot.model();
+  constexpr double kDt = 0.1, kBeyond = 1e-9;
+  Eigen::VectorXd step(model.tangent_size()), to(model.configuration_size());
+  step.head<6>() << 0.6 * (0.05 + kBeyond), 0.8 * (0.05 + kBeyond), 0.0, 0.0, 0.0, 0.1 + kBeyond;
+  for (int i = 0; i < model.active_joint_count(); ++i) {
+    step[6 + i] = (i % 2 == 0 ? 1.0 : -1.0) * (model.active_joint(i).max_velocity * kDt + kBeyond);
+  }
+  const Eigen::VectorXd from = home(robot);
+  model.integrate(from.data(), step.data(), to.data());
+  Graph graph = graph_of(robot);
+  const auto a = add_configuration(graph, robot, 0, 0.0, from);
+  const auto b = add_configuration(graph, robot, 1, kDt, to);
+  graph.add_edge(EdgeVelocityLimits(model, 1.0, 0.5, 1.0, 1.0), a, b);
+  Evaluated evaluated(graph);
+  const Eigen::VectorXd e = evaluated.error(0);
+  for (int r = 0; r < e.size(); ++r) EXPECT_NEAR(e[r], kBeyond, 1e-14) << r;
+  for (const int slot : {0, 1}) {
+    const Eigen::MatrixXd j = evaluated.jacobian(0, slot, false);
+    for (int r = 0; r < e.size(); ++r) EXPECT_NEAR(j.row(r).norm(), 1.0, 1e-12) << r;
+  }
+}
+
+TEST(HingeGradient, DoesNotVanishJustInsideTheMarginOfAnObstacle) {
+  const RobotCase robot = centauro_lower_body();
+  constexpr double kMargin = 0.05, kBeyond = 1e-9;
+  ConfigurationState state(robot.robot);
+  state.update(home(robot).data());
+  Graph graph = graph_of(robot);
+  auto world = std::make_shared<WorldParameter>();
+  world->now.obstacles.resize(1);
+  Obstacle& ball = world->now.obstacles[0];
+  ball.shape = Obstacle::Shape::kSphere;
+  ball.size << 0.2, 0.0, 0.0;
+  ball.world_from_obstacle.translation() =
+      state.sphere_centres[0] +
+      (0.2 + kMargin + robot.robot->spheres[0].radius - kBeyond) * Eigen::Vector3d::UnitX();
+  graph.parameters().set(kWorld, world);
+  graph.add_edge(EdgeObstacleDistance(*robot.robot, kWorld, kMargin, 1.0),
+                 add_configuration(graph, robot, 0, 0.0, home(robot)));
+  Evaluated evaluated(graph);
+  EXPECT_NEAR(evaluated.error(0)[0], kBeyond, 1e-14);
+  EXPECT_NEAR(evaluated.jacobian(0, 0, false)(0, 0), 1.0, 1e-12);
+}
+
+TEST(WheelLyingFlat, HasFiniteJacobians) {
+  const RobotCase robot = centauro_lower_body();
+  Eigen::VectorXd q = home(robot);
+  // The axles point along y at home: a quarter turn about x stands them upright.
+  const Eigen::Quaterniond flat(Eigen::AngleAxisd(0.5 * EIGEN_PI, Eigen::Vector3d::UnitX()));
+  q.segment<4>(3) = flat.coeffs();
+  Graph graph = graph_of(robot);
+  const auto a = add_configuration(graph, robot, 0, 0.0, q);
+  const auto b = add_configuration(graph, robot, 1, 1.0, q);
+  graph.add_edge(EdgeRolling(*robot.wheels, kWheels, 1.0), a, b);
+  graph.add_edge(EdgeWheelContact(*robot.wheels, kWheels, 1.0), a);
+  Evaluated evaluated(graph);
+  EXPECT_TRUE(evaluated.error(0, 0).allFinite());
+  EXPECT_TRUE(evaluated.jacobian(0, 0, false, 0).allFinite());
+  EXPECT_TRUE(evaluated.jacobian(0, 1, false, 0).allFinite());
+  EXPECT_TRUE(evaluated.error(0, 1).allFinite());
+  EXPECT_TRUE(evaluated.jacobian(0, 0, false, 1).allFinite());
+}
+
+}  // namespace
+}  // namespace locograph::test

@@ -1,0 +1,70 @@
+#pragma once
+/// Exact distances between a robot's collision shapes, the voxels of a map, primitive obstacles and
+/// the robot itself, for checkers.
+///
+///     locograph::CollisionWorld world(robot, locograph::load_octree("hall.bt"), obstacles);
+///     locograph::CollisionWorld::Closest c = world.environment_distance(world_from_link, time_s);
+///     if (c.distance_m < 0.01) report(robot.links()[c.link].name, c.what);
+///
+/// Distances of spheres and capsules to each other and to boxes (voxels too) are closed forms; the
+/// others are certified to 1e-5 m, see convex_shape.h. A mesh (STL) counts as its convex hull, and
+/// a missing one is an error. world_from_link has one pose per link of the robot, in the robot's
+/// order. Lengths in metres, world frame. The constructor copies what it needs of the robot, the
+/// map and the obstacles: later changes to them are not seen. Const members are thread-safe. Throws
+/// Error when the number of poses is not the number of links.
+
+#include <locograph/world/obstacles.h>
+#include <octomap/OcTree.h>
+
+#include <Eigen/Geometry>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace locograph {
+
+class Robot;
+
+struct CollisionWorldOptions {
+  /// Distances are computed up to here; a Closest with nothing nearer has this distance, link -1.
+  double cutoff_m = 0.5;
+  /// Links that may touch the floor: for them, voxels whose top is at or below floor_z_m + 1e-6 do
+  /// not count.
+  std::vector<int> ignore_floor_links;
+  double floor_z_m = 0.0;
+};
+
+class CollisionWorld {
+ public:
+  /// What is nearest. On penetration distance_m is minus the depth: the largest depth of one shape
+  /// in one voxel or obstacle.
+  struct Closest {
+    double distance_m = 0.0;
+    int link = -1;        ///< index of the robot's link
+    int other_link = -1;  ///< self_distance: the other link
+    std::string what;     ///< "voxel", the obstacle's name, or the other link's name
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< on the link's shape, nearest to the other
+  };
+
+  /// tree may be null: obstacles only.
+  CollisionWorld(const Robot& robot, std::shared_ptr<const octomap::OcTree> tree,
+                 std::vector<Obstacle> obstacles, const CollisionWorldOptions& options = {});
+  ~CollisionWorld();
+  CollisionWorld(CollisionWorld&&) noexcept;
+  CollisionWorld& operator=(CollisionWorld&&) noexcept;
+
+  /// Returns early with the first distance below stop_below, if there is one.
+  Closest environment_distance(std::span<const Eigen::Isometry3d> world_from_link, double time_s,
+                               double stop_below = -std::numeric_limits<double>::infinity()) const;
+
+  /// Over the pairs of links of Robot::self_collision_pairs().
+  Closest self_distance(std::span<const Eigen::Isometry3d> world_from_link) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace locograph

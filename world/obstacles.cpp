@@ -1,0 +1,134 @@
+#include <locograph/common/error.h>
+#include <locograph/world/obstacles.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace locograph {
+namespace {
+
+Eigen::Isometry3d interpolate(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to,
+                              double fraction) {
+  if (fraction <= 0.0) return from;
+  if (fraction >= 1.0) return to;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = from.translation() + fraction * (to.translation() - from.translation());
+  const Eigen::Quaterniond start(from.linear()), end(to.linear());
+  pose.linear() = start.slerp(fraction, end).toRotationMatrix();
+  return pose;
+}
+
+// Distances below are the usual closed forms for a box, a sphere and a cylinder centred at the
+// origin: outside, the norm of the componentwise excess; inside, the nearest face.
+
+DistanceSample box_sample(const Eigen::Vector3d& p, const Eigen::Vector3d& half) {
+  const Eigen::Vector3d excess = p.cwiseAbs() - half;
+  const Eigen::Vector3d sign(p.x() < 0 ? -1 : 1, p.y() < 0 ? -1 : 1, p.z() < 0 ? -1 : 1);
+  DistanceSample sample;
+  const Eigen::Vector3d outside = excess.cwiseMax(0.0);
+  const double norm = outside.norm();
+  if (norm > 0.0) {
+    sample.distance = norm;
+    sample.gradient = outside.cwiseProduct(sign) / norm;
+    return sample;
+  }
+  int axis = 0;
+  sample.distance = excess.maxCoeff(&axis);
+  sample.gradient[axis] = sign[axis];
+  return sample;
+}
+
+DistanceSample sphere_sample(const Eigen::Vector3d& p, double radius) {
+  const double norm = p.norm();
+  DistanceSample sample;
+  sample.distance = norm - radius;
+  sample.gradient = norm > 0.0 ? Eigen::Vector3d(p / norm) : Eigen::Vector3d::UnitZ();
+  return sample;
+}
+
+DistanceSample cylinder_sample(const Eigen::Vector3d& p, double radius, double half_height) {
+  const double rho = std::hypot(p.x(), p.y());
+  const Eigen::Vector3d radial =
+      rho > 0.0 ? Eigen::Vector3d(p.x() / rho, p.y() / rho, 0.0) : Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d axial(0.0, 0.0, p.z() < 0 ? -1.0 : 1.0);
+  const double radial_excess = rho - radius, axial_excess = std::abs(p.z()) - half_height;
+  DistanceSample sample;
+  if (radial_excess > 0.0 && axial_excess > 0.0) {
+    sample.distance = std::hypot(radial_excess, axial_excess);
+    sample.gradient = (radial_excess * radial + axial_excess * axial) / sample.distance;
+  } else if (radial_excess > axial_excess) {
+    sample.distance = radial_excess;
+    sample.gradient = radial;
+  } else {
+    sample.distance = axial_excess;
+    sample.gradient = axial;
+  }
+  return sample;
+}
+
+void require_pose(const Eigen::Isometry3d& pose, const std::string& owner) {
+  if (!pose.matrix().allFinite()) throw Error(owner + ": pose is not finite", "finite numbers");
+  const Eigen::Matrix3d rotation = pose.linear();
+  const Eigen::Matrix3d product = rotation * rotation.transpose();
+  if (!product.isIdentity(1e-6) || rotation.determinant() < 0.0)
+    throw Error(owner + ": orientation is not a rotation", "orthonormal axes, right-handed");
+}
+
+}  // namespace
+
+Eigen::Isometry3d Obstacle::pose_at(double time_s) const {
+  if (motion.empty() || time_s <= 0.0) return world_from_obstacle;
+  if (repeat_s > 0.0) time_s = std::fmod(time_s, repeat_s);
+  const KeyFrame start{0.0, world_from_obstacle};
+  const KeyFrame* before = &start;
+  for (const KeyFrame& after : motion) {
+    if (time_s < after.time_s)
+      return interpolate(before->pose, after.pose,
+                         (time_s - before->time_s) / (after.time_s - before->time_s));
+    before = &after;
+  }
+  if (repeat_s <= 0.0) return before->pose;
+  return interpolate(before->pose, world_from_obstacle,
+                     (time_s - before->time_s) / (repeat_s - before->time_s));
+}
+
+DistanceSample Obstacle::sample(const Eigen::Vector3d& point, double time_s) const {
+  const Eigen::Isometry3d pose = pose_at(time_s);
+  const Eigen::Vector3d local = pose.linear().transpose() * (point - pose.translation());
+  DistanceSample result;
+  switch (shape) {
+    case Shape::kBox:
+      result = box_sample(local, 0.5 * size);
+      break;
+    case Shape::kSphere:
+      result = sphere_sample(local, size[0]);
+      break;
+    case Shape::kCylinder:
+      result = cylinder_sample(local, size[0], 0.5 * size[1]);
+      break;
+  }
+  result.gradient = pose.linear() * result.gradient;
+  return result;
+}
+
+void Obstacle::validate() const {
+  const std::string owner = name.empty() ? "obstacle" : "obstacle '" + name + "'";
+  const int sizes = shape == Shape::kBox ? 3 : shape == Shape::kSphere ? 1 : 2;
+  for (int i = 0; i < sizes; ++i)
+    if (!std::isfinite(size[i]) || size[i] <= 0.0)
+      throw Error(owner + ": size " + std::to_string(size[i]), "a positive number of metres");
+  require_pose(world_from_obstacle, owner);
+  double last = 0.0;
+  for (const KeyFrame& frame : motion) {
+    require_pose(frame.pose, owner);
+    if (!std::isfinite(frame.time_s) || frame.time_s <= last)
+      throw Error(owner + ": key frame at " + std::to_string(frame.time_s) + " s",
+                  "a time after " + std::to_string(last) + " s");
+    last = frame.time_s;
+  }
+  if (repeat_s != 0.0 && (!std::isfinite(repeat_s) || repeat_s <= last || motion.empty()))
+    throw Error(owner + ": period " + std::to_string(repeat_s) + " s",
+                "key frames and a period longer than the last time");
+}
+
+}  // namespace locograph
