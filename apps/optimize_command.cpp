@@ -53,6 +53,9 @@ Graph load(const OptimizeOptions& options, ReadReport& report) {
   } else {
     graph = read_graph(options.input, graph_types(), read, &report);
   }
+  if (graph.vertex_count() == 0) {
+    throw Error(options.input_name(), 0, "holds no vertex of a known type", "VERTEX_… lines");
+  }
   for (const std::string& unknown : report.unknown) print_warning(unknown + ": line left out");
   if (report.indefinite_information > 0) {
     print_warning(options.input_name() + ":" + std::to_string(report.first_indefinite_line) +

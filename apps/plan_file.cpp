@@ -2,7 +2,15 @@
 #include <locograph/apps/plan_file.h>
 #include <locograph/world/octree.h>
 
+#include <algorithm>
+
 namespace locograph {
+namespace {
+
+/// How far from the plan the map still matters [m].
+constexpr double kFieldMargin_m = 2.5;
+
+}  // namespace
 
 PlanFile load_plan(const std::string& file) {
   PlanFile result;
@@ -28,6 +36,25 @@ LoadedWorld load_world(const WorldFiles& files) {
   if (!files.map.empty()) world.map = load_octree(files.map);
   if (!files.obstacles.empty()) world.obstacles = load_obstacles(files.obstacles);
   return world;
+}
+
+WorldDistance seen_world(const PlanFile& file, const LoadedWorld& world) {
+  WorldDistance result;
+  result.obstacles = world.obstacles;
+  if (!world.map) return result;
+  Eigen::AlignedBox3d box;
+  for (const int slot : file.plan.slots) {
+    box.extend(Eigen::Vector3d(Eigen::Map<const Eigen::Vector3d>(file.graph.state(slot))));
+  }
+  DistanceFieldOptions options;
+  options.lower = box.min().array() - kFieldMargin_m;
+  options.upper = box.max().array() + kFieldMargin_m;
+  options.lower->z() = std::min(box.min().z(), 0.0) - 0.5;
+  options.upper->z() = box.max().z() + 1.5;
+  options.ground_z = kGroundVoxelTop_m;
+  result.map =
+      std::make_shared<const DistanceField>(DistanceField::from_octree(*world.map, options));
+  return result;
 }
 
 CheckReport check_plan(const PlanFile& file, const LoadedWorld& world, CheckOptions options) {

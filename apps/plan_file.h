@@ -41,6 +41,10 @@ struct LoadedWorld {
 
 LoadedWorld load_world(const WorldFiles& files);
 
+/// The world as the local planner is shown it: exact obstacles, and the distance field of the map
+/// around the plan.
+WorldDistance seen_world(const PlanFile& file, const LoadedWorld& world);
+
 CheckReport check_plan(const PlanFile& file, const LoadedWorld& world, CheckOptions options = {});
 
 }  // namespace locograph

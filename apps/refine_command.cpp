@@ -20,28 +20,6 @@ struct CommandOptions {
   bool json = false;
 };
 
-/// How far from the plan the map still matters [m].
-constexpr double kFieldMargin_m = 2.5;
-
-WorldDistance distances(const PlanFile& file, const LoadedWorld& world) {
-  WorldDistance result;
-  result.obstacles = world.obstacles;
-  if (!world.map) return result;
-  Eigen::AlignedBox3d box;
-  for (const int slot : file.plan.slots) {
-    box.extend(Eigen::Vector3d(Eigen::Map<const Eigen::Vector3d>(file.graph.state(slot))));
-  }
-  DistanceFieldOptions options;
-  options.lower = box.min().array() - kFieldMargin_m;
-  options.upper = box.max().array() + kFieldMargin_m;
-  options.lower->z() = std::min(box.min().z(), 0.0) - 0.5;
-  options.upper->z() = box.max().z() + 1.5;
-  options.ground_z = kGroundVoxelTop_m;
-  result.map =
-      std::make_shared<const DistanceField>(DistanceField::from_octree(*world.map, options));
-  return result;
-}
-
 template <class F>
 Json over_cycles(const RefineReport& report, F&& figure) {
   std::vector<double> values;
@@ -62,7 +40,9 @@ Json phases_json(const RefineReport& report) {
 
 Json report_json(const RefineReport& report, const CommandOptions& options, double field_s) {
   int iterations = 0, detours = 0;
+  Json cycle_times = Json::array();
   for (const CycleReport& cycle : report.cycles) {
+    cycle_times.push_back(cycle.time_total);
     iterations += cycle.iterations;
     detours += cycle.detour ? 1 : 0;
   }
@@ -75,6 +55,7 @@ Json report_json(const RefineReport& report, const CommandOptions& options, doub
       {"configurations", report.configurations},
       {"feasible_cycles", report.feasible_cycles},
       {"deadline_misses", report.deadline_misses},
+      {"short_of_goal_m", report.short_of_goal_m},
       {"iterations", iterations},
       {"detours_searched", detours},
       {"cycle_time", over_cycles(report, [](const CycleReport& c) { return c.time_total; })},
@@ -82,6 +63,7 @@ Json report_json(const RefineReport& report, const CommandOptions& options, doub
       {"map_update_time", statistics_json(report.map_update_s)},
       {"phases", phases_json(report)},
       {"distance_field_s", field_s},
+      {"cycle_times", std::move(cycle_times)},
   };
 }
 
@@ -95,7 +77,7 @@ ExitCode refine_plan(const CommandOptions& options) {
   const WorldFiles files = world_of(file, options.map, options.obstacles);
   const LoadedWorld world = load_world(files);
   const Stopwatch watch;
-  const WorldDistance seen = distances(file, world);
+  const WorldDistance seen = seen_world(file, world);
   const double field_s = watch.seconds();
   if (!file.plan.world) throw Error(file.name, 0, "the plan has no world", "a PARAMS_WORLD line");
   // From now on this is the plan's world: the file that is written needs nothing else.

@@ -17,19 +17,19 @@ struct FixedKernel {
   typedef double Column __attribute__((vector_size(LD * sizeof(double))));
   static_assert(sizeof(Column) == LD * sizeof(double));
 
-  static Column load(const double* from) {
-    Column column;
+  // By reference: a vector that is returned would depend on the flags this file is compiled with.
+  static void load(Column& column, const double* from) {
     std::memcpy(&column, from, sizeof column);
-    return column;
   }
   static void store(double* to, const Column& column) { std::memcpy(to, &column, sizeof column); }
 
   // C −= A Bᵀ
   void subtract_product(double* c, const double* a, const double* b, int, int, int) const {
     Column left[N];
-    for (int k = 0; k < N; ++k) left[k] = load(a + k * LD);
+    for (int k = 0; k < N; ++k) load(left[k], a + k * LD);
     for (int j = 0; j < N; ++j) {
-      Column target = load(c + j * LD);
+      Column target;
+      load(target, c + j * LD);
       for (int k = 0; k < N; ++k) target -= left[k] * b[k * LD + j];
       store(c + j * LD, target);
     }
@@ -50,7 +50,8 @@ struct FixedKernel {
   void divide(double* x, const double* l, int, int) const {
     Column columns[N];
     for (int j = 0; j < N; ++j) {
-      Column target = load(x + j * LD);
+      Column target;
+      load(target, x + j * LD);
       for (int k = 0; k < j; ++k) target -= columns[k] * l[k * LD + j];
       columns[j] = target / l[j * LD + j];
       store(x + j * LD, columns[j]);

@@ -10,7 +10,8 @@
 /// each of its configurations. Dynamic programming over (offset, change of offset) finds the
 /// offsets that minimise
 ///     Σ w_lateral o² + w_step (Δo)² + w_turn (Δ²o)² + w_obstacle Σ_spheres max(0, margin + r − d)²
-/// on a grid: the global optimum of that one-dimensional problem, left and right alike.
+/// on a grid, Δ²o at most one grid step: the global optimum of that one-dimensional problem, left
+/// and right alike.
 
 #include <locograph/planners/plan/plan.h>
 #include <locograph/robots/robot_state.h>

@@ -57,6 +57,11 @@ Eigen::Map<Eigen::VectorXd> LocalPlanner::configuration(int index) {
   return {graph_.state(slot), graph_.state_size(slot)};
 }
 
+Eigen::Map<const Eigen::VectorXd> LocalPlanner::configuration(int index) const {
+  const int slot = plan_.slots[index];
+  return {std::as_const(graph_).state(slot), graph_.state_size(slot)};
+}
+
 void LocalPlanner::show(const WorldDistance& world) { plan_.world->now = world; }
 
 /// Configurations new to the window: as planned, moved along with the one before them.
@@ -100,11 +105,9 @@ LocalPlanner::Attempt LocalPlanner::optimise(CycleReport& report, const Deadline
   return attempt;
 }
 
-/// How far the end of the window is behind its place in the plan, along the plan's heading.
-double LocalPlanner::lag(int last) {
-  workspace_.store_state();
-  const Eigen::Vector3d behind = planned_[last].head<3>() - configuration(last).head<3>();
-  const Eigen::Vector3d left = DetourSearch::left(planned_[last].data());
+double LocalPlanner::behind_m(int index) const {
+  const Eigen::Vector3d behind = planned_[index].head<3>() - configuration(index).head<3>();
+  const Eigen::Vector3d left = DetourSearch::left(planned_[index].data());
   return behind.dot(left.cross(Eigen::Vector3d::UnitZ()));
 }
 
@@ -190,7 +193,8 @@ CycleReport LocalPlanner::cycle(int executed) {
     if (a.violation.any() != b.violation.any()) return !a.violation.any();
     return a.cost.robust < b.cost.robust;
   };
-  const bool blocked = executed >= detour_not_before_ && lag(last) > options_.blocked_m;
+  workspace_.store_state();
+  const bool blocked = executed >= detour_not_before_ && behind_m(last) > options_.blocked_m;
   if ((best.violation.any() || blocked) && !deadline.passed()) {
     report.detour = true;
     watch.lap();

@@ -66,10 +66,14 @@ class LocalPlanner {
 
   int plan_size() const { return static_cast<int>(plan_.slots.size()); }
   const Plan& plan() const { return plan_; }
+  const Problem& compiled_window() const { return problem_; }  ///< of the last cycle
   int dimension_of_configuration() const { return plan_.robot->robot->tangent_size(); }
 
   /// What the distance edges see from now on.
   void show(const WorldDistance& world);
+
+  /// How far a configuration is behind its place in the plan as it came, along its heading [m].
+  double behind_m(int index) const;
 
   /// executed: index in the plan of the configuration the robot is at.
   CycleReport cycle(int executed);
@@ -83,11 +87,11 @@ class LocalPlanner {
   void enter(int executed, int last);
   void compile(int executed, int last);
   Attempt optimise(CycleReport& report, const Deadline& deadline);
-  double lag(int last);
   void apply_detour(int executed, int last);
   void raise_weights();
   void restore_weights();
   Eigen::Map<Eigen::VectorXd> configuration(int index);
+  Eigen::Map<const Eigen::VectorXd> configuration(int index) const;
 
   Graph& graph_;
   LocalPlannerOptions options_;

@@ -37,8 +37,16 @@ RefineReport refine(Graph& graph, const WorldAt& world_at, const RefineOptions& 
       const Plan plan = planner.plan();
       for (int i = executed + 1; i < planner.plan_size(); ++i) graph.remove_vertex(plan.slots[i]);
       report.configurations = executed + 1;
-      break;
+      return report;
     }
+  }
+  report.short_of_goal_m = planner.behind_m(planner.plan_size() - 1);
+  if (report.short_of_goal_m > options.goal_tolerance_m) {
+    report.success = false;
+    std::ostringstream text;
+    text << "blocked: feasible, but the goal of the plan is " << report.short_of_goal_m
+         << " m ahead";
+    report.reason = text.str();
   }
   return report;
 }

@@ -5,7 +5,8 @@
 ///     RefineReport report = refine(graph, world_seen_at, options);
 ///
 /// Stops before a configuration that cannot be made feasible: the rest of the plan is removed from
-/// the graph, and the report says which constraint stood in the way.
+/// the graph, and the report says which constraint stood in the way. A plan that is feasible but
+/// ends short of its goal, because the robot had to wait in front of something, is no success.
 
 #include <locograph/planners/online/local_planner.h>
 
@@ -15,6 +16,7 @@ namespace locograph {
 
 struct RefineOptions {
   LocalPlannerOptions planner;
+  double goal_tolerance_m = 0.25;  ///< along the plan; to the side a detour may end anywhere
   /// Called after each cycle, e.g. to show progress; may be empty.
   std::function<void(const CycleReport&)> on_cycle;
 };
@@ -25,7 +27,8 @@ struct RefineReport {
   int dof = 0;
   int feasible_cycles = 0;
   int deadline_misses = 0;
-  int configurations = 0;  ///< left in the plan
+  int configurations = 0;        ///< left in the plan
+  double short_of_goal_m = 0.0;  ///< how far the last configuration is behind where it was planned
   bool success = false;
   std::string reason;
 };

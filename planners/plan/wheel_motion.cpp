@@ -34,7 +34,7 @@ bool WheelMotion::steer(Eigen::VectorXd& q, int number, const Eigen::Vector2d& d
   const double other = turn - std::copysign(pi, turn);
   const int above = robot_.links()[wheels_.wheels[number].carrier].parent_joint;
   const int active = above < 0 ? -1 : robot_.joints()[above].index;
-  if (active < 0) return std::abs(turn) < 1e-9;
+  if (active < 0) return std::min(std::abs(turn), std::abs(other)) < 1e-9;
   const double upright = state_.joint_axis(active).z();
   if (std::abs(upright) < kUpright) return false;
   const Joint& limits = robot_.active_joint(active);

@@ -1,100 +1,16 @@
 #include <gtest/gtest.h>
-#include <locograph/core/optimiser.h>
-#include <locograph/solvers/linear_solvers.h>
-#include <locograph/types/slam2d/edges.h>
-#include <locograph/types/slam3d/edges.h>
 
-#include <cstring>
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
-#include <random>
 
-#include "common/allocation_counter.h"
-#include "core/toy_types.h"
+#include "core/toy_graphs.h"
 
 namespace locograph::test {
 namespace {
 
 using Reason = OptimiserResult::Reason;
-
-constexpr Algorithm kAlgorithms[] = {Algorithm::kGaussNewton, Algorithm::kLevenbergMarquardt,
-                                     Algorithm::kDogleg};
-std::string name_of(Algorithm algorithm) {
-  switch (algorithm) {
-    case Algorithm::kGaussNewton:
-      return "GaussNewton";
-    case Algorithm::kLevenbergMarquardt:
-      return "LevenbergMarquardt";
-    case Algorithm::kDogleg:
-      return "Dogleg";
-  }
-  return "";
-}
-
-/// A ring of noisy planar poses with a chord, the first one fixed.
-Graph ring_2d(int size, double noise = 0.05) {
-  std::mt19937 engine(1);
-  std::normal_distribution<double> normal(0.0, noise);
-  Graph graph;
-  std::vector<VertexId<VertexSE2>> ids;
-  SE2<double> pose;
-  const SE2<double> motion(1.0, 0.0, 2.0 * std::numbers::pi / size);
-  std::vector<SE2<double>> truth;
-  for (int i = 0; i < size; ++i) {
-    truth.push_back(pose);
-    pose = pose * motion;
-    const SE2<double> wrong(normal(engine), normal(engine), normal(engine));
-    ids.push_back(graph.add_vertex(i, VertexSE2(i == 0 ? truth[0] : truth.back() * wrong)));
-  }
-  const auto tie = [&](int a, int b) {
-    EdgeSE2 edge;
-    edge.measurement =
-        truth[a].inverse() * truth[b] * SE2<double>(normal(engine), normal(engine), normal(engine));
-    edge.information = Eigen::Vector3d(10.0, 20.0, 50.0).asDiagonal();
-    graph.add_edge(edge, ids[a], ids[b]);
-  };
-  for (int i = 0; i < size; ++i) tie(i, (i + 1) % size);
-  tie(0, size / 2);
-  graph.set_fixed(ids[0], true);
-  return graph;
-}
-
-/// The same in space: a helix of poses with ties between its turns.
-Graph helix_3d(int size, double noise = 0.05) {
-  std::mt19937 engine(2);
-  std::normal_distribution<double> normal(0.0, noise);
-  const auto small_motion = [&] {
-    const Eigen::Vector3d t(normal(engine), normal(engine), normal(engine));
-    const Eigen::Vector3d r(normal(engine), normal(engine), normal(engine));
-    return SE3<double>(t, quaternion_exp<double>(r));
-  };
-  Graph graph;
-  std::vector<VertexId<VertexSE3>> ids;
-  std::vector<SE3<double>> truth;
-  SE3<double> pose;
-  const SE3<double> motion({1.0, 0.0, 0.1}, quaternion_exp<double>(Eigen::Vector3d(0.1, 0.2, 0.9)));
-  for (int i = 0; i < size; ++i) {
-    truth.push_back(pose);
-    pose = pose * motion;
-    ids.push_back(graph.add_vertex(i, VertexSE3(i == 0 ? pose : truth.back() * small_motion())));
-  }
-  graph.vertex(ids[0]) = VertexSE3(truth[0]);
-  for (const int apart : {1, 6}) {
-    for (int i = 0; i + apart < size; ++i) {
-      EdgeSE3 edge;
-      edge.measurement = truth[i].inverse() * truth[i + apart] * small_motion();
-      edge.information.diagonal() << 10.0, 20.0, 30.0, 100.0, 200.0, 300.0;
-      graph.add_edge(edge, ids[i], ids[i + apart]);
-    }
-  }
-  graph.set_fixed(ids[0], true);
-  return graph;
-}
-
-OptimiserResult run(Graph& graph, const OptimiserOptions& options,
-                    const std::string& solver = "auto") {
-  return optimise(graph, options, *make_linear_solver(solver));
-}
 
 TEST(Optimiser, AllAlgorithmsAndSolversReachTheSameOptimum) {
   for (const auto& build : {std::function<Graph()>([] { return ring_2d(30); }),
@@ -382,128 +298,6 @@ TEST(OptimiserOptions, OutOfRangeAreErrorsThatNameTheOption) {
   refused("initial_radius", [](OptimiserOptions& o) { o.initial_radius = -2.0; });
   refused("max_refusals", [](OptimiserOptions& o) { o.max_refusals = 0; });
   EXPECT_NO_THROW(OptimiserOptions().validate());
-}
-
-// No allocation, determinism ---------------------------------------------------------------------
-
-/// Points tied by edges of run-time arity, and arms that reach for them.
-template <Derivatives D>
-Graph mixed_graph() {
-  std::mt19937 engine(3);
-  std::normal_distribution<double> normal;
-  Graph graph;
-  std::vector<VertexId<VertexXY>> points;
-  std::vector<VertexId<VertexSE2>> poses;
-  for (int i = 0; i < 12; ++i) {
-    points.push_back(graph.add_vertex(i, VertexXY({normal(engine), normal(engine)})));
-    poses.push_back(graph.add_vertex(
-        100 + i, VertexSE2(SE2<double>(normal(engine), normal(engine), normal(engine)))));
-    EdgePriorSE2 prior;
-    prior.measurement = SE2<double>(normal(engine), normal(engine), normal(engine));
-    graph.add_edge(prior, poses.back());
-  }
-  for (int i = 0; i < 12; ++i) {
-    ToyRange<D> range;
-    range.measurement << 2.0, 0.5;
-    graph.add_edge(range, poses[i], points[(i + 1) % 12]);
-    ToyView<D> view;
-    view.measurement << 1.0, 2.0, 3.0;
-    graph.add_dynamic_edge(view, {points[i], points[(i + 3) % 12], points[(i + 5) % 12]}, poses[i]);
-    ToyMoments<D> moments;
-    graph.add_dynamic_edge(moments, {points[i], points[(i + 6) % 12]});
-  }
-  graph.set_fixed(poses[0], true);
-  return graph;
-}
-
-/// Posture, reach and a signal: sizes known at run time, derived quantities by hand.
-Graph sized_graph() {
-  Graph graph;
-  for (int i = 0; i < 5; ++i) {
-    const auto arm = graph.add_vertex(i, VertexJoints(Eigen::VectorXd::Constant(4 + i, 0.3)));
-    const auto point = graph.add_vertex(100 + i, VertexXY({2.0, 1.0 + i}));
-    ToyReach<Derivatives::kByHand> reach;
-    graph.add_edge(reach, arm, point);
-    ToySignal signal;
-    signal.measurement = Eigen::VectorXd::LinSpaced(6, 0.0, 1.0);
-    signal.information = Eigen::MatrixXd::Identity(6, 6);
-    graph.add_dynamic_edge(signal, {point});
-  }
-  return graph;
-}
-
-struct NamedGraph {
-  const char* name;
-  std::function<Graph()> build;
-};
-void PrintTo(const NamedGraph& graph, std::ostream* out) { *out << graph.name; }
-
-class EveryGraphAndSolver
-    : public testing::TestWithParam<std::tuple<NamedGraph, std::string, Algorithm>> {
- protected:
-  OptimiserOptions options() const {
-    OptimiserOptions options;
-    options.algorithm = std::get<2>(GetParam());
-    options.max_iterations = 20;
-    return options;
-  }
-};
-INSTANTIATE_TEST_SUITE_P(
-    Optimiser, EveryGraphAndSolver,
-    testing::Combine(
-        testing::Values(NamedGraph{"Ring", [] { return ring_2d(40); }},
-                        NamedGraph{"Helix", [] { return helix_3d(40); }},
-                        NamedGraph{"ByHand", [] { return mixed_graph<Derivatives::kByHand>(); }},
-                        NamedGraph{"Dual", [] { return mixed_graph<Derivatives::kDual>(); }},
-                        NamedGraph{"Numeric", [] { return mixed_graph<Derivatives::kNumeric>(); }},
-                        NamedGraph{"Sized", [] { return sized_graph(); }}),
-        testing::Values("dense", "banded", "block-cholesky"), testing::ValuesIn(kAlgorithms)),
-    [](const auto& info) {
-      std::string name = std::get<1>(info.param);
-      std::erase(name, '-');
-      return std::get<0>(info.param).name + name + name_of(std::get<2>(info.param));
-    });
-
-TEST_P(EveryGraphAndSolver, IteratesWithoutAllocating) {
-  if (!allocations_are_counted()) GTEST_SKIP() << "a sanitizer brings its own malloc";
-  Graph graph = std::get<0>(GetParam()).build();
-  Problem problem;
-  problem.compile(graph);
-  Workspace workspace;
-  workspace.allocate(problem);
-  workspace.load_state();
-  const std::unique_ptr<LinearSolver> solver = make_linear_solver(std::get<1>(GetParam()));
-  Optimiser optimiser(options());
-  optimiser.start(workspace, *solver);
-  const long before = allocation_count();
-  while (optimiser.iterate()) {
-  }
-  const long after = allocation_count();
-  EXPECT_EQ(after - before, 0);
-  EXPECT_FALSE(optimiser.result().statistics.empty());
-}
-
-TEST_P(EveryGraphAndSolver, GivesTheSameBitsEveryTime) {
-  const auto states = [&] {
-    Graph graph = std::get<0>(GetParam()).build();
-    run(graph, options(), std::get<1>(GetParam()));
-    std::vector<double> all;
-    for (int v = 0; v < graph.vertex_slots(); ++v) {
-      all.insert(all.end(), graph.state(v), graph.state(v) + graph.state_size(v));
-    }
-    return all;
-  };
-  const std::vector<double> first = states(), second = states();
-  ASSERT_EQ(first.size(), second.size());
-  EXPECT_EQ(std::memcmp(first.data(), second.data(), first.size() * sizeof(double)), 0);
-}
-
-TEST(AllocationCounter, Counts) {
-  if (!allocations_are_counted()) GTEST_SKIP() << "a sanitizer brings its own malloc";
-  const long before = allocation_count();
-  const std::unique_ptr<std::vector<int>> numbers = std::make_unique<std::vector<int>>(100);
-  EXPECT_EQ(numbers->size(), 100u);
-  EXPECT_GE(allocation_count() - before, 2);
 }
 
 }  // namespace

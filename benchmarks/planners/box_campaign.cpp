@@ -1,0 +1,208 @@
+// Boxes at random in a walled corridor: how often the local planner gets the CENTAURO drive past
+// them, judged by the feasibility checker.
+//
+//     box_campaign [SEED] [CASES]
+//
+// Prints one JSON object: a row for each case, then the totals. A case counts as passed when every
+// configuration was refined, the checker finds the result feasible, and the base ends within 0.3 m
+// of the plan's end along x.
+#include <locograph/planners/offline/wheeled_drive.h>
+#include <locograph/planners/online/refine.h>
+#include <locograph/planners/plan/feasibility_checker.h>
+#include <locograph/world/octree.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <random>
+
+namespace locograph {
+namespace {
+
+constexpr double kRobotWidth_m = 0.966;
+constexpr double kResolution_m = 0.05;
+constexpr double kWallHeight_m = 1.2, kWallThickness_m = 0.2;
+
+struct Scene {
+  double x, y, side, height;  ///< of the box, standing on the ground
+  double gap;                 ///< between the box and the farther wall
+  double wall;                ///< the walls' faces are at y = ±wall
+};
+
+/// The same numbers with every standard library.
+double uniform(std::mt19937_64& random, double lower, double upper) {
+  return lower + (upper - lower) * 0x1.0p-53 * static_cast<double>(random() >> 11);
+}
+
+Scene draw(std::mt19937_64& random) {
+  Scene scene;
+  scene.x = uniform(random, 1.4, 2.8);
+  scene.y = uniform(random, -0.6, 0.6);
+  scene.side = uniform(random, 0.2, 0.7);
+  scene.height = uniform(random, 0.3, 1.0);
+  scene.gap = kRobotWidth_m + uniform(random, 0.3, 0.6);
+  scene.wall = scene.gap + 0.5 * scene.side - std::abs(scene.y);
+  return scene;
+}
+
+Box box(const Eigen::Vector3d& centre, const Eigen::Vector3d& size) {
+  Box result;
+  result.world_from_box.translation() = centre;
+  result.size = size;
+  return result;
+}
+
+std::shared_ptr<const octomap::OcTree> map_of(const Scene& scene, bool with_walls) {
+  std::vector<Box> boxes = {
+      box({scene.x, scene.y, 0.5 * scene.height}, {scene.side, scene.side, scene.height})};
+  for (const double sign : {-1.0, 1.0}) {
+    if (!with_walls) break;
+    boxes.push_back(box({2.0, sign * (scene.wall + 0.5 * kWallThickness_m), 0.5 * kWallHeight_m},
+                        {8.0, kWallThickness_m, kWallHeight_m}));
+  }
+  return octree_from_boxes(boxes, kResolution_m);
+}
+
+class Campaign {
+ public:
+  Campaign()
+      : scenario_(load_scenario(LOCOGRAPH_SOURCE_DIR "/planners/scenarios/centauro_drive.xml",
+                                LOCOGRAPH_SOURCE_DIR)) {
+    const Graph graph = plan_wheeled_drive(scenario_);
+    const Plan plan = plan_of(graph);
+    motion_ = motion_of(graph, plan);
+    for (const Wheel& wheel : plan.wheels->wheels) {
+      collision_.ignore_floor_links.push_back(wheel.link);
+      collision_.ignore_floor_links.push_back(wheel.carrier);
+    }
+    robot_ = plan.robot;
+    check_.obstacles.emplace();
+  }
+
+  /// False when the box stands where the robot starts or is to end.
+  bool usable(const Scene& scene) const {
+    const CollisionWorld world(*robot_->robot, map_of(scene, false), {}, collision_);
+    for (const Eigen::VectorXd& q :
+         {motion_.configurations.front(), motion_.configurations.back()}) {
+      const Motion stand{{0.0}, {q}, motion_.wheels};
+      if (check_motion(*robot_->robot, world, stand, check_)
+              .constraint("obstacle_distance")
+              .violated) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  nlohmann::ordered_json run(const Scene& scene) {
+    const std::shared_ptr<const octomap::OcTree> map = map_of(scene, true);
+    const CollisionWorld world(*robot_->robot, map, {}, collision_);
+    const CheckReport before = check_motion(*robot_->robot, world, motion_, check_);
+
+    Graph graph = plan_wheeled_drive(scenario_);
+    DistanceFieldOptions field;
+    field.ground_z = kGroundVoxelTop_m;
+    WorldDistance seen;
+    seen.map = std::make_shared<const DistanceField>(DistanceField::from_octree(*map, field));
+    const RefineReport report =
+        refine(graph, [&seen](int executed) { return executed == 0 ? &seen : nullptr; }, {});
+    const Motion refined = motion_of(graph, plan_of(graph));
+    const CheckReport after = check_motion(*robot_->robot, world, refined, check_);
+
+    std::vector<double> times;
+    for (const CycleReport& cycle : report.cycles) times.push_back(cycle.time_total);
+    std::sort(times.begin(), times.end());
+    const auto percentile_ms = [&times](double p) {
+      return 1e3 * times[static_cast<std::size_t>(std::ceil(p * times.size())) - 1];
+    };
+    nlohmann::ordered_json violated = nlohmann::ordered_json::array();
+    for (const Violation& v : after.violations) {
+      if (v.violated) violated.push_back({{"constraint", v.constraint}, {"worst", v.worst}});
+    }
+    const double final_x = refined.configurations.back()[0];
+    const bool passed = report.success && after.feasible &&
+                        std::abs(final_x - motion_.configurations.back()[0]) <= 0.3;
+    return {
+        {"x", scene.x},
+        {"y", scene.y},
+        {"side", scene.side},
+        {"height", scene.height},
+        {"wall", scene.wall},
+        {"gap", scene.gap},
+        {"original_feasible", before.feasible},
+        {"refine_success", report.success},
+        {"reason", report.reason},
+        {"configurations", report.configurations},
+        {"feasible_cycles", report.feasible_cycles},
+        {"feasible", after.feasible},
+        {"violated", violated},
+        {"passed", passed},
+        {"final_x", final_x},
+        {"min_clearance_m", after.min_clearance_m},
+        {"lateral_slip_m", after.constraint("lateral_slip").worst},
+        {"longitudinal_slip_m", after.constraint("longitudinal_slip").worst},
+        {"cycle_ms",
+         {{"p50", percentile_ms(0.5)}, {"p95", percentile_ms(0.95)}, {"max", 1e3 * times.back()}}}};
+  }
+
+ private:
+  Scenario scenario_;
+  Motion motion_;
+  std::shared_ptr<const RobotParameter> robot_;
+  CollisionWorldOptions collision_;
+  CheckOptions check_;
+};
+
+int run(unsigned long long seed, int cases) {
+  std::mt19937_64 random(seed);
+  Campaign campaign;
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  int redrawn = 0;
+  while (static_cast<int>(rows.size()) < cases) {
+    const Scene scene = draw(random);
+    if (!campaign.usable(scene)) {
+      ++redrawn;
+      continue;
+    }
+    rows.push_back(campaign.run(scene));
+    std::cerr << rows.size() << " of " << cases << '\n';
+  }
+  const auto count = [&rows](const char* field) {
+    return std::count_if(rows.begin(), rows.end(), [field](const nlohmann::ordered_json& row) {
+      return row[field].get<bool>();
+    });
+  };
+  const nlohmann::ordered_json result = {{"seed", seed},
+                                         {"cases", cases},
+                                         {"redrawn", redrawn},
+                                         {"original_feasible", count("original_feasible")},
+                                         {"refine_success", count("refine_success")},
+                                         {"feasible", count("feasible")},
+                                         {"passed", count("passed")},
+                                         {"rows", rows}};
+  std::cout << result.dump(2) << '\n';
+  return 0;
+}
+
+}  // namespace
+}  // namespace locograph
+
+int main(int argc, char** argv) {
+  char* end = nullptr;
+  const unsigned long long seed = argc > 1 ? std::strtoull(argv[1], &end, 10) : 1;
+  const bool seed_good = argc <= 1 || (end != argv[1] && *end == '\0');
+  const long cases = argc > 2 ? std::strtol(argv[2], &end, 10) : 20;
+  if (argc > 3 || !seed_good || (argc > 2 && *end != '\0') || cases < 1) {
+    std::cerr << "box_campaign [SEED] [CASES], expected whole numbers, at least one case\n";
+    return 2;
+  }
+  try {
+    return locograph::run(seed, static_cast<int>(cases));
+  } catch (const std::exception& error) {
+    std::cerr << "box_campaign: " << error.what() << '\n';
+    return 2;
+  }
+}

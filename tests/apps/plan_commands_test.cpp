@@ -1,0 +1,243 @@
+// `plan`, `refine` and `check`, one after the other, as a user runs them.
+#include <apps/command_runner.h>
+#include <locograph/world/octree.h>
+
+#include <sstream>
+
+namespace locograph {
+namespace {
+
+const char kBox[] =
+    "<obstacles version=\"1\">\n"
+    "  <box name=\"box\" center=\"2 0 0.25\" size=\"0.5 0.5 0.5\"/>\n"
+    "</obstacles>\n";
+const char kWall[] =
+    "<obstacles version=\"1\">\n"
+    "  <box name=\"wall\" center=\"2.5 0 0.5\" size=\"0.2 8 1\"/>\n"
+    "</obstacles>\n";
+
+/// A folder with the shipped drive as plan.g2o.
+class PlanRunner : public CommandRunner {
+ public:
+  PlanRunner() {
+    const Outcome outcome = run("plan centauro_drive -o plan.g2o");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+  void write_map(const std::string& name) const {
+    Box box;
+    box.world_from_box.translation() = Eigen::Vector3d(2.0, 0.0, 0.25);
+    box.size.setConstant(0.5);
+    save_octree(*octree_from_boxes({&box, 1}, 0.05), folder() / name);
+  }
+  /// The line number of the first line that begins so, 0 if there is none.
+  int line_of(const std::string& file, const std::string& begin) const {
+    std::istringstream in(read(file));
+    int number = 0;
+    for (std::string line; std::getline(in, line);) {
+      ++number;
+      if (line.rfind(begin, 0) == 0) return number;
+    }
+    return 0;
+  }
+};
+
+const nlohmann::json* constraint(const nlohmann::json& report, const std::string& name) {
+  for (const nlohmann::json& violation : report["violations"]) {
+    if (violation["constraint"] == name) return &violation;
+  }
+  return nullptr;
+}
+
+TEST(PlanCommands, PlanPrintsOneJsonObjectWithEveryField) {
+  const CommandRunner runner;
+  const Outcome outcome = runner.run("plan centauro_drive -o plan.g2o --seed 7 --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const nlohmann::json json = outcome.json();
+  EXPECT_EQ(json["success"], true);
+  EXPECT_TRUE(json["reason"].is_string());
+  EXPECT_EQ(json["seed"], 7);
+  EXPECT_EQ(json["configurations"], 50);
+  EXPECT_NEAR(json["duration_s"], 40.0, 1e-9);
+  for (const char* field : {"stances", "vertices_in_tree", "iterations"}) {
+    EXPECT_TRUE(json[field].is_number_integer()) << field;
+  }
+  for (const char* phase : {"stance_planner", "transitions", "whole_body", "timing", "total"}) {
+    EXPECT_GE(json["time"][phase].get<double>(), 0.0) << phase;
+  }
+  EXPECT_TRUE(runner.exists("plan.g2o"));
+}
+
+TEST(PlanCommands, APlanIsFeasibleUntilSomethingStandsInTheWay) {
+  const PlanRunner runner;
+  const Outcome good = runner.run("check plan.g2o --json");
+  ASSERT_EQ(good.exit_code, 0) << good.err << good.out;
+  EXPECT_EQ(good.json()["feasible"], true);
+  EXPECT_EQ(good.json()["configurations"], 50);
+  runner.write("box.xml", kBox);
+  const Outcome bad = runner.run("check plan.g2o --obstacles box.xml --json");
+  EXPECT_EQ(bad.exit_code, 1) << bad.err;
+  EXPECT_EQ(bad.json()["feasible"], false);
+  const nlohmann::json json = bad.json();
+  const nlohmann::json* distance = constraint(json, "obstacle_distance");
+  ASSERT_NE(distance, nullptr);
+  EXPECT_EQ((*distance)["violated"], true);
+  EXPECT_LT((*distance)["worst"], 0.0);
+  EXPECT_EQ((*distance)["unit"], "m");
+  EXPECT_GT((*distance)["count"], 0);
+  EXPECT_EQ(runner.run("check plan.g2o --obstacles box.xml").exit_code, 1);
+}
+
+TEST(PlanCommands, CheckListsEveryConstraintAlsoThoseThatHold) {
+  const PlanRunner runner;
+  const nlohmann::json json = runner.run("check plan.g2o --json").json();
+  for (const char* name :
+       {"not_finite", "configuration_size", "time_order", "step_size", "base_orientation",
+        "joint_limits", "velocity_limits", "obstacle_distance", "self_collision",
+        "ground_penetration", "wheel_ground_penetration", "mount_ground_penetration",
+        "wheel_contact", "wheel_tilt", "lateral_slip", "longitudinal_slip"}) {
+    const nlohmann::json* violation = constraint(json, name);
+    ASSERT_NE(violation, nullptr) << name;
+    for (const char* field : {"worst", "unit", "limit", "at_vertex", "count"}) {
+      EXPECT_TRUE(violation->contains(field)) << name << ' ' << field;
+    }
+    EXPECT_EQ((*violation)["count"], 0) << name;
+  }
+  for (const char* field :
+       {"min_clearance_m", "min_self_clearance_m", "max_velocity_ratio", "max_contact_error_m"}) {
+    EXPECT_TRUE(json[field].is_number()) << field;
+  }
+  EXPECT_TRUE(json.contains("min_balance_margin"));
+  EXPECT_TRUE(json.contains("max_torque_ratio"));
+}
+
+TEST(PlanCommands, RefinePrintsOneJsonObjectWithEveryField) {
+  const PlanRunner runner;
+  const Outcome outcome = runner.run("refine plan.g2o -o refined.g2o --horizon 10 --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const nlohmann::json json = outcome.json();
+  EXPECT_EQ(json["success"], true);
+  EXPECT_TRUE(json["reason"].is_string());
+  EXPECT_EQ(json["cycles"], 49);
+  EXPECT_EQ(json["horizon"], 10);
+  EXPECT_EQ(json["dof"], 30);
+  EXPECT_EQ(json["feasible_cycles"], 49);
+  EXPECT_EQ(json["deadline_misses"], 0);
+  for (const char* times : {"cycle_time", "optimize_time", "map_update_time"}) {
+    double before = 0.0;
+    for (const char* figure : {"p50", "p95", "p99", "max"}) {
+      EXPECT_GE(json[times][figure].get<double>(), before) << times << ' ' << figure;
+      before = json[times][figure];
+    }
+    EXPECT_LE(json[times]["mean"].get<double>(), before) << times;
+  }
+}
+
+TEST(PlanCommands, ARefinedPlanPassesTheBoxAndTakesItsWorldAlong) {
+  const PlanRunner runner;
+  runner.write("box.xml", kBox);
+  runner.write_map("box.bt");
+  for (const char* world : {"--obstacles box.xml", "--map box.bt"}) {
+    SCOPED_TRACE(world);
+    const Outcome refined = runner.run(std::string("refine plan.g2o -o refined.g2o ") + world);
+    ASSERT_EQ(refined.exit_code, 0) << refined.err << refined.out;
+    EXPECT_EQ(runner.run(std::string("check refined.g2o ") + world).exit_code, 0);
+    // Without options the world is that of the file.
+    const Outcome own = runner.run("check refined.g2o --json");
+    EXPECT_EQ(own.exit_code, 0) << own.out;
+    EXPECT_LT(own.json()["min_clearance_m"], 0.3) << "the box is not seen";
+    EXPECT_EQ(runner.run("refine refined.g2o -o again.g2o").exit_code, 0);
+  }
+}
+
+TEST(PlanCommands, APlanMayMoveTogetherWithItsMap) {
+  const PlanRunner runner;
+  std::filesystem::create_directory(runner.folder() / "here");
+  runner.write_map("here/box.bt");
+  ASSERT_EQ(runner.run("refine plan.g2o --map here/box.bt -o here/refined.g2o").exit_code, 0);
+  std::filesystem::rename(runner.folder() / "here", runner.folder() / "there");
+  const Outcome outcome = runner.run("check there/refined.g2o --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_LT(outcome.json()["min_clearance_m"], 0.3) << "the map is not seen";
+}
+
+TEST(PlanCommands, RefineSaysNoInFrontOfAWallAndWritesWhatIsFeasible) {
+  const PlanRunner runner;
+  runner.write("wall.xml", kWall);
+  const Outcome outcome = runner.run("refine plan.g2o --obstacles wall.xml -o out.g2o --json");
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  EXPECT_EQ(outcome.json()["success"], false);
+  const Outcome check = runner.run("check out.g2o --json");
+  EXPECT_EQ(check.exit_code, 0) << check.out;
+  EXPECT_LT(check.json()["min_clearance_m"], 0.3) << "the wall is not seen";
+}
+
+TEST(PlanCommands, GiveTheSameBitsAgain) {
+  const PlanRunner runner;
+  runner.write("box.xml", kBox);
+  ASSERT_EQ(runner.run("plan centauro_drive -o again.g2o").exit_code, 0);
+  EXPECT_EQ(runner.read("again.g2o"), runner.read("plan.g2o"));
+  ASSERT_EQ(runner.run("refine plan.g2o --obstacles box.xml -o a.g2o").exit_code, 0);
+  ASSERT_EQ(runner.run("refine plan.g2o --obstacles box.xml -o b.g2o --threads 2").exit_code, 0);
+  EXPECT_EQ(runner.read("a.g2o"), runner.read("b.g2o"));
+}
+
+TEST(PlanCommands, RefuseAPlanThatIsNotThereOrIsNone) {
+  const PlanRunner runner;
+  runner.write("pose.g2o",
+               "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nEDGE_SE2 0 1 1 0 0 "
+               "1 0 0 1 0 1\n");
+  for (const char* command : {"check", "refine -o out.g2o"}) {
+    const std::string start = std::string(command) + ' ';
+    expect_refusal(runner.run(start + "none.g2o"), "none.g2o", "cannot be opened");
+    expect_refusal(runner.run(start + "pose.g2o --json"), "pose.g2o", "no plan");
+  }
+  EXPECT_EQ(runner.files(), 2);
+}
+
+TEST(PlanCommands, RefuseAPlanWhoseRobotIsNotThereNamingTheLine) {
+  const PlanRunner runner;
+  std::string text = runner.read("plan.g2o");
+  const std::size_t urdf = text.find("centauro.urdf");
+  ASSERT_NE(urdf, std::string::npos);
+  runner.write("lost.g2o", text.replace(urdf, 13, "centaurus.urdf"));
+  const std::string place =
+      "lost.g2o:" + std::to_string(runner.line_of("lost.g2o", "PARAMS_ROBOT"));
+  expect_refusal(runner.run("check lost.g2o"), place, "centaurus.urdf");
+  expect_refusal(runner.run("refine lost.g2o -o out.g2o"), place, "centaurus.urdf");
+  EXPECT_EQ(runner.files(), 2);
+}
+
+TEST(PlanCommands, RefuseAMapOfAnotherTypeAndObstaclesThatAreNone) {
+  const PlanRunner runner;
+  runner.write("colour.bt", "# Octomap OcTree file\nid ColorOcTree\nsize 0\nres 0.05\ndata\n");
+  runner.write("bad.xml", "<obstacles version=\"1\">\n<cone/>\n</obstacles>\n");
+  for (const char* command : {"check plan.g2o", "refine plan.g2o -o out.g2o"}) {
+    const std::string start = std::string(command) + ' ';
+    expect_refusal(runner.run(start + "--map colour.bt"), "", "ColorOcTree");
+    expect_refusal(runner.run(start + "--map none.bt"), "none.bt", "cannot be opened");
+    expect_refusal(runner.run(start + "--obstacles bad.xml"), "bad.xml:2", "cone");
+  }
+  EXPECT_EQ(runner.files(), 3);
+}
+
+TEST(PlanCommands, RefuseWrongUsageInOneLineAndWriteNothing) {
+  const PlanRunner runner;
+  for (const char* usage :
+       {"plan", "plan centauro_drive", "plan nonsense -o out.g2o",
+        "plan centauro_drive -o none/out.g2o", "plan centauro_drive -o out.g2o --timeout -1",
+        "refine plan.g2o", "refine plan.g2o -o none/out.g2o",
+        "refine plan.g2o -o out.g2o --horizon 0", "refine plan.g2o -o out.g2o --horizon -3",
+        "refine plan.g2o -o out.g2o --horizon many", "refine plan.g2o -o out.g2o --deadline-ms -1",
+        "refine plan.g2o -o out.g2o --threads 0", "check", "check plan.g2o --clearance -1",
+        "check plan.g2o --bogus"}) {
+    SCOPED_TRACE(usage);
+    expect_refusal(runner.run(usage), "", "");
+  }
+  expect_refusal(runner.run("plan nonsense -o out.g2o"), "nonsense", "centauro_drive");
+  EXPECT_EQ(runner.files(), 1) << "only the plan";
+}
+
+}  // namespace
+}  // namespace locograph

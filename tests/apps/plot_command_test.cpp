@@ -1,0 +1,132 @@
+#include <apps/command_runner.h>
+#include <tinyxml2.h>
+
+namespace locograph {
+namespace {
+
+bool has_gnuplot() { return std::system("command -v gnuplot >/dev/null 2>&1") == 0; }
+
+#define LOCOGRAPH_NEEDS_GNUPLOT() \
+  if (!has_gnuplot()) GTEST_SKIP() << "no gnuplot"
+
+/// Plots a file and returns the SVG, which must be XML with an <svg> root and something drawn.
+std::string plot(const CommandRunner& runner, const std::string& file) {
+  const Outcome outcome = runner.run("plot " + file + " -o out.svg");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const std::string svg = runner.read("out.svg");
+  tinyxml2::XMLDocument xml;
+  EXPECT_EQ(xml.Parse(svg.data(), svg.size()), tinyxml2::XML_SUCCESS) << file;
+  if (xml.RootElement() == nullptr) return "";
+  EXPECT_STREQ(xml.RootElement()->Name(), "svg");
+  EXPECT_NE(svg.find("<path"), std::string::npos);
+  return svg;
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(Plot, ConvergenceOfAnOptimisation) {
+  LOCOGRAPH_NEEDS_GNUPLOT();
+  LOCOGRAPH_NEEDS_SHARED_DATA();
+  const CommandRunner runner;
+  runner.run("optimize " + shared("pose_graphs/tinyGrid3D.g2o") + " --json > a.json");
+  const std::string svg = plot(runner, "a.json");
+  EXPECT_TRUE(contains(svg, "iteration"));
+  EXPECT_TRUE(contains(svg, "chi2"));
+}
+
+TEST(Plot, CycleTimesWithTheirPercentiles) {
+  LOCOGRAPH_NEEDS_GNUPLOT();
+  const CommandRunner runner;
+  nlohmann::json json = {{"horizon", 20}, {"cycle_times", nlohmann::json::array()}};
+  for (int i = 1; i <= 100; ++i) json["cycle_times"].push_back(1e-3 * i);
+  runner.write("r.json", json.dump());
+  const std::string svg = plot(runner, "r.json");
+  EXPECT_TRUE(contains(svg, "p50 = 50 ms"));
+  EXPECT_TRUE(contains(svg, "p95 = 95 ms"));
+  EXPECT_TRUE(contains(svg, "p99 = 99 ms"));
+  EXPECT_TRUE(contains(svg, "100 cycles"));
+}
+
+TEST(Plot, RefineReportsTheTimesOfItsCycles) {
+  LOCOGRAPH_NEEDS_GNUPLOT();
+  const CommandRunner runner;
+  ASSERT_EQ(runner.run("plan centauro_drive -o p.g2o").exit_code, 0);
+  const Outcome refined = runner.run("refine p.g2o -o r.g2o --json");
+  ASSERT_EQ(refined.exit_code, 0) << refined.err;
+  EXPECT_EQ(refined.json()["cycle_times"].size(), refined.json()["cycles"]);
+  runner.write("r.json", refined.out);
+  EXPECT_TRUE(contains(plot(runner, "r.json"), "49 cycles"));
+}
+
+TEST(Plot, ConstraintsOfACheckAndAPlanAgainstItsLimits) {
+  LOCOGRAPH_NEEDS_GNUPLOT();
+  const CommandRunner runner;
+  ASSERT_EQ(runner.run("plan centauro_drive -o p.g2o").exit_code, 0);
+  const Outcome checked = runner.run("check p.g2o --json");
+  ASSERT_EQ(checked.exit_code, 0) << checked.err;
+  runner.write("c.json", checked.out);
+  const std::string bars = plot(runner, "c.json");
+  EXPECT_TRUE(contains(bars, "self_collision"));
+  EXPECT_TRUE(contains(bars, "velocity_limits"));
+  EXPECT_FALSE(contains(bars, "NOT feasible"));
+  const std::string lines = plot(runner, "p.g2o");
+  EXPECT_TRUE(contains(lines, "joint positions"));
+  EXPECT_TRUE(contains(lines, "joint velocities"));
+  EXPECT_TRUE(contains(lines, "base path"));
+}
+
+TEST(Plot, TableOfACampaign) {
+  LOCOGRAPH_NEEDS_GNUPLOT();
+  const CommandRunner runner;
+  runner.write("t.csv",
+               "seed,success,reason,time_stance_planner,time_total\r\n0,true,\"planned, well\",1.5,"
+               "3\r\n1,false,timeout,9,60\r\n2,true,planned,1.0,2.5\r\n");
+  const std::string svg = plot(runner, "t.csv");
+  EXPECT_TRUE(contains(svg, "3 runs, 2 solved (66.7 %)"));
+  EXPECT_TRUE(contains(svg, "time_total"));
+}
+
+TEST(Plot, TextOfAFileIsNeverACommand) {
+  LOCOGRAPH_NEEDS_GNUPLOT();
+  const CommandRunner runner;
+  const std::string evil = "`touch owned` \"); system('touch owned') # ' \\n$END\ntouch";
+  const nlohmann::json violation = {{"constraint", evil}, {"unit", "m'\nsystem 'touch owned'"},
+                                    {"worst", 0.1},       {"limit", 0.2},
+                                    {"violated", false}};
+  runner.write("c.json", nlohmann::json({{"violations", {violation}}}).dump());
+  plot(runner, "c.json");
+  runner.write("o.json", nlohmann::json({{"algorithm", evil},
+                                         {"reason", evil},
+                                         {"initial_chi2", 4.0},
+                                         {"iterations_detail", {{{"chi2", 1.0}}}}})
+                             .dump());
+  plot(runner, "o.json");
+  runner.write("t.csv", "time_`touch owned`'\n1\n2\n");
+  plot(runner, "t.csv");
+  EXPECT_FALSE(runner.exists("owned"));
+}
+
+TEST(Plot, RefusesWhatItCannotDraw) {
+  const CommandRunner runner;
+  expect_refusal(runner.run("plot none.json -o o.svg"), "none.json", "");
+  runner.write("a.json", "{\"x\": 1}");
+  expect_refusal(runner.run("plot a.json -o o.svg"), "a.json", "nothing to plot");
+  runner.write("b.json", "not JSON");
+  expect_refusal(runner.run("plot b.json -o o.svg"), "b.json", "not JSON");
+  runner.write("c.json", "{\"cycle_times\": []}");
+  expect_refusal(runner.run("plot c.json -o o.svg"), "c.json", "no cycle times");
+  runner.write("e.csv", "success,time_total\ntrue\n");
+  expect_refusal(runner.run("plot e.csv -o o.svg"), "e.csv:2", "1 fields");
+  runner.write("f.csv", "seed\n1\n");
+  expect_refusal(runner.run("plot f.csv -o o.svg"), "f.csv", "no column of times");
+  runner.write("g.json", "{\"violations\": [5]}");
+  expect_refusal(runner.run("plot g.json -o o.svg"), "g.json", "another type");
+  expect_refusal(runner.run("plot a.json -o no/o.svg"), "no/o.svg", "");
+  EXPECT_FALSE(runner.exists("o.svg"));
+}
+
+}  // namespace
+}  // namespace locograph

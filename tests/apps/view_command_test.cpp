@@ -1,0 +1,500 @@
+#include <apps/command_runner.h>
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <ifaddrs.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/socket.h>
+
+#include <boost/asio/connect.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <thread>
+
+namespace locograph {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+using asio::ip::tcp;
+
+const char kBox[] =
+    "<obstacles version=\"1\">\n"
+    "  <box name=\"box\" center=\"2 1.2 0.25\" size=\"0.4 0.4 0.5\"/>\n"
+    "  <cylinder name=\"roller\" center=\"3 -2 0.3\" radius=\"0.2\" height=\"0.6\" repeat=\"9\">\n"
+    "    <keyframe time=\"4\" position=\"3 2 0.3\"/>\n"
+    "  </cylinder>\n"
+    "</obstacles>\n";
+
+std::filesystem::path viewer_template() {
+  return std::filesystem::path(LOCOGRAPH_COMMAND).parent_path().parent_path() /
+         "share/locograph/viewer/template.html";
+}
+
+#define LOCOGRAPH_NEEDS_VIEWER()                                                     \
+  if (!std::filesystem::is_regular_file(viewer_template())) {                        \
+    GTEST_SKIP() << "the viewer is not built: " << viewer_template().string();       \
+  }
+
+/// The scene inside a page; throws unless it is JSON.
+nlohmann::json scene_of(const std::string& page) {
+  const std::string begin = "<script type=\"application/json\" id=\"locograph-scene\">";
+  const std::size_t at = page.find(begin);
+  if (at == std::string::npos) throw std::runtime_error("no scene in the page");
+  const std::size_t from = at + begin.size();
+  return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+}
+
+nlohmann::json view(const CommandRunner& runner, const std::string& arguments) {
+  const Outcome outcome = runner.run("view " + arguments + " -o page.html");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  return scene_of(runner.read("page.html"));
+}
+
+std::string bytes_of(const std::string& base64) {
+  std::string bytes;
+  std::uint32_t group = 0;
+  int digits = 0;
+  for (const char c : base64) {
+    if (c == '=') break;
+    const std::string alphabet =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    group = group << 6 | static_cast<std::uint32_t>(alphabet.find(c));
+    if (++digits % 4 != 0) continue;
+    for (int shift = 16; shift >= 0; shift -= 8) bytes += static_cast<char>(group >> shift & 255);
+  }
+  for (int left = digits % 4, k = 0; k + 1 < left; ++k) {
+    bytes += static_cast<char>(group << 6 * (4 - left) >> (16 - 8 * k) & 255);
+  }
+  return bytes;
+}
+
+template <class T>
+std::vector<T> unpack(const nlohmann::json& packed) {
+  const std::string bytes = bytes_of(packed.get<std::string>());
+  std::vector<T> values(bytes.size() / sizeof(T));
+  std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+  return values;
+}
+
+class ViewPlan : public testing::Test {
+ protected:
+  void SetUp() override {
+    LOCOGRAPH_NEEDS_VIEWER();
+    const Outcome planned = runner.run("plan centauro_drive -o p.g2o");
+    ASSERT_EQ(planned.exit_code, 0) << planned.err;
+    runner.write("box.xml", kBox);
+  }
+  CommandRunner runner;
+};
+
+TEST_F(ViewPlan, PageHoldsTheWholePlan) {
+  const nlohmann::json scene = view(runner, "p.g2o");
+  EXPECT_LE(std::filesystem::file_size(runner.folder() / "page.html"), 3000000u);
+  EXPECT_EQ(scene["version"], 1);
+  EXPECT_EQ(scene["kind"], "plan");
+  EXPECT_EQ(scene["title"], "p.g2o");
+  const nlohmann::json& plan = scene["plan"];
+  ASSERT_EQ(plan["times"].size(), 50u);
+  EXPECT_EQ(plan["ids"].size(), 50u);
+  EXPECT_EQ(plan["configuration_size"], 31);
+  const std::vector<float> configurations = unpack<float>(plan["configurations"]);
+  ASSERT_EQ(configurations.size(), 50u * 31u);
+  // 4 m ahead at the end, and the offline plan is its own reference.
+  EXPECT_NEAR(configurations[49 * 31] - configurations[0], 4.0, 1e-5);
+  EXPECT_EQ(unpack<float>(plan["reference"]), configurations);
+  EXPECT_TRUE(scene["check"]["feasible"]);
+  EXPECT_EQ(scene["check"]["violations"].size(), 16u);
+}
+
+TEST_F(ViewPlan, ContactsOfTheWheelsLieOnTheGround) {
+  const nlohmann::json scene = view(runner, "p.g2o --no-check");
+  EXPECT_FALSE(scene.contains("check"));
+  ASSERT_EQ(scene["plan"]["contacts"].size(), 50u);
+  for (const nlohmann::json& here : scene["plan"]["contacts"]) {
+    ASSERT_EQ(here.size(), 4u);
+    for (const nlohmann::json& contact : here) {
+      EXPECT_NEAR(contact["position"][2].get<double>(), 0.0, 1e-3);
+      EXPECT_EQ(contact["kind"], "wheel");
+    }
+  }
+  EXPECT_EQ(scene["stances"][0]["contacts"].size(), 4u);
+  EXPECT_EQ(scene["stances"][0]["to"], 49);
+}
+
+TEST_F(ViewPlan, RobotHasItsLinksJointsAndColours) {
+  const nlohmann::json robot = view(runner, "p.g2o --no-check")["robot"];
+  EXPECT_EQ(robot["name"], "centauro");
+  EXPECT_EQ(robot["links"].size(), robot["joints"].size() + 1);
+  int movable = 0, visuals = 0;
+  for (const nlohmann::json& joint : robot["joints"]) movable += joint["index"] >= 0 ? 1 : 0;
+  for (const nlohmann::json& link : robot["links"]) visuals += link["visual"].size();
+  EXPECT_EQ(movable, 24);
+  EXPECT_GT(visuals, 60);
+  EXPECT_EQ(robot["missing"].size(), 0u);
+  EXPECT_EQ(robot["links"][0]["visual"][0]["color"], nlohmann::json({0.8, 0.82, 0.85, 1.0}));
+}
+
+TEST_F(ViewPlan, ObstaclesKeepShapeAndMotion) {
+  const nlohmann::json scene = view(runner, "p.g2o --obstacles box.xml --no-check");
+  ASSERT_EQ(scene["obstacles"].size(), 2u);
+  EXPECT_EQ(scene["obstacles"][0]["size"], nlohmann::json({0.4, 0.4, 0.5}));
+  const nlohmann::json& roller = scene["obstacles"][1];
+  EXPECT_EQ(roller["type"], "cylinder");
+  EXPECT_EQ(roller["size"], nlohmann::json({0.2, 0.6}));
+  EXPECT_EQ(roller["repeat"], 9.0);
+  EXPECT_EQ(roller["keyframes"][0]["pose"], nlohmann::json({3, 2, 0.3, 0, 0, 0, 1}));
+}
+
+TEST_F(ViewPlan, ViolationsSayWhereAndWhen) {
+  runner.write("wall.xml",
+               "<obstacles version=\"1\">\n"
+               "<box name=\"wall\" center=\"2 0 1\" size=\"0.2 3 2\"/>\n</obstacles>\n");
+  const nlohmann::json check = view(runner, "p.g2o --obstacles wall.xml")["check"];
+  EXPECT_FALSE(check["feasible"]);
+  bool found = false;
+  for (const nlohmann::json& violation : check["violations"]) {
+    if (violation["constraint"] != "obstacle_distance") continue;
+    found = true;
+    EXPECT_TRUE(violation["violated"]);
+    EXPECT_GT(violation["index"], 0);
+    EXPECT_LT(violation["worst"], 0.0);
+    EXPECT_NEAR(violation["at_point"][0].get<double>(), 2.0, 0.6);
+  }
+  EXPECT_TRUE(found);
+}
+
+TEST_F(ViewPlan, MapIsShownVoxelByVoxel) {
+  LOCOGRAPH_NEEDS_SHARED_DATA();
+  const nlohmann::json scene =
+      view(runner, "p.g2o --no-check --map " + shared("octomap/geb079.bt"));
+  const std::vector<float> voxels = unpack<float>(scene["map"]["voxels"]);
+  EXPECT_GT(voxels.size(), 4000u);
+  EXPECT_EQ(voxels.size() % 4, 0u);
+  EXPECT_LE(voxels.size(), 400000u);
+}
+
+TEST_F(ViewPlan, ExecutedPartAndWindowAreMarked) {
+  const nlohmann::json plan = view(runner, "p.g2o --no-check --executed 40")["plan"];
+  EXPECT_EQ(plan["executed"], 40);
+  EXPECT_EQ(plan["window"], 9) << "cut at the end of the plan";
+  expect_refusal(runner.run("view p.g2o --executed 50 -o x.html"), "p.g2o", "configuration 50");
+}
+
+TEST_F(ViewPlan, TextOfAFileCannotEndTheScript) {
+  runner.write("evil.xml",
+               "<obstacles version=\"1\">\n<box name=\"&lt;/script>&lt;script>alert(1)&lt;/script>\" "
+               "center=\"9 9 1\" size=\"1 1 1\"/>\n</obstacles>\n");
+  const nlohmann::json scene = view(runner, "p.g2o --no-check --obstacles evil.xml");
+  EXPECT_EQ(scene["obstacles"][0]["name"], "</script><script>alert(1)</script>");
+  EXPECT_EQ(runner.read("page.html").find("alert(1)</script>"), std::string::npos);
+}
+
+TEST_F(ViewPlan, RobotFileThatIsMissingIsNamed) {
+  std::string text = runner.read("p.g2o");
+  const std::size_t at = text.find("centauro.urdf");
+  ASSERT_NE(at, std::string::npos);
+  runner.write("moved.g2o", text.replace(at, 13, "nowhere.urdf"));
+  const Outcome outcome = runner.run("view moved.g2o -o x.html");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("nowhere.urdf"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find('\n'), outcome.err.size() - 1);
+  EXPECT_FALSE(runner.exists("x.html"));
+}
+
+TEST(View, RefusesWhatItCannotShow) {
+  const CommandRunner runner;
+  expect_refusal(runner.run("view nothing.g2o -o x.html"), "nothing.g2o", "");
+  runner.write("empty.g2o", "");
+  expect_refusal(runner.run("view empty.g2o -o x.html"), "empty.g2o", "");
+  runner.write("points.g2o", "VERTEX_XY 0 1 2\n");
+  expect_refusal(runner.run("view points.g2o -o x.html"), "points.g2o", "nothing to show");
+  runner.write("pose.g2o", "VERTEX_SE2 0 0 0 0\n");
+  expect_refusal(runner.run("view pose.g2o"), "", "nothing to write");
+  expect_refusal(runner.run("view pose.g2o -o no/such/folder.html"), "no/such/folder.html", "");
+  EXPECT_FALSE(runner.exists("x.html"));
+}
+
+TEST(View, SphereHasAllItsPosesBeforeAndAfter) {
+  LOCOGRAPH_NEEDS_VIEWER();
+  LOCOGRAPH_NEEDS_SHARED_DATA();
+  const CommandRunner runner;
+  const nlohmann::json scene =
+      view(runner, shared("pose_graphs/sphere2500.g2o") + " --optimize");
+  EXPECT_EQ(scene["kind"], "pose_graph");
+  const nlohmann::json& graph = scene["graph"];
+  EXPECT_EQ(graph["dimension"], 3);
+  const std::vector<float> after = unpack<float>(graph["vertices"]);
+  ASSERT_EQ(after.size(), 7u * 2500u);
+  EXPECT_EQ(unpack<float>(graph["before"]).size(), after.size());
+  EXPECT_EQ(unpack<std::int32_t>(graph["edges"]).size(), 2u * 4949u);
+  EXPECT_LT(graph["chi2"][1], 0.01 * graph["chi2"][0].get<double>());
+  // The file's own first guess is drawn without --optimize.
+  const nlohmann::json raw = view(runner, shared("pose_graphs/sphere2500.g2o"))["graph"];
+  EXPECT_EQ(raw["vertices"], graph["before"]);
+  EXPECT_FALSE(raw.contains("before"));
+}
+
+TEST(View, PlanarPosesLieInThePlane) {
+  LOCOGRAPH_NEEDS_VIEWER();
+  const CommandRunner runner;
+  runner.write("a.g2o",
+               "VERTEX_SE2 0 1 2 3.14159265358979\nVERTEX_SE2 1 2 2 0\nVERTEX_XY 2 5 6\n"
+               "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n");
+  const nlohmann::json graph = view(runner, "a.g2o")["graph"];
+  EXPECT_EQ(graph["dimension"], 2);
+  const std::vector<float> poses = unpack<float>(graph["vertices"]);
+  ASSERT_EQ(poses.size(), 14u);
+  EXPECT_EQ(poses[2], 0.0f);
+  EXPECT_NEAR(poses[5], 1.0, 1e-6) << "half a turn about z";
+  EXPECT_EQ(unpack<float>(graph["points"]), (std::vector<float>{5, 6, 0}));
+  EXPECT_EQ(unpack<std::int32_t>(graph["edges"]), (std::vector<std::int32_t>{0, 1}));
+}
+
+TEST(View, RobotStandsOnTheGround) {
+  LOCOGRAPH_NEEDS_VIEWER();
+  const CommandRunner runner;
+  const nlohmann::json scene =
+      view(runner, "'" LOCOGRAPH_SOURCE_DIR "/robots/models/centauro/centauro.urdf'");
+  EXPECT_EQ(scene["title"], "centauro.urdf, home");
+  const std::vector<float> q = unpack<float>(scene["plan"]["configurations"]);
+  ASSERT_EQ(q.size(), scene["plan"]["configuration_size"].get<std::size_t>());
+  EXPECT_NEAR(q[2], 0.72, 0.02);
+  expect_refusal(runner.run("view '" LOCOGRAPH_SOURCE_DIR
+                            "/robots/models/centauro/centauro.urdf' --state hme -o x.html"),
+                 LOCOGRAPH_SOURCE_DIR "/robots/models/centauro/centauro.srdf", "'home'");
+}
+
+TEST(View, MeshesThatAreMissingAreNamedOnStandardError) {
+  LOCOGRAPH_NEEDS_VIEWER();
+  LOCOGRAPH_NEEDS_SHARED_DATA();
+  const CommandRunner runner;
+  const Outcome outcome = runner.run("view " + shared("robots/go2.urdf") + " -o go2.html");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.err.find("base.dae"), std::string::npos) << outcome.err;
+  const nlohmann::json robot = scene_of(runner.read("go2.html"))["robot"];
+  EXPECT_EQ(robot["missing"].size(), 7u);
+  // Its collision meshes stand in.
+  EXPECT_EQ(robot["meshes"].size(), 9u);
+  EXPECT_GT(unpack<float>(robot["meshes"][0]["triangles"]).size(), 90u);
+}
+
+// Pictures -----------------------------------------------------------------------------------
+
+bool on_path(const std::string& program) {
+  return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
+}
+
+TEST_F(ViewPlan, PictureIsAPngOfTheSizeAsked) {
+  if (!on_path("chromium")) GTEST_SKIP() << "no chromium";
+  const Outcome outcome = runner.run("view p.g2o --no-check --png frame.png --at 10");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::string png = runner.read("frame.png");
+  ASSERT_GT(png.size(), 24u);
+  EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  const auto number = [&png](std::size_t at) {
+    return static_cast<unsigned char>(png[at + 2]) << 8 | static_cast<unsigned char>(png[at + 3]);
+  };
+  EXPECT_EQ(number(16), 1280);
+  EXPECT_EQ(number(20), 720);
+  // An empty page compresses to a few kilobytes; a robot on its ground does not.
+  EXPECT_GT(png.size(), 30000u);
+}
+
+TEST_F(ViewPlan, WithoutChromiumThePictureIsRefused) {
+  std::filesystem::create_directory(runner.folder() / "bin");
+  const std::string line = "view p.g2o --png frame.png";
+  ::setenv("LOCOGRAPH_TEST_PATH", ::getenv("PATH"), 1);
+  ::setenv("PATH", (runner.folder() / "bin").c_str(), 1);
+  const Outcome outcome = runner.run(line);
+  ::setenv("PATH", ::getenv("LOCOGRAPH_TEST_PATH"), 1);
+  std::filesystem::remove(runner.folder() / "bin");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("chromium"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(runner.exists("frame.png"));
+}
+
+// Serving ------------------------------------------------------------------------------------
+
+/// `locograph view … --serve 0`, ended by SIGINT.
+class Served {
+ public:
+  explicit Served(const CommandRunner& runner, const std::string& more) {
+    int pipe_ends[2];
+    if (::pipe(pipe_ends) != 0) throw std::runtime_error("no pipe");
+    child_ = ::fork();
+    if (child_ == 0) {
+      ::dup2(pipe_ends[1], 1);
+      ::close(pipe_ends[0]);
+      ::close(pipe_ends[1]);
+      const std::string line = "cd '" + runner.folder().string() + "' && exec '" LOCOGRAPH_COMMAND
+                               "' view p.g2o --no-check --serve 0 " + more;
+      ::execl("/bin/sh", "sh", "-c", line.c_str(), static_cast<char*>(nullptr));
+      ::_exit(127);
+    }
+    ::close(pipe_ends[1]);
+    out_ = pipe_ends[0];
+    std::string text;
+    for (char c = 0; text.find('\n') == std::string::npos;) {
+      pollfd readable = {out_, POLLIN, 0};
+      if (::poll(&readable, 1, 60000) <= 0 || ::read(out_, &c, 1) != 1) break;
+      text += c;
+    }
+    const std::string before = "http://127.0.0.1:";
+    const std::size_t at = text.find(before);
+    if (at != std::string::npos) port = std::stoi(text.substr(at + before.size()));
+  }
+  ~Served() {
+    if (child_ > 0) stop();
+    ::close(out_);
+  }
+  /// Exit code.
+  int stop() {
+    ::kill(child_, SIGINT);
+    int status = 0;
+    ::waitpid(child_, &status, 0);
+    child_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+
+  int port = 0;
+
+ private:
+  pid_t child_ = -1;
+  int out_ = -1;
+};
+
+tcp::socket connect(asio::io_context& context, int port) {
+  tcp::socket socket(context);
+  socket.connect({asio::ip::address_v4::loopback(), static_cast<unsigned short>(port)});
+  return socket;
+}
+
+beast::http::response<beast::http::string_body> get(int port, const std::string& target,
+                                                    const std::string& host) {
+  asio::io_context context;
+  tcp::socket socket = connect(context, port);
+  beast::http::request<beast::http::empty_body> request(beast::http::verb::get, target, 11);
+  request.set(beast::http::field::host, host);
+  beast::http::write(socket, request);
+  beast::flat_buffer buffer;
+  beast::http::response_parser<beast::http::string_body> parser;
+  parser.body_limit(64 * 1024 * 1024);
+  beast::http::read(socket, buffer, parser);
+  return parser.release();
+}
+
+class Live : public ViewPlan {
+ protected:
+  using Stream = beast::websocket::stream<tcp::socket>;
+  std::unique_ptr<Stream> connect_live(int port) {
+    auto stream = std::make_unique<Stream>(connect(context_, port));
+    stream->handshake("127.0.0.1:" + std::to_string(port), "/live");
+    return stream;
+  }
+  static nlohmann::json receive(Stream& stream) {
+    beast::flat_buffer buffer;
+    stream.read(buffer);
+    return nlohmann::json::parse(beast::buffers_to_string(buffer.data()));
+  }
+  asio::io_context context_;
+};
+
+TEST_F(Live, PageIsServedAndTheRestIsNot) {
+  Served served(runner, "");
+  ASSERT_GT(served.port, 0);
+  const std::string host = "127.0.0.1:" + std::to_string(served.port);
+  const auto page = get(served.port, "/", host);
+  EXPECT_EQ(page.result_int(), 200u);
+  EXPECT_EQ(scene_of(page.body())["live"], "/live");
+  EXPECT_EQ(get(served.port, "/etc/passwd", host).result_int(), 404u);
+  EXPECT_EQ(get(served.port, "/", "evil.example").result_int(), 403u);
+  EXPECT_EQ(served.stop(), 0);
+}
+
+TEST_F(Live, EveryCycleArrivesAndTheEndIsTold) {
+  Served served(runner, "--speed 1000 --obstacles box.xml");
+  ASSERT_GT(served.port, 0);
+  const auto stream = connect_live(served.port);
+  const nlohmann::json start = receive(*stream);
+  EXPECT_EQ(start["type"], "start");
+  EXPECT_EQ(start["configurations"], 50);
+  int cycles = 0;
+  nlohmann::json message;
+  for (message = receive(*stream); message["type"] == "cycle"; message = receive(*stream)) {
+    EXPECT_EQ(message["executed"], cycles);
+    EXPECT_EQ(message["first"], cycles);
+    const std::size_t count = message["window"].get<std::size_t>() + 1;
+    EXPECT_EQ(unpack<float>(message["configurations"]).size(), 31 * count);
+    ++cycles;
+  }
+  EXPECT_EQ(message["type"], "end");
+  EXPECT_TRUE(message["success"]) << message;
+  EXPECT_EQ(cycles, 49);
+}
+
+TEST_F(Live, InterruptEndsARunningSession) {
+  Served served(runner, "--speed 0.01");
+  ASSERT_GT(served.port, 0);
+  const auto stream = connect_live(served.port);
+  receive(*stream);
+  EXPECT_EQ(receive(*stream)["executed"], 0);
+  EXPECT_EQ(served.stop(), 0);
+}
+
+TEST_F(Live, ForeignPagesMayNotListen) {
+  Served served(runner, "");
+  ASSERT_GT(served.port, 0);
+  Stream stream(connect(context_, served.port));
+  stream.set_option(beast::websocket::stream_base::decorator([](auto& request) {
+    request.set(beast::http::field::origin, "http://evil.example");
+  }));
+  beast::error_code failed;
+  stream.handshake("127.0.0.1:" + std::to_string(served.port), "/live", failed);
+  EXPECT_EQ(failed, beast::websocket::error::upgrade_declined);
+}
+
+TEST_F(Live, NobodyElseOnTheNetworkCanConnect) {
+  Served served(runner, "");
+  ASSERT_GT(served.port, 0);
+  ifaddrs* all = nullptr;
+  ASSERT_EQ(::getifaddrs(&all), 0);
+  int others = 0;
+  for (const ifaddrs* one = all; one != nullptr; one = one->ifa_next) {
+    if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
+    sockaddr_in address = *reinterpret_cast<const sockaddr_in*>(one->ifa_addr);
+    if (ntohl(address.sin_addr.s_addr) >> 24 == 127) continue;
+    ++others;
+    address.sin_port = htons(static_cast<std::uint16_t>(served.port));
+    const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+    EXPECT_NE(::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+    ::close(socket);
+  }
+  ::freeifaddrs(all);
+  if (others == 0) GTEST_SKIP() << "this machine has no address but the loopback's";
+}
+
+TEST_F(ViewPlan, ServingRefusesAPortThatIsTakenAndAGraphThatDoesNotMove) {
+  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address = {};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(address);
+  ASSERT_EQ(::bind(socket, reinterpret_cast<sockaddr*>(&address), size), 0);
+  ASSERT_EQ(::listen(socket, 1), 0);
+  ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size);
+  const std::string port = std::to_string(ntohs(address.sin_port));
+  expect_refusal(runner.run("view p.g2o --no-check --serve " + port), "", "port " + port);
+  ::close(socket);
+  runner.write("pose.g2o", "VERTEX_SE2 0 0 0 0\n");
+  expect_refusal(runner.run("view pose.g2o --serve 0"), "pose.g2o", "nothing to run");
+}
+
+}  // namespace
+}  // namespace locograph

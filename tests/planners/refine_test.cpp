@@ -1,0 +1,274 @@
+#include <locograph/common/error.h>
+#include <locograph/core/graph_file.h>
+#include <locograph/planners/online/refine.h>
+#include <locograph/world/octree.h>
+
+#include "planners/planned_drive.h"
+
+namespace locograph {
+namespace {
+
+/// What the planner sees and what the checker checks against.
+struct Surroundings {
+  std::vector<Obstacle> obstacles;
+  std::shared_ptr<const octomap::OcTree> map;
+
+  WorldDistance seen() const {
+    WorldDistance world;
+    world.obstacles = obstacles;
+    if (map) {
+      DistanceFieldOptions options;
+      options.ground_z = kGroundVoxelTop_m;
+      world.map = std::make_shared<const DistanceField>(DistanceField::from_octree(*map, options));
+    }
+    return world;
+  }
+  CheckReport check(const Graph& graph) const { return check_plan(graph, obstacles, map); }
+};
+
+RefineReport refine_in(Graph& graph, const Surroundings& surroundings, int horizon = 20) {
+  const WorldDistance world = surroundings.seen();
+  RefineOptions options;
+  options.planner.horizon = horizon;
+  return refine(
+      graph, [&world](int executed) { return executed == 0 ? &world : nullptr; }, options);
+}
+
+Graph drive() { return plan_wheeled_drive(centauro_drive()); }
+
+Obstacle box_ahead() { return box("box", {2.0, 0.0, 0.25}, {0.5, 0.5, 0.5}); }
+Obstacle wall_ahead() { return box("wall", {2.5, 0.0, 0.5}, {0.2, 8.0, 1.0}); }
+
+std::shared_ptr<const octomap::OcTree> map_of(const Obstacle& obstacle) {
+  Box solid;
+  solid.world_from_box = obstacle.world_from_obstacle;
+  solid.size = obstacle.size;
+  return octree_from_boxes({&solid, 1}, 0.05);
+}
+
+void expect_same(const Graph& a, const Graph& b, double tolerance) {
+  const std::vector<Eigen::VectorXd> first = configurations(a), second = configurations(b);
+  ASSERT_EQ(first.size(), second.size());
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    EXPECT_LE((first[i] - second[i]).cwiseAbs().maxCoeff(), tolerance) << i;
+  }
+}
+
+TEST(Refine, LeavesAPlanInAnEmptyWorldAsItIs) {
+  const Surroundings nothing, empty_map{{}, std::make_shared<octomap::OcTree>(0.05)};
+  for (const Surroundings& surroundings : {nothing, empty_map}) {
+    for (const double curvature : {0.0, 0.3}) {
+      Graph graph = plan_wheeled_drive(centauro_drive(4.0, curvature));
+      const RefineReport report = refine_in(graph, surroundings);
+      EXPECT_TRUE(report.success) << report.reason;
+      EXPECT_EQ(report.cycles.size(), 49u);
+      EXPECT_EQ(report.feasible_cycles, 49);
+      EXPECT_EQ(report.dof, 30);
+      expect_same(graph, plan_wheeled_drive(centauro_drive(4.0, curvature)), 1e-3);
+    }
+  }
+}
+
+void expect_gets_past(const Surroundings& surroundings) {
+  Graph graph = drive();
+  EXPECT_TRUE(violated(surroundings.check(graph)).contains("obstacle_distance"));
+  const RefineReport report = refine_in(graph, surroundings);
+  EXPECT_TRUE(report.success) << report.reason;
+  EXPECT_EQ(report.configurations, 50);
+  const CheckReport check = surroundings.check(graph);
+  expect_feasible(check);
+  EXPECT_GT(check.min_clearance_m, 0.0);
+  EXPECT_LT(check.max_contact_error_m, 2e-3);
+  EXPECT_LT(check.constraint("lateral_slip").worst, 5e-3);
+  EXPECT_LT(check.constraint("longitudinal_slip").worst, 5e-3);
+  EXPECT_NEAR(configurations(graph).back()[0], 4.0, 0.3);
+}
+
+TEST(Refine, DrivesAroundABoxGivenAsAnObstacle) { expect_gets_past({{box_ahead()}, nullptr}); }
+
+TEST(Refine, DrivesAroundABoxGivenAsAMap) { expect_gets_past({{}, map_of(box_ahead())}); }
+
+TEST(Refine, DrivesAroundABoxThatShowsUpOnTheWay) {
+  const Surroundings surroundings{{box_ahead()}, nullptr};
+  const WorldDistance world = surroundings.seen();
+  Graph graph = drive();
+  const RefineReport report =
+      refine(graph, [&world](int executed) { return executed == 3 ? &world : nullptr; }, {});
+  EXPECT_TRUE(report.success) << report.reason;
+  expect_feasible(surroundings.check(graph));
+}
+
+TEST(Refine, KeepsClearOfACartThatCrossesThePath) {
+  Obstacle cart = box("cart", {2.0, -3.0, 0.4}, {0.4, 0.4, 0.8});
+  KeyFrame start{8.0, cart.world_from_obstacle}, end{32.0, cart.world_from_obstacle};
+  end.pose.translation().y() = 3.0;
+  cart.motion = {start, end};  // is at y = 0 after 20 s, as the robot
+  const Surroundings surroundings{{cart}, nullptr};
+  Graph graph = drive();
+  EXPECT_TRUE(violated(surroundings.check(graph)).contains("obstacle_distance"));
+  const RefineReport report = refine_in(graph, surroundings);
+  expect_feasible(surroundings.check(graph));
+  EXPECT_TRUE(report.success) << report.reason;
+}
+
+void expect_stops(const Surroundings& surroundings) {
+  Graph graph = drive();
+  const RefineReport report = refine_in(graph, surroundings);
+  EXPECT_FALSE(report.success);
+  EXPECT_TRUE(report.reason.find("obstacle_distance") != std::string::npos ||
+              report.reason.find("blocked") != std::string::npos)
+      << report.reason;
+  EXPECT_EQ(configurations(graph).size(), static_cast<std::size_t>(report.configurations));
+  expect_feasible(surroundings.check(graph));
+  EXPECT_LT(configurations(graph).back()[0], 2.4) << "through the wall";
+  EXPECT_GT(configurations(graph).back()[0], 1.0) << "stopped early";
+}
+
+TEST(Refine, StopsInFrontOfAWallAndSaysSo) { expect_stops({{wall_ahead()}, nullptr}); }
+
+TEST(Refine, StopsInFrontOfAWallInAMapAndSaysSo) { expect_stops({{}, map_of(wall_ahead())}); }
+
+TEST(Refine, RemovesWhatCannotBeExecutedWhenThereIsNowhereToGo) {
+  // Appears around the robot, which cannot get out of the way in one step.
+  const Surroundings surroundings{{box("rock", {1.0, 0.0, 0.5}, {1.0, 0.5, 1.0})}, nullptr};
+  const WorldDistance world = surroundings.seen();
+  Graph graph = drive();
+  const RefineReport report =
+      refine(graph, [&world](int executed) { return executed == 12 ? &world : nullptr; }, {});
+  EXPECT_FALSE(report.success);
+  EXPECT_EQ(report.reason.find("stopped at configuration 12: "), 0u) << report.reason;
+  EXPECT_EQ(report.configurations, 13);
+  EXPECT_EQ(configurations(graph).size(), 13u);
+  EXPECT_FALSE(report.cycles.back().feasible);
+  expect_feasible(check_plan(graph));
+}
+
+class Horizon : public testing::TestWithParam<int> {};
+
+TEST_P(Horizon, NeverHandsOutAnInfeasiblePlan) {
+  const Surroundings surroundings{{box_ahead()}, nullptr};
+  Graph graph = drive();
+  const RefineReport report = refine_in(graph, surroundings, GetParam());
+  expect_feasible(surroundings.check(graph));
+  EXPECT_EQ(configurations(graph).size(), static_cast<std::size_t>(report.configurations));
+  for (const CycleReport& cycle : report.cycles) {
+    EXPECT_EQ(cycle.window, std::min(GetParam(), 49 - cycle.executed));
+  }
+  if (report.success) {
+    EXPECT_EQ(report.configurations, 50);
+    EXPECT_NEAR(configurations(graph).back()[0], 4.0, 0.3);
+  }
+  EXPECT_TRUE(report.success || GetParam() < 20) << report.reason;
+}
+
+INSTANTIATE_TEST_SUITE_P(Refine, Horizon, testing::Values(1, 5, 20, 200));
+
+TEST(Refine, RefusesAHorizonOfNothingAndANegativeDeadline) {
+  Graph graph = drive();
+  EXPECT_THROW(refine_in(graph, {}, 0), Error);
+  EXPECT_THROW(refine_in(graph, {}, -5), Error);
+  RefineOptions options;
+  options.planner.deadline_s = -0.001;
+  EXPECT_THROW(refine(graph, {}, options), Error);
+  options.planner.deadline_s = kNaN;
+  EXPECT_THROW(refine(graph, {}, options), Error);
+  expect_same(graph, drive(), 0.0);
+}
+
+TEST(Refine, GivesTheSameBitsAgain) {
+  const Surroundings surroundings{{}, map_of(box_ahead())};
+  Graph first = drive(), second = drive();
+  refine_in(first, surroundings);
+  refine_in(second, surroundings);
+  EXPECT_EQ(write_graph_text(first), write_graph_text(second));
+}
+
+TEST(Refine, TellsAfterEveryCycleAndOnlyThen) {
+  Graph graph = drive();
+  RefineOptions options;
+  std::vector<int> executed;
+  options.on_cycle = [&executed](const CycleReport& cycle) { executed.push_back(cycle.executed); };
+  const RefineReport report = refine(graph, {}, options);
+  ASSERT_EQ(executed.size(), 49u);
+  for (int i = 0; i < 49; ++i) EXPECT_EQ(executed[i], i);
+  EXPECT_EQ(report.map_update_s.size(), 49u);
+}
+
+TEST(LocalPlanner, NeverChangesWhatIsExecutedNorTheStart) {
+  Graph graph = drive();
+  LocalPlanner planner(graph, {});
+  planner.show(Surroundings{{box_ahead()}, nullptr}.seen());
+  std::vector<Eigen::VectorXd> executed;
+  for (int at = 0; at + 1 < planner.plan_size(); ++at) {
+    executed.push_back(configurations(graph)[at]);
+    ASSERT_TRUE(planner.cycle(at).next_feasible) << at;
+    const std::vector<Eigen::VectorXd> now = configurations(graph);
+    for (int i = 0; i <= at; ++i) ASSERT_EQ(now[i], executed[i]) << "in cycle " << at;
+  }
+  EXPECT_EQ(executed.front(), configurations(drive()).front());
+}
+
+TEST(LocalPlanner, ChangesNothingBehindTheWindow) {
+  Graph graph = drive();
+  LocalPlannerOptions options;
+  options.horizon = 30;
+  LocalPlanner planner(graph, options);
+  planner.show(Surroundings{{box_ahead()}, nullptr}.seen());
+  planner.cycle(0);
+  const std::vector<Eigen::VectorXd> now = configurations(graph), before = configurations(drive());
+  EXPECT_NE(now[25], before[25]);
+  for (int i = 31; i < 50; ++i) EXPECT_EQ(now[i], before[i]) << i;
+}
+
+TEST(LocalPlanner, RefusesAnExecutedConfigurationThatHasNoNext) {
+  Graph graph = drive();
+  LocalPlanner planner(graph, {});
+  EXPECT_THROW(planner.cycle(-1), Error);
+  EXPECT_THROW(planner.cycle(49), Error);
+  EXPECT_EQ(planner.cycle(48).window, 1);
+}
+
+TEST(LocalPlanner, RestoresTheWeightsItRaised) {
+  Graph graph = drive();
+  LocalPlanner planner(graph, {});
+  // Nowhere to go: violated whatever is tried.
+  planner.show(Surroundings{{box("rock", {0.5, 0.0, 0.5}, {3.0, 3.0, 1.0})}, nullptr}.seen());
+  const CycleReport report = planner.cycle(0);
+  EXPECT_FALSE(report.feasible);
+  EXPECT_GT(report.rounds, 0);
+  const Graph fresh = drive();
+  ASSERT_EQ(graph.edge_pools().size(), fresh.edge_pools().size());
+  for (std::size_t p = 0; p < graph.edge_pools().size(); ++p) {
+    const EdgePool& pool = *graph.edge_pools()[p];
+    for (int i = 0; i < pool.size(); ++i) {
+      ASSERT_EQ(pool.information(i), fresh.edge_pools()[p]->information(i));
+    }
+  }
+}
+
+TEST(LocalPlanner, CompilesTheSameWindowForAShortAndALongPlanAndKeepsItsPattern) {
+  Graph short_plan = plan_wheeled_drive(centauro_drive(4.0, 0.0, 50));
+  Graph long_plan = plan_wheeled_drive(centauro_drive(160.0, 0.0, 2000));
+  LocalPlanner near(short_plan, {}), far(long_plan, {});
+  near.cycle(0);
+  const BlockPattern pattern = near.compiled_window().pattern();
+  const int edges = near.compiled_window().edge_count();
+  EXPECT_EQ(pattern.size(), 20);
+  EXPECT_EQ(pattern.scalar_size(), 20 * 30);
+  EXPECT_EQ(pattern.blocks(), 20 + 19) << "neighbours only";
+  const auto expect_same_window = [&](LocalPlanner& planner, int executed) {
+    const CycleReport report = planner.cycle(executed);
+    const Problem& window = planner.compiled_window();
+    EXPECT_TRUE(window.pattern() == pattern) << executed;
+    EXPECT_EQ(window.edge_count(), edges);
+    EXPECT_EQ(report.window, 20);
+    std::size_t active = 0;
+    for (const auto& pool : window.active()) active += pool.size();
+    EXPECT_EQ(active, 21u) << "the window and the executed configuration";
+  };
+  for (int executed = 1; executed < 30; ++executed) expect_same_window(near, executed);
+  for (int executed = 0; executed < 60; ++executed) expect_same_window(far, executed);
+}
+
+}  // namespace
+}  // namespace locograph

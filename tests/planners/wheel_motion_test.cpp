@@ -1,0 +1,166 @@
+#include <locograph/planners/plan/wheel_motion.h>
+
+#include "planners/planned_drive.h"
+
+namespace locograph {
+namespace {
+
+/// One wheel below a steering joint, both 0.1 m above the ground.
+std::string one_wheel(const std::string& steering) {
+  return "<robot name=\"one_wheel\">\n"
+         "<link name=\"base\"/><link name=\"fork\"/><link name=\"wheel\"/>\n"
+         "<joint name=\"steering\" " +
+         steering +
+         "<parent link=\"base\"/><child link=\"fork\"/></joint>\n"
+         "<joint name=\"roll\" type=\"continuous\"><axis xyz=\"0 1 0\"/>"
+         "<origin xyz=\"0 0 0.1\"/><parent link=\"fork\"/><child link=\"wheel\"/></joint>\n"
+         "</robot>\n";
+}
+
+struct OneWheel {
+  explicit OneWheel(const std::string& steering)
+      : robot(Robot::load(folder.write("robot.urdf", one_wheel(steering)))),
+        wheels(robot, 0, named()),
+        motion(robot, wheels),
+        q(robot.neutral_configuration()) {}
+  static std::vector<Wheel> named() {
+    std::vector<Wheel> wheels(1);
+    wheels[0].link_name = "wheel";
+    wheels[0].radius_m = 0.1;
+    return wheels;
+  }
+  TemporaryFolder folder;
+  Robot robot;
+  WheelsParameter wheels;
+  WheelMotion motion;
+  Eigen::VectorXd q;
+};
+
+std::string revolute(const std::string& axis, double lower, double upper) {
+  return "type=\"revolute\"><axis xyz=\"" + axis + "\"/><limit lower=\"" + std::to_string(lower) +
+         "\" upper=\"" + std::to_string(upper) + "\" effort=\"1\" velocity=\"1\"/>";
+}
+
+Eigen::Vector2d along(double angle) { return {std::cos(angle), std::sin(angle)}; }
+
+/// CENTAURO at the start of the straight drive: every wheel heads along x.
+struct Drive {
+  Drive()
+      : graph(plan_wheeled_drive(centauro_drive())),
+        plan(plan_of(graph)),
+        robot(*plan.robot->robot),
+        motion(robot, *plan.wheels),
+        q(configurations(graph).front()) {}
+  int yaw(int wheel) const {
+    return 7 + robot.joints()[robot.joint_index("ankle_yaw_" + std::to_string(wheel + 1))].index;
+  }
+  int spin(int wheel) const {
+    return 7 + robot.joints()[robot.joint_index("j_wheel_" + std::to_string(wheel + 1))].index;
+  }
+  Graph graph;
+  Plan plan;
+  const Robot& robot;
+  WheelMotion motion;
+  Eigen::VectorXd q;
+};
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+TEST(WheelMotion, SteersAWheelAlongADirectionAndMovesNothingElse) {
+  Drive drive;
+  for (int wheel = 0; wheel < 4; ++wheel) {
+    for (const double angle : {-3.0, -1.2, -0.1, 0.0, 0.4, 1.5, 2.9}) {
+      Eigen::VectorXd q = drive.q;
+      ASSERT_TRUE(drive.motion.steer(q, wheel, 3.0 * along(angle))) << wheel << ' ' << angle;
+      const Eigen::Vector3d heading = drive.motion.pose(q, wheel).heading;
+      EXPECT_NEAR(cross(heading.head<2>(), along(angle)), 0.0, 1e-9);
+      EXPECT_LE(std::abs(q[drive.yaw(wheel)] - drive.q[drive.yaw(wheel)]),
+                0.5 * std::numbers::pi + 1e-9)
+          << "not the smaller turn";
+      q[drive.yaw(wheel)] = drive.q[drive.yaw(wheel)];
+      EXPECT_EQ(q, drive.q);
+    }
+  }
+}
+
+TEST(WheelMotion, SteersTheOtherWayRoundWhenALimitIsInTheWay) {
+  Drive drive;
+  for (int wheel = 0; wheel < 4; ++wheel) {
+    const Joint& joint = drive.robot.active_joint(drive.yaw(wheel) - 7);
+    for (const double sign : {-1.0, 1.0}) {
+      Eigen::VectorXd q = drive.q;
+      const double limit = sign > 0.0 ? joint.upper : joint.lower;
+      q[drive.yaw(wheel)] = limit - 0.05 * sign;
+      // Wherever the steering axis points, one of two small turns goes beyond the limit.
+      for (const double turn : {-0.1, 0.1}) {
+        Eigen::VectorXd steered = q;
+        const Eigen::Vector3d heading = drive.motion.pose(q, wheel).heading;
+        const Eigen::Vector2d direction = along(std::atan2(heading.y(), heading.x()) + turn);
+        ASSERT_TRUE(drive.motion.steer(steered, wheel, direction));
+        EXPECT_GE(steered[drive.yaw(wheel)], joint.lower);
+        EXPECT_LE(steered[drive.yaw(wheel)], joint.upper);
+        EXPECT_NEAR(cross(drive.motion.pose(steered, wheel).heading.head<2>(), direction), 0.0,
+                    1e-9);
+      }
+    }
+  }
+}
+
+TEST(WheelMotion, SteersAsFarAsTheLimitsGoAndNoFurther) {
+  OneWheel wheel(revolute("0 0 1", -0.3, 0.3));
+  ASSERT_TRUE(wheel.motion.steer(wheel.q, 0, along(0.2)));
+  EXPECT_NEAR(wheel.q[7], 0.2, 1e-12);
+  ASSERT_TRUE(wheel.motion.steer(wheel.q, 0, -along(0.1))) << "backwards";
+  EXPECT_NEAR(wheel.q[7], 0.1, 1e-12);
+  const Eigen::VectorXd before = wheel.q;
+  for (const double angle : {0.5, -0.4, 1.5, -1.5}) {
+    EXPECT_FALSE(wheel.motion.steer(wheel.q, 0, along(angle))) << angle;
+    EXPECT_EQ(wheel.q, before);
+  }
+}
+
+TEST(WheelMotion, AnAxisUpsideDownTurnsTheOtherWay) {
+  OneWheel wheel(revolute("0 0 -1", -0.3, 0.3));
+  ASSERT_TRUE(wheel.motion.steer(wheel.q, 0, along(0.2)));
+  EXPECT_NEAR(wheel.q[7], -0.2, 1e-12);
+}
+
+TEST(WheelMotion, DoesNotSteerAboutAnAxisThatIsNotUpright) {
+  OneWheel wheel(revolute("0.6 0 0.8", -2.0, 2.0));
+  const Eigen::VectorXd before = wheel.q;
+  EXPECT_FALSE(wheel.motion.steer(wheel.q, 0, along(0.2)));
+  EXPECT_EQ(wheel.q, before);
+}
+
+TEST(WheelMotion, AWheelWithoutSteeringGoesWhereItHeadsForwardsAndBackwards) {
+  OneWheel wheel("type=\"fixed\">");
+  EXPECT_TRUE(wheel.motion.steer(wheel.q, 0, along(0.0)));
+  EXPECT_TRUE(wheel.motion.steer(wheel.q, 0, -along(0.0)));
+  EXPECT_FALSE(wheel.motion.steer(wheel.q, 0, along(0.01)));
+}
+
+TEST(WheelMotion, RollsEveryWheelAsFarAsItsCentreComesTheRightWayRound) {
+  Drive drive;
+  RobotState state(drive.robot);
+  state.update(drive.q.data());
+  for (const double distance : {0.1, -0.25}) {
+    Eigen::VectorXd to = drive.q;
+    to[0] += distance;
+    drive.motion.roll(drive.q, to);
+    for (int wheel = 0; wheel < 4; ++wheel) {
+      const Wheel& of = drive.plan.wheels->wheels[wheel];
+      const Eigen::Vector3d axle = state.world_from_link(of.link).linear() *
+                                   drive.robot.active_joint(drive.spin(wheel) - 7).axis;
+      // The contact point rests: v + ω × (−r ẑ) = 0.
+      const Eigen::Vector3d spin = (to[drive.spin(wheel)] - drive.q[drive.spin(wheel)]) * axle;
+      const Eigen::Vector3d contact =
+          Eigen::Vector3d(distance, 0, 0) + spin.cross(Eigen::Vector3d(0, 0, -kRadius));
+      EXPECT_NEAR(contact.norm(), 0.0, 1e-9) << of.link_name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace locograph
