@@ -10,6 +10,17 @@ namespace {
 /// How far from the plan the map still matters [m].
 constexpr double kFieldMargin_m = 2.5;
 
+/// What stands on the floor may touch it: the wheels, and the forks that carry them.
+CollisionWorldOptions collision_options(const PlanFile& file) {
+  CollisionWorldOptions collision;
+  if (!file.plan.wheels) return collision;
+  for (const Wheel& wheel : file.plan.wheels->wheels) {
+    collision.ignore_floor_links.push_back(wheel.link);
+    collision.ignore_floor_links.push_back(wheel.carrier);
+  }
+  return collision;
+}
+
 }  // namespace
 
 PlanFile load_plan(const std::string& file) {
@@ -57,17 +68,21 @@ WorldDistance seen_world(const PlanFile& file, const LoadedWorld& world) {
   return result;
 }
 
+std::function<CheckReport(const Motion&)> step_check(const PlanFile& file,
+                                                     const LoadedWorld& world) {
+  const std::shared_ptr<const Robot> robot = file.plan.robot->robot;
+  const auto collisions = std::make_shared<const CollisionWorld>(*robot, world.map, world.obstacles,
+                                                                 collision_options(file));
+  return [robot, collisions, obstacles = world.obstacles](const Motion& motion) {
+    CheckOptions options;
+    options.obstacles = obstacles;
+    return check_motion(*robot, *collisions, motion, options);
+  };
+}
+
 CheckReport check_plan(const PlanFile& file, const LoadedWorld& world, CheckOptions options) {
-  CollisionWorldOptions collision;
-  if (file.plan.wheels) {
-    for (const Wheel& wheel : file.plan.wheels->wheels) {
-      // What stands on the floor, and the fork that carries it.
-      collision.ignore_floor_links.push_back(wheel.link);
-      collision.ignore_floor_links.push_back(wheel.carrier);
-    }
-  }
   const Robot& robot = *file.plan.robot->robot;
-  const CollisionWorld collision_world(robot, world.map, world.obstacles, collision);
+  const CollisionWorld collision_world(robot, world.map, world.obstacles, collision_options(file));
   options.obstacles = world.obstacles;
   return check_motion(robot, collision_world, motion_of(file.graph, file.plan), options);
 }

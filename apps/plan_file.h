@@ -11,6 +11,7 @@
 #include <octomap/OcTree.h>
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -46,5 +47,9 @@ LoadedWorld load_world(const WorldFiles& files);
 WorldDistance seen_world(const PlanFile& file, const LoadedWorld& world);
 
 CheckReport check_plan(const PlanFile& file, const LoadedWorld& world, CheckOptions options = {});
+
+/// The check of single steps of a plan in one world, as refine() wants it.
+std::function<CheckReport(const Motion&)> step_check(const PlanFile& file,
+                                                     const LoadedWorld& world);
 
 }  // namespace locograph

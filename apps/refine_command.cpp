@@ -61,6 +61,7 @@ Json report_json(const RefineReport& report, const CommandOptions& options, doub
       {"cycle_time", over_cycles(report, [](const CycleReport& c) { return c.time_total; })},
       {"optimize_time", over_cycles(report, [](const CycleReport& c) { return c.time_optimise; })},
       {"map_update_time", statistics_json(report.map_update_s)},
+      {"verify_time", statistics_json(report.verify_s)},
       {"phases", phases_json(report)},
       {"distance_field_s", field_s},
       {"cycle_times", std::move(cycle_times)},
@@ -83,6 +84,7 @@ ExitCode refine_plan(const CommandOptions& options) {
   // From now on this is the plan's world: the file that is written needs nothing else.
   file.plan.world->set_files(files.map, files.obstacles);
 
+  refine_options.verify = step_check(file, world);
   Progress progress;
   refine_options.on_cycle = [&](const CycleReport& cycle) {
     progress.show([&] {

@@ -42,18 +42,26 @@ inline Scenario centauro_drive(double distance_m = 4.0, double curvature_1_m = 0
   return scenario;
 }
 
+/// A motion of CENTAURO on its wheels, among obstacles.
+inline CheckReport check_drive(const Robot& robot, const Motion& motion,
+                               const std::vector<Obstacle>& obstacles = {},
+                               std::shared_ptr<const octomap::OcTree> map = nullptr) {
+  CollisionWorldOptions collision;
+  for (const RollingWheel& wheel : motion.wheels) {
+    collision.ignore_floor_links.push_back(wheel.link);
+    const int joint = robot.links()[wheel.link].parent_joint;
+    collision.ignore_floor_links.push_back(robot.joints()[joint].parent_link);
+  }
+  const CollisionWorld world(robot, std::move(map), obstacles, collision);
+  CheckOptions options;
+  options.obstacles = obstacles;
+  return check_motion(robot, world, motion, options);
+}
+
 inline CheckReport check_plan(const Graph& graph, const std::vector<Obstacle>& obstacles = {},
                               std::shared_ptr<const octomap::OcTree> map = nullptr) {
   const Plan plan = plan_of(graph);
-  CollisionWorldOptions collision;
-  for (const Wheel& wheel : plan.wheels->wheels) {
-    collision.ignore_floor_links.push_back(wheel.link);
-    collision.ignore_floor_links.push_back(wheel.carrier);
-  }
-  const CollisionWorld world(*plan.robot->robot, std::move(map), obstacles, collision);
-  CheckOptions options;
-  options.obstacles = obstacles;
-  return check_motion(*plan.robot->robot, world, motion_of(graph, plan), options);
+  return check_drive(*plan.robot->robot, motion_of(graph, plan), obstacles, std::move(map));
 }
 
 inline void expect_feasible(const CheckReport& report) {

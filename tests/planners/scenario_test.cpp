@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"NoWheels", "<wheel link=\"wheel_1\" radius=\"0.078\"/>", "", 1, "without wheels"},
         Mistake{"Version2", "version=\"1\"", "version=\"2\"", 1, "version '2'"},
         Mistake{"NoVersion", "version=\"1\"", "", 1, "version"},
-        Mistake{"NotXml", "</wheels>", "</wheel>", 5, "not well-formed"}),
+        Mistake{"NotXml", "</wheels>", "</wheel>", 3, "not well-formed"}),
     [](const testing::TestParamInfo<Mistake>& info) { return std::string(info.param.name); });
 
 }  // namespace
