@@ -6,7 +6,9 @@
 #include <locograph/apps/optimize_command.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_command.h>
+#include <locograph/apps/plot_command.h>
 #include <locograph/apps/refine_command.h>
+#include <locograph/apps/view_command.h>
 #include <locograph/common/error.h>
 
 #include <CLI/Error.hpp>
@@ -26,7 +28,8 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "locograph " LOCOGRAPH_VERSION);
   app.require_subcommand(1);
   const std::vector<Command> commands = {add_optimize(app), add_plan(app), add_refine(app),
-                                         add_check(app),    add_info(app), add_list(app)};
+                                         add_check(app),    add_info(app), add_list(app),
+                                         add_view(app),     add_plot(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help_or_version) {

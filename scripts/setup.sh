@@ -31,10 +31,12 @@ listed_packages() { sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$root/scripts/depen
 
 # install_missing [PACKAGE…]: the packages given, or all of dependencies.txt.
 install_missing() {
-  local package missing=()
+  local entry package missing=()
   command -v dpkg-query >/dev/null || die "needs Debian 12; elsewhere install the equivalents of
 $(listed_packages)"
-  for package in ${*:-$(listed_packages)}; do
+  for entry in ${*:-$(listed_packages)}; do
+    package=${entry%%:*}
+    [ "$package" != "$entry" ] && command -v "${entry#*:}" >/dev/null && continue
     [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
       missing+=("$package")
   done

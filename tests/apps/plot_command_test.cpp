@@ -31,7 +31,9 @@ TEST(Plot, ConvergenceOfAnOptimisation) {
   LOCOGRAPH_NEEDS_GNUPLOT();
   LOCOGRAPH_NEEDS_SHARED_DATA();
   const CommandRunner runner;
-  runner.run("optimize " + shared("pose_graphs/tinyGrid3D.g2o") + " --json > a.json");
+  const Outcome done = runner.run("optimize " + shared("pose_graphs/tinyGrid3D.g2o") + " --json");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  runner.write("a.json", done.out);
   const std::string svg = plot(runner, "a.json");
   EXPECT_TRUE(contains(svg, "iteration"));
   EXPECT_TRUE(contains(svg, "chi2"));
@@ -93,8 +95,10 @@ TEST(Plot, TextOfAFileIsNeverACommand) {
   LOCOGRAPH_NEEDS_GNUPLOT();
   const CommandRunner runner;
   const std::string evil = "`touch owned` \"); system('touch owned') # ' \\n$END\ntouch";
-  const nlohmann::json violation = {{"constraint", evil}, {"unit", "m'\nsystem 'touch owned'"},
-                                    {"worst", 0.1},       {"limit", 0.2},
+  const nlohmann::json violation = {{"constraint", evil},
+                                    {"unit", "m'\nsystem 'touch owned'"},
+                                    {"worst", 0.1},
+                                    {"limit", 0.2},
                                     {"violated", false}};
   runner.write("c.json", nlohmann::json({{"violations", {violation}}}).dump());
   plot(runner, "c.json");

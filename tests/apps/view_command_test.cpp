@@ -37,9 +37,9 @@ std::filesystem::path viewer_template() {
          "share/locograph/viewer/template.html";
 }
 
-#define LOCOGRAPH_NEEDS_VIEWER()                                                     \
-  if (!std::filesystem::is_regular_file(viewer_template())) {                        \
-    GTEST_SKIP() << "the viewer is not built: " << viewer_template().string();       \
+#define LOCOGRAPH_NEEDS_VIEWER()                                               \
+  if (!std::filesystem::is_regular_file(viewer_template())) {                  \
+    GTEST_SKIP() << "the viewer is not built: " << viewer_template().string(); \
   }
 
 /// The scene inside a page; throws unless it is JSON.
@@ -63,8 +63,7 @@ std::string bytes_of(const std::string& base64) {
   int digits = 0;
   for (const char c : base64) {
     if (c == '=') break;
-    const std::string alphabet =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const std::string alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     group = group << 6 | static_cast<std::uint32_t>(alphabet.find(c));
     if (++digits % 4 != 0) continue;
     for (int shift = 16; shift >= 0; shift -= 8) bytes += static_cast<char>(group >> shift & 255);
@@ -188,9 +187,10 @@ TEST_F(ViewPlan, ExecutedPartAndWindowAreMarked) {
 }
 
 TEST_F(ViewPlan, TextOfAFileCannotEndTheScript) {
-  runner.write("evil.xml",
-               "<obstacles version=\"1\">\n<box name=\"&lt;/script>&lt;script>alert(1)&lt;/script>\" "
-               "center=\"9 9 1\" size=\"1 1 1\"/>\n</obstacles>\n");
+  runner.write(
+      "evil.xml",
+      "<obstacles version=\"1\">\n<box name=\"&lt;/script>&lt;script>alert(1)&lt;/script>\" "
+      "center=\"9 9 1\" size=\"1 1 1\"/>\n</obstacles>\n");
   const nlohmann::json scene = view(runner, "p.g2o --no-check --obstacles evil.xml");
   EXPECT_EQ(scene["obstacles"][0]["name"], "</script><script>alert(1)</script>");
   EXPECT_EQ(runner.read("page.html").find("alert(1)</script>"), std::string::npos);
@@ -225,8 +225,7 @@ TEST(View, SphereHasAllItsPosesBeforeAndAfter) {
   LOCOGRAPH_NEEDS_VIEWER();
   LOCOGRAPH_NEEDS_SHARED_DATA();
   const CommandRunner runner;
-  const nlohmann::json scene =
-      view(runner, shared("pose_graphs/sphere2500.g2o") + " --optimize");
+  const nlohmann::json scene = view(runner, shared("pose_graphs/sphere2500.g2o") + " --optimize");
   EXPECT_EQ(scene["kind"], "pose_graph");
   const nlohmann::json& graph = scene["graph"];
   EXPECT_EQ(graph["dimension"], 3);
@@ -333,8 +332,9 @@ class Served {
       ::dup2(pipe_ends[1], 1);
       ::close(pipe_ends[0]);
       ::close(pipe_ends[1]);
-      const std::string line = "cd '" + runner.folder().string() + "' && exec '" LOCOGRAPH_COMMAND
-                               "' view p.g2o --no-check --serve 0 " + more;
+      const std::string line =
+          "cd '" + runner.folder().string() +
+          "' && exec '" LOCOGRAPH_COMMAND "' view p.g2o --no-check --serve 0 " + more;
       ::execl("/bin/sh", "sh", "-c", line.c_str(), static_cast<char*>(nullptr));
       ::_exit(127);
     }
@@ -419,19 +419,22 @@ TEST_F(Live, PageIsServedAndTheRestIsNot) {
 }
 
 TEST_F(Live, EveryCycleArrivesAndTheEndIsTold) {
-  Served served(runner, "--speed 1000 --obstacles box.xml");
+  runner.write("aside.xml",
+               "<obstacles version=\"1\">\n"
+               "<box name=\"aside\" center=\"2 1.2 0.25\" size=\"0.4 0.4 0.5\"/>\n</obstacles>\n");
+  Served served(runner, "--speed 1000 --obstacles aside.xml");
   ASSERT_GT(served.port, 0);
   const auto stream = connect_live(served.port);
   const nlohmann::json start = receive(*stream);
   EXPECT_EQ(start["type"], "start");
-  EXPECT_EQ(start["configurations"], 50);
+  EXPECT_EQ(start["count"], 50);
   int cycles = 0;
   nlohmann::json message;
   for (message = receive(*stream); message["type"] == "cycle"; message = receive(*stream)) {
     EXPECT_EQ(message["executed"], cycles);
-    EXPECT_EQ(message["first"], cycles);
-    const std::size_t count = message["window"].get<std::size_t>() + 1;
-    EXPECT_EQ(unpack<float>(message["configurations"]).size(), 31 * count);
+    const nlohmann::json& changed = message["configurations"];
+    EXPECT_EQ(changed.size(), message["window"].get<std::size_t>() + 1);
+    EXPECT_EQ(changed[std::to_string(cycles)].size(), 31u);
     ++cycles;
   }
   EXPECT_EQ(message["type"], "end");
@@ -452,9 +455,8 @@ TEST_F(Live, ForeignPagesMayNotListen) {
   Served served(runner, "");
   ASSERT_GT(served.port, 0);
   Stream stream(connect(context_, served.port));
-  stream.set_option(beast::websocket::stream_base::decorator([](auto& request) {
-    request.set(beast::http::field::origin, "http://evil.example");
-  }));
+  stream.set_option(beast::websocket::stream_base::decorator(
+      [](auto& request) { request.set(beast::http::field::origin, "http://evil.example"); }));
   beast::error_code failed;
   stream.handshake("127.0.0.1:" + std::to_string(served.port), "/live", failed);
   EXPECT_EQ(failed, beast::websocket::error::upgrade_declined);

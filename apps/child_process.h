@@ -1,0 +1,47 @@
+#pragma once
+/// Other programs: found on the PATH, run without a shell, ended when they take too long.
+///
+///     if (const auto gnuplot = find_program({"gnuplot"})) {
+///       ProcessResult result = run_process(*gnuplot, {"-d", "plot.gp"}, 60.0);
+///       if (result.exit_code != 0) throw Error("gnuplot: " + result.last_line());
+///     }
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace locograph {
+
+/// The first of the names that is an executable file in a folder of PATH.
+std::optional<std::filesystem::path> find_program(const std::vector<std::string>& names);
+
+struct ProcessResult {
+  int exit_code = -1;  ///< 128 + signal when a signal ended it
+  bool timed_out = false;
+  std::string output;  ///< standard output and error
+
+  std::string last_line() const;
+};
+
+/// Waits for the program; after timeout_s it is killed with all its children. Its standard input is
+/// empty. Throws Error when it cannot be started.
+ProcessResult run_process(const std::filesystem::path& program,
+                          const std::vector<std::string>& arguments, double timeout_s);
+
+/// A fresh folder that is removed with all that is in it.
+class ScratchFolder {
+ public:
+  /// Throws Error when there is no temporary folder to make it in.
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace locograph

@@ -1,0 +1,91 @@
+#include <locograph/apps/live_refine.h>
+#include <locograph/apps/output.h>
+#include <locograph/apps/plan_file.h>
+#include <locograph/apps/scene.h>
+#include <locograph/planners/online/refine.h>
+
+#include <algorithm>
+
+namespace locograph {
+namespace {
+
+/// The client went away in the middle of a plan.
+struct ChannelClosed {};
+
+void send(LiveChannel& channel, const Json& message) {
+  if (!channel.send(message.dump(-1, ' ', false, Json::error_handler_t::replace))) {
+    throw ChannelClosed();
+  }
+}
+
+double time_of(const PlanFile& file, int index) {
+  return file.graph.vertex(VertexId<VertexConfiguration>{file.plan.slots[index]}).time_s;
+}
+
+Json violation_json(const PlanFile& file, const WindowViolation& violation) {
+  if (!violation.any()) return nullptr;
+  int index = 0;
+  for (std::size_t i = 0; i < file.plan.slots.size(); ++i) {
+    if (file.plan.slots[i] == violation.at_vertex) index = static_cast<int>(i);
+  }
+  return {{"constraint", violation.constraint},
+          {"worst", violation.worst},
+          {"unit", violation.unit},
+          {"index", index}};
+}
+
+Json cycle_json(const PlanFile& file, const CycleReport& cycle) {
+  Json configurations = Json::object();
+  for (int i = cycle.executed; i <= cycle.executed + cycle.window; ++i) {
+    const int slot = file.plan.slots[static_cast<std::size_t>(i)];
+    const double* state = file.graph.state(slot);
+    Json numbers = Json::array();
+    for (int k = 0; k < file.graph.state_size(slot); ++k) numbers.push_back(rounded(state[k]));
+    configurations[std::to_string(i)] = std::move(numbers);
+  }
+  return {{"type", "cycle"},
+          {"executed", cycle.executed},
+          {"window", cycle.window},
+          {"configurations", std::move(configurations)},
+          {"feasible", cycle.feasible},
+          {"cycle_time", cycle.time_total},
+          {"violation", violation_json(file, cycle.violation)}};
+}
+
+void run(const LiveJob& job, LiveChannel& channel) {
+  PlanFile file = load_plan(job.plan);
+  const LoadedWorld world = load_world(world_of(file, job.map, job.obstacles));
+  const WorldDistance seen = seen_world(file, world);
+  send(channel, {{"type", "start"},
+                 {"count", file.plan.slots.size()},
+                 {"dof", file.plan.robot->robot->tangent_size()},
+                 {"speed", job.speed}});
+  RefineOptions options;
+  options.planner.horizon = job.horizon;
+  options.verify = step_check(file, world);
+  options.on_cycle = [&](const CycleReport& cycle) {
+    send(channel, cycle_json(file, cycle));
+    const double step_s = time_of(file, cycle.executed + 1) - time_of(file, cycle.executed);
+    if (!channel.wait(std::max(0.0, step_s / job.speed - cycle.time_total))) throw ChannelClosed();
+  };
+  const RefineReport report = refine(
+      file.graph, [&seen](int executed) { return executed == 0 ? &seen : nullptr; }, options);
+  send(channel, {{"type", "end"},
+                 {"success", report.success},
+                 {"reason", report.reason},
+                 {"left", report.configurations}});
+}
+
+}  // namespace
+
+void live_refine(const LiveJob& job, LiveChannel& channel) {
+  try {
+    run(job, channel);
+  } catch (const ChannelClosed&) {
+  } catch (const Error& error) {
+    const Json end = {{"type", "end"}, {"success", false}, {"reason", error.what()}};
+    channel.send(end.dump(-1, ' ', false, Json::error_handler_t::replace));
+  }
+}
+
+}  // namespace locograph

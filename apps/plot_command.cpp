@@ -1,0 +1,36 @@
+#include <locograph/apps/output.h>
+#include <locograph/apps/plot.h>
+#include <locograph/apps/plot_command.h>
+
+#include <memory>
+#include <string>
+
+namespace locograph {
+namespace {
+
+struct CommandOptions {
+  std::string input, output;
+};
+
+ExitCode plot(const CommandOptions& options) {
+  check_writable(options.output);
+  plot_result(options.input).write(options.output);
+  print_text("written: " + options.output + '\n');
+  return kDone;
+}
+
+}  // namespace
+
+Command add_plot(CLI::App& app) {
+  const auto options = std::make_shared<CommandOptions>();
+  CommandOptions& o = *options;
+  CLI::App* parser = app.add_subcommand("plot", "Draw a diagram of a result");
+  parser
+      ->add_option("RESULT", o.input,
+                   "JSON of optimize, refine or check, a plan (.g2o) or a table (.csv)")
+      ->required();
+  parser->add_option("-o,--output", o.output, "Diagram to write (.svg)")->required();
+  return {parser, [options] { return plot(*options); }};
+}
+
+}  // namespace locograph

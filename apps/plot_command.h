@@ -1,0 +1,10 @@
+#pragma once
+/// `locograph plot`: a diagram of what another command found.
+
+#include <locograph/apps/command.h>
+
+namespace locograph {
+
+Command add_plot(CLI::App& app);
+
+}  // namespace locograph

@@ -1,0 +1,151 @@
+#include <locograph/apps/output.h>
+#include <locograph/apps/plan_file.h>
+#include <locograph/apps/plot.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace locograph {
+namespace {
+
+/// One line of a panel: a joint's values over time, and the largest, by which lines are ranked.
+struct Series {
+  std::string name;
+  std::vector<double> values;
+  double peak = 0.0;
+};
+
+constexpr std::size_t kNamedLines = 6;
+
+/// The lines that come nearest to a limit in colour and by name, the others in grey.
+void add_lines(PlotScript& plot, const std::string& prefix, const std::vector<double>& time_s,
+               std::vector<Series> series) {
+  std::stable_sort(series.begin(), series.end(),
+                   [](const Series& a, const Series& b) { return a.peak > b.peak; });
+  const char* colors[kNamedLines] = {"'#c8372d'", "'#2f6fb5'", "'#3a9a5b'",
+                                     "'#d98a1f'", "'#7a4fa3'", "'#1b9aaa'"};
+  std::string command;
+  for (std::size_t k = series.size(); k-- > 0;) {
+    std::string rows;
+    for (std::size_t i = 0; i < series[k].values.size(); ++i) {
+      rows += short_number(time_s[i]) + ' ' + short_number(series[k].values[i]) + '\n';
+    }
+    const std::string name = prefix + std::to_string(k);
+    plot.data(name, rows);
+    const bool named = k < kNamedLines;
+    command += (command.empty() ? "plot $" : ", $") + name + " with lines linewidth " +
+               (named ? "1.8" : "0.8") + " linecolor " + (named ? colors[k] : "'#c0c4c8'") +
+               (named ? " title " + PlotScript::label(series[k].name) : " notitle");
+  }
+  plot.line(command.empty() ? "plot 0 notitle" : command);
+}
+
+/// Where the joints stand between their limits: −1 at the lower, 1 at the upper one.
+std::vector<Series> positions(const Robot& robot, const Motion& motion) {
+  std::vector<Series> all;
+  for (int j = 0; j < robot.active_joint_count(); ++j) {
+    const Joint& joint = robot.active_joint(j);
+    if (!std::isfinite(joint.lower) || !(joint.upper > joint.lower)) continue;
+    Series series{joint.name, {}};
+    for (const Eigen::VectorXd& q : motion.configurations) {
+      const double value = q[robot.base_configuration_size() + j];
+      series.values.push_back((2.0 * value - joint.lower - joint.upper) /
+                              (joint.upper - joint.lower));
+      series.peak = std::max(series.peak, std::abs(series.values.back()));
+    }
+    all.push_back(std::move(series));
+  }
+  return all;
+}
+
+/// |velocity| over its limit, constant from one configuration to the next: shown where it starts.
+std::vector<Series> velocities(const Robot& robot, const Motion& motion) {
+  std::vector<Series> all;
+  for (int j = 0; j < robot.active_joint_count(); ++j) {
+    const Joint& joint = robot.active_joint(j);
+    if (!std::isfinite(joint.max_velocity) || joint.max_velocity <= 0.0) continue;
+    const int k = robot.base_configuration_size() + j;
+    Series series{joint.name, {}};
+    for (std::size_t i = 0; i + 1 < motion.configurations.size(); ++i) {
+      const double step_s = motion.time_s[i + 1] - motion.time_s[i];
+      const double change = std::abs(motion.configurations[i + 1][k] - motion.configurations[i][k]);
+      series.values.push_back(step_s > 0.0 ? change / step_s / joint.max_velocity : 0.0);
+      series.peak = std::max(series.peak, series.values.back());
+    }
+    all.push_back(std::move(series));
+  }
+  return all;
+}
+
+void limit_line(PlotScript& plot, int tag, double at) {
+  plot.line("set arrow " + std::to_string(tag) + " from graph 0, first " + short_number(at) +
+            " to graph 1, first " + short_number(at) +
+            " nohead linewidth 1.4 dashtype 2 linecolor '#202428'");
+}
+
+void add_base_path(PlotScript& plot, const Motion& motion) {
+  std::string rows;
+  Eigen::AlignedBox2d box;
+  for (const Eigen::VectorXd& q : motion.configurations) {
+    box.extend(Eigen::Vector2d(q[0], q[1]));
+    rows += short_number(q[0]) + ' ' + short_number(q[1]) + '\n';
+  }
+  const double room = 0.15 + 0.05 * box.diagonal().norm();
+  plot.data("path", rows);
+  plot.line("set title 'base path, seen from above' noenhanced");
+  plot.line("set xlabel 'x [m]'");
+  plot.line("set ylabel 'y [m]'");
+  plot.line("set size ratio -1");
+  plot.line("set xrange [" + short_number(box.min().x() - room) + ":" +
+            short_number(box.max().x() + room) + "]");
+  plot.line("set yrange [" + short_number(box.min().y() - room) + ":" +
+            short_number(box.max().y() + room) + "]");
+  plot.line(
+      "plot $path with linespoints linewidth 1.6 pointtype 7 pointsize 0.35 linecolor "
+      "'#2f6fb5' notitle, $path every ::0::0 with points pointtype 7 pointsize 1 linecolor "
+      "'#3a9a5b' title 'start'");
+}
+
+}  // namespace
+
+PlotScript plot_plan(const std::filesystem::path& file) {
+  const PlanFile plan = load_plan(file.string());
+  const Robot& robot = *plan.plan.robot->robot;
+  const Motion motion = motion_of(plan.graph, plan.plan);
+  if (motion.configurations.size() < 2) {
+    throw Error(file.string(), 0, "one configuration is no motion", "two or more");
+  }
+  const bool base = robot.floating_base();
+  PlotScript plot(1000, base ? 1020 : 720);
+  plot.line("set multiplot layout " + std::string(base ? "3" : "2") + ",1 title " +
+            PlotScript::label(file.filename().string() + ": " + robot.name() +
+                              ", joints nearest to their limits in colour"));
+  plot.line("set rmargin 26");
+  plot.line("set lmargin 10");
+  plot.line("set key outside right top invert font ',11'");
+  plot.line("set xlabel 'time [s]'");
+  plot.line("set xrange [" + short_number(motion.time_s.front()) + ":" +
+            short_number(motion.time_s.back()) + "]");
+  plot.line("set title 'joint positions (-1 lower limit, 1 upper limit)'");
+  plot.line("set ylabel 'position'");
+  plot.line("set yrange [-1.1:1.1]");
+  limit_line(plot, 1, -1.0);
+  limit_line(plot, 2, 1.0);
+  add_lines(plot, "position", motion.time_s, positions(robot, motion));
+  plot.line("unset arrow 1");
+  const std::vector<Series> speeds = velocities(robot, motion);
+  double fastest = 1.0;
+  for (const Series& series : speeds) fastest = std::max(fastest, series.peak);
+  plot.line("set title 'joint velocities (1 at the limit)'");
+  plot.line("set ylabel '|velocity| / limit'");
+  plot.line("set yrange [0:" + short_number(1.1 * fastest) + "]");
+  add_lines(plot, "velocity", motion.time_s, speeds);
+  plot.line("unset arrow 2");
+  if (base) add_base_path(plot, motion);
+  plot.line("unset multiplot");
+  return plot;
+}
+
+}  // namespace locograph

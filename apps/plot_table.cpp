@@ -1,0 +1,171 @@
+#include <locograph/apps/output.h>
+#include <locograph/apps/plot.h>
+#include <locograph/apps/statistics.h>
+#include <locograph/common/atomic_file.h>
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <sstream>
+#include <vector>
+
+namespace locograph {
+namespace {
+
+/// A table with a header line; fields are plain, or in double quotes with "" for a quote (RFC 4180,
+/// without line breaks inside fields).
+struct Table {
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;
+
+  int column(const std::string& name) const {
+    const auto found = std::find(header.begin(), header.end(), name);
+    return found == header.end() ? -1 : static_cast<int>(found - header.begin());
+  }
+};
+
+std::vector<std::string> fields(std::string line) {
+  if (!line.empty() && line.back() == '\r') line.pop_back();
+  std::vector<std::string> result(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') {
+      const bool pair = quoted && i + 1 < line.size() && line[i + 1] == '"';
+      if (pair) result.back() += line[i++];
+      if (!pair) quoted = !quoted;
+    } else if (line[i] == ',' && !quoted) {
+      result.emplace_back();
+    } else {
+      result.back() += line[i];
+    }
+  }
+  return result;
+}
+
+Table read_table(const std::filesystem::path& file) {
+  std::istringstream text(read_file(file));
+  Table table;
+  int number = 0;
+  for (std::string line; std::getline(text, line);) {
+    ++number;
+    if (line.empty() || line == "\r" || line[0] == '#') continue;
+    std::vector<std::string> row = fields(line);
+    if (table.header.empty()) {
+      table.header = std::move(row);
+      continue;
+    }
+    if (row.size() != table.header.size()) {
+      throw Error(file.string(), number, std::to_string(row.size()) + " fields",
+                  std::to_string(table.header.size()) + " as in the header");
+    }
+    table.rows.push_back(std::move(row));
+  }
+  if (table.rows.empty()) {
+    throw Error(file.string(), 0, "holds no rows", "a header line and one line for each run");
+  }
+  return table;
+}
+
+std::optional<double> number(const std::string& text) {
+  double value = 0.0;
+  const std::from_chars_result parsed =
+      std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = parsed.ec == std::errc() && parsed.ptr == text.data() + text.size();
+  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+bool is_yes(const std::string& text) { return text == "true" || text == "1" || text == "yes"; }
+
+bool is_time(const std::string& name) {
+  return name.starts_with("time") || name.ends_with("_s") || name.ends_with("_time");
+}
+
+/// The numbers of a column, sorted; of the successful runs only when the table tells.
+std::vector<double> column_values(const Table& table, std::size_t column, int success) {
+  std::vector<double> values;
+  for (const std::vector<std::string>& row : table.rows) {
+    if (success >= 0 && !is_yes(row[static_cast<std::size_t>(success)])) continue;
+    if (const std::optional<double> value = number(row[column])) values.push_back(*value);
+  }
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+}  // namespace
+
+PlotScript plot_table(const std::filesystem::path& file) {
+  const Table table = read_table(file);
+  const int success = table.column("success");
+  std::string boxes, tics;
+  int count = 0;
+  double highest = 0.0;
+  for (std::size_t c = 0; c < table.header.size(); ++c) {
+    if (!is_time(table.header[c])) continue;
+    const std::vector<double> values = column_values(table, c, success);
+    if (values.empty()) continue;
+    // Candlesticks: x, lower quartile, minimum, p95, upper quartile, median.
+    boxes += std::to_string(++count);
+    for (const double p : {0.25, 0.0, 0.95, 0.75, 0.50}) {
+      boxes += ' ' + short_number(percentile(values, p));
+    }
+    boxes += '\n';
+    tics +=
+        (count > 1 ? ", " : "") + PlotScript::label(table.header[c]) + ' ' + std::to_string(count);
+    highest = std::max(highest, percentile(values, 0.95));
+  }
+  if (count == 0) {
+    throw Error(file.string(), 0, "no column of times with numbers",
+                "columns named time… or …_s, and success");
+  }
+  long solved = 0;
+  for (const std::vector<std::string>& row : table.rows) {
+    solved += success >= 0 && is_yes(row[static_cast<std::size_t>(success)]) ? 1 : 0;
+  }
+  const long runs = static_cast<long>(table.rows.size());
+  PlotScript plot(std::max(700, 180 + 120 * count), 520);
+  std::string title = file.filename().string() + ": " + counted(runs, "run", "runs");
+  if (success >= 0) {
+    title +=
+        ", " + std::to_string(solved) + " solved (" +
+        short_number(std::round(1000.0 * static_cast<double>(solved) / static_cast<double>(runs)) /
+                     10.0) +
+        " %)";
+  }
+  plot.line("set multiplot title " + PlotScript::label(title));
+  plot.line("set bmargin 4");
+  plot.line("set tmargin 4");
+  if (success >= 0) {
+    plot.line("set lmargin screen 0.09");
+    plot.line("set rmargin screen 0.2");
+    plot.line("set yrange [0:" + std::to_string(runs) + "]");
+    plot.line("set xrange [-0.8:1.8]");
+    plot.line("set ylabel 'runs'");
+    plot.line("set boxwidth 0.7");
+    plot.line("set xtics ('solved' 0, 'failed' 1)");
+    plot.data("solved", "0 " + std::to_string(solved) + '\n');
+    plot.data("failed", "1 " + std::to_string(runs - solved) + '\n');
+    plot.line(
+        "plot $solved with boxes linecolor '#3a9a5b' notitle, $failed with boxes linecolor "
+        "'#c8372d' notitle");
+    plot.line("set lmargin screen 0.30");
+  } else {
+    plot.line("set lmargin screen 0.10");
+  }
+  plot.line("set rmargin screen 0.97");
+  plot.line("set xrange [0.3:" + short_number(count + 0.7) + "]");
+  plot.line("set yrange [0:" + short_number(highest > 0.0 ? 1.1 * highest : 1.0) + "]");
+  plot.line("set ylabel 'time [s]'");
+  plot.line("set xtics (" + tics + ")");
+  plot.line("set boxwidth 0.4");
+  plot.line("set key top right");
+  plot.data("times", boxes);
+  plot.line(
+      "plot $times using 1:2:3:4:5 with candlesticks linecolor '#2f6fb5' linewidth 1.4 "
+      "fillstyle solid 0.35 title 'quartiles; whiskers: least, p95' whiskerbars 0.5, "
+      "$times using 1:6:6:6:6 with candlesticks linecolor '#202428' linewidth 2.2 "
+      "title 'median'");
+  plot.line("unset multiplot");
+  return plot;
+}
+
+}  // namespace locograph

@@ -1,0 +1,102 @@
+#include <locograph/apps/data_folder.h>
+#include <locograph/apps/graph_types.h>
+#include <locograph/apps/scene.h>
+#include <locograph/common/atomic_file.h>
+#include <locograph/core/graph_file.h>
+
+#include <cmath>
+
+namespace locograph {
+namespace {
+
+bool has_configurations(const Graph& graph) {
+  for (const auto& pool : graph.vertex_pools()) {
+    if (pool->type() == typeid(VertexConfiguration) && pool->size() > 0) return true;
+  }
+  return false;
+}
+
+Json plan_scene(PlanFile file, const SceneOptions& options) {
+  const Robot& robot = *file.plan.robot->robot;
+  Json scene = {{"version", 1},
+                {"kind", "plan"},
+                {"title", std::filesystem::path(file.name).filename().string()},
+                {"robot", robot_scene(robot)}};
+  add_plan_scene(file, options, scene);
+  const LoadedWorld world = load_world(world_of(file, options.map, options.obstacles));
+  Eigen::AlignedBox3d near;
+  if (robot.floating_base()) {
+    for (const int slot : file.plan.slots) {
+      near.extend(Eigen::Vector3d(Eigen::Map<const Eigen::Vector3d>(file.graph.state(slot))));
+    }
+  } else {
+    near.extend(Eigen::Vector3d::Zero());
+  }
+  add_world_scene(world, near, scene);
+  if (!options.check) return scene;
+  try {
+    scene["check"] = check_scene(file, check_plan(file, world));
+  } catch (const Error& error) {
+    // E.g. a collision mesh that is missing: the rest can be shown all the same.
+    print_warning(std::string("not checked: ") + error.what());
+  }
+  return scene;
+}
+
+}  // namespace
+
+double rounded(double value) { return std::round(1e6 * value) / 1e6; }
+
+Json vector_json(const Eigen::Vector3d& v) {
+  return Json::array({rounded(v.x()), rounded(v.y()), rounded(v.z())});
+}
+
+Json pose_json(const Eigen::Isometry3d& pose) {
+  Json json = vector_json(pose.translation());
+  const Eigen::Quaterniond q(pose.linear());
+  for (const double value : {q.x(), q.y(), q.z(), q.w()}) json.push_back(rounded(value));
+  return json;
+}
+
+Json make_scene(const std::string& file, const SceneOptions& options) {
+  if (std::filesystem::path(file).extension() == ".urdf") return standing_scene(file, options);
+  ReadReport report;
+  Graph graph = read_graph(file, graph_types(), {.lenient = options.lenient}, &report);
+  if (!has_configurations(graph)) return pose_graph_scene(std::move(graph), file, options);
+  PlanFile plan;
+  plan.name = file;
+  plan.graph = std::move(graph);
+  try {
+    plan.plan = plan_of(plan.graph);
+  } catch (const Error& error) {
+    throw Error(file, 0, error.what(), "");
+  }
+  return plan_scene(std::move(plan), options);
+}
+
+std::string scene_page(const Json& scene) {
+  const std::filesystem::path file = data_folder() / "viewer/template.html";
+  if (!std::filesystem::is_regular_file(file)) {
+    throw Error(file.string(), 0, "the viewer's page is missing",
+                "a locograph built with -DLOCOGRAPH_VIEWER=ON");
+  }
+  std::string page = read_file(file);
+  const std::string begin = "<script type=\"application/json\" id=\"locograph-scene\">";
+  const std::size_t at = page.find(begin + "{}</script>");
+  if (at == std::string::npos) {
+    throw Error(file.string(), 0, "no place for a scene", begin + "{}</script>");
+  }
+  std::string text;
+  // Inside a script element no < may stand that could end it or begin another; in JSON it is only
+  // ever part of a string, where it can be written as its number.
+  for (const char c : scene.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+    if (c == '<') {
+      text += "\\u003c";
+    } else {
+      text += c;
+    }
+  }
+  return page.replace(at + begin.size(), 2, text);
+}
+
+}  // namespace locograph

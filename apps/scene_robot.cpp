@@ -1,0 +1,169 @@
+#include <locograph/apps/packed.h>
+#include <locograph/apps/scene.h>
+#include <locograph/robots/stl_file.h>
+#include <locograph/robots/visual_model.h>
+
+#include <cmath>
+#include <map>
+
+namespace locograph {
+namespace {
+
+const char* type_name(ShapeType type) {
+  switch (type) {
+    case ShapeType::kSphere:
+      return "sphere";
+    case ShapeType::kCapsule:
+      return "capsule";
+    case ShapeType::kCylinder:
+      return "cylinder";
+    case ShapeType::kBox:
+      return "box";
+    case ShapeType::kMesh:
+      return "mesh";
+  }
+  return "";
+}
+
+const char* type_name(JointType type) {
+  switch (type) {
+    case JointType::kFixed:
+      return "fixed";
+    case JointType::kRevolute:
+      return "revolute";
+    case JointType::kContinuous:
+      return "continuous";
+    case JointType::kPrismatic:
+      return "prismatic";
+  }
+  return "";
+}
+
+/// Each mesh file once.
+class Meshes {
+ public:
+  int index(const std::filesystem::path& file) {
+    const auto [found, added] = index_.emplace(file, static_cast<int>(list_.size()));
+    if (added) {
+      std::vector<float> numbers;
+      for (const Eigen::Vector3d& corner : stl_triangles(file)) {
+        for (int i = 0; i < 3; ++i) numbers.push_back(static_cast<float>(corner[i]));
+      }
+      list_.push_back({{"name", file.filename().string()}, {"triangles", packed_floats(numbers)}});
+    }
+    return found->second;
+  }
+  const Json& list() const { return list_; }
+
+ private:
+  std::map<std::filesystem::path, int> index_;
+  Json list_ = Json::array();
+};
+
+Json shape_json(const VisualShape& shape, Meshes& meshes) {
+  Json json = {{"type", type_name(shape.type)}, {"pose", pose_json(shape.link_from_shape)}};
+  switch (shape.type) {
+    case ShapeType::kCapsule:
+    case ShapeType::kCylinder:
+      json["length"] = shape.length;
+      [[fallthrough]];
+    case ShapeType::kSphere:
+      json["radius"] = shape.radius;
+      break;
+    case ShapeType::kBox:
+      json["size"] = vector_json(shape.size);
+      break;
+    case ShapeType::kMesh:
+      json["mesh"] = meshes.index(shape.mesh_file);
+      json["scale"] = vector_json(shape.size);
+      break;
+  }
+  json["color"] = {rounded(shape.color[0]), rounded(shape.color[1]), rounded(shape.color[2]),
+                   rounded(shape.color[3])};
+  return json;
+}
+
+/// JSON has no infinity: what is unlimited is null.
+Json limit(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json joint_json(const Joint& joint) {
+  return {{"name", joint.name},
+          {"type", type_name(joint.type)},
+          {"parent", joint.parent_link},
+          {"child", joint.child_link},
+          {"origin", pose_json(joint.parent_from_joint)},
+          {"axis", vector_json(joint.axis)},
+          {"lower", limit(joint.lower)},
+          {"upper", limit(joint.upper)},
+          {"velocity", limit(joint.max_velocity)},
+          {"effort", limit(joint.max_effort)},
+          {"index", joint.index},
+          {"frozen", joint.frozen_position}};
+}
+
+}  // namespace
+
+Json robot_scene(const Robot& robot) {
+  const Eigen::Vector4d collision_color(0.95, 0.60, 0.20, 0.55);
+  const std::vector<VisualShape> visuals = load_visuals(robot);
+  Meshes meshes;
+  Json links = Json::array(), joints = Json::array();
+  for (std::size_t i = 0; i < robot.links().size(); ++i) {
+    const Link& link = robot.links()[i];
+    Json visual = Json::array(), collision = Json::array();
+    for (const VisualShape& shape : visuals) {
+      if (shape.link != static_cast<int>(i) || !shape.drawable()) continue;
+      visual.push_back(shape_json(shape, meshes));
+    }
+    for (const CollisionShape& shape : link.collision) {
+      const VisualShape drawn = as_visual(shape, collision_color);
+      if (drawn.drawable()) collision.push_back(shape_json(drawn, meshes));
+    }
+    links.push_back({{"name", link.name},
+                     {"mass", link.mass},
+                     {"com", vector_json(link.com)},
+                     {"visual", std::move(visual)},
+                     {"collision", std::move(collision)}});
+  }
+  for (const Joint& joint : robot.joints()) joints.push_back(joint_json(joint));
+  return {{"name", robot.name()},      {"floating_base", robot.floating_base()},
+          {"links", std::move(links)}, {"joints", std::move(joints)},
+          {"meshes", meshes.list()},   {"missing", missing_meshes(visuals)}};
+}
+
+Json standing_scene(const std::string& urdf, const SceneOptions& options) {
+  std::filesystem::path srdf = options.srdf;
+  if (srdf.empty()) {
+    srdf = urdf;
+    srdf.replace_extension(".srdf");
+    if (!std::filesystem::exists(srdf)) srdf.clear();
+  }
+  RobotOptions robot_options;
+  robot_options.lenient_srdf = true;
+  const Robot robot = Robot::load(urdf, srdf, robot_options);
+  std::string state = options.state;
+  const std::vector<std::string> states = robot.configuration_names();
+  for (const char* usual : {"home", "standing"}) {
+    const bool known = std::find(states.begin(), states.end(), usual) != states.end();
+    if (state.empty() && known) state = usual;
+  }
+  if (state.empty() && !states.empty()) state = states.front();
+  Eigen::VectorXd q =
+      state.empty() ? robot.neutral_configuration() : robot.named_configuration(state);
+  q[2] -= lowest_point(robot, q);
+  std::vector<float> numbers;
+  for (const double value : q) numbers.push_back(static_cast<float>(value));
+  const std::string title =
+      std::filesystem::path(urdf).filename().string() + (state.empty() ? "" : ", " + state);
+  return {{"version", 1},
+          {"kind", "plan"},
+          {"title", title},
+          {"robot", robot_scene(robot)},
+          {"plan",
+           {{"times", {0.0}},
+            {"configurations", packed_floats(numbers)},
+            {"configuration_size", q.size()},
+            {"ids", {0}}}}};
+}
+
+}  // namespace locograph

@@ -1,0 +1,10 @@
+#pragma once
+/// `locograph view`: a plan, a pose graph or a robot as one self-contained page.
+
+#include <locograph/apps/command.h>
+
+namespace locograph {
+
+Command add_view(CLI::App& app);
+
+}  // namespace locograph

@@ -1,0 +1,83 @@
+/** Camera presets, and the camera that goes with the robot. */
+import { Box3, Matrix4, Vector3 } from 'three';
+import { Stage } from './stage';
+
+export type ViewName = 'overview' | 'front' | 'side' | 'top' | 'follow';
+export const VIEWS: ViewName[] = ['overview', 'front', 'side', 'top', 'follow'];
+
+/** Directions from what is looked at to the camera, in the frame of the robot's heading. */
+const DIRECTIONS: Record<ViewName, [number, number, number]> = {
+  overview: [0.55, -0.75, 0.5],
+  front: [1, 0, 0.12],
+  side: [0, -1, 0.1],
+  top: [-0.0005, 0, 1],
+  follow: [0.72, -0.95, 0.5],
+};
+
+export class CameraRig {
+  view: ViewName = 'follow';
+  following = false;
+
+  private readonly last = new Vector3();
+  private readonly base = new Vector3();
+  private readonly shift = new Vector3();
+  private readonly direction = new Vector3();
+  private readonly up = new Vector3(0, 0, 1);
+
+  constructor(private readonly stage: Stage) {}
+
+  /** Looks from a preset direction at a sphere, turned by the heading [rad]. */
+  look(view: ViewName, centre: Vector3, radius: number, heading: number): void {
+    this.view = view;
+    const { camera, controls } = this.stage;
+    const narrow = Math.min(1, camera.aspect);
+    const half = 0.5 * (camera.fov * Math.PI) / 180;
+    const distance = radius / Math.sin(half) / Math.sqrt(narrow) / narrow ** 0.35;
+    this.direction
+      .fromArray(DIRECTIONS[view])
+      .normalize()
+      .applyAxisAngle(this.up, view === 'overview' || view === 'top' ? 0 : heading);
+    if (view === 'top') this.direction.set(0, -0.0005, 1).normalize();
+    controls.target.copy(centre);
+    camera.position.copy(centre).addScaledVector(this.direction, distance);
+    controls.update();
+    this.stage.invalidate();
+  }
+
+  lookAtBox(box: Box3, fromAbove: boolean): void {
+    const centre = box.getCenter(new Vector3());
+    const radius = 0.5 * box.getSize(new Vector3()).length();
+    this.look(fromAbove ? 'top' : 'overview', centre, Math.max(0.92 * radius, 0.5), 0);
+  }
+
+  startFollowing(world: Matrix4): void {
+    this.following = true;
+    this.last.setFromMatrixPosition(world);
+  }
+
+  /** Carries the camera along with the robot's base. */
+  follow(world: Matrix4): void {
+    this.base.setFromMatrixPosition(world);
+    if (this.following) {
+      this.shift.subVectors(this.base, this.last);
+      this.stage.controls.target.add(this.shift);
+      this.stage.camera.position.add(this.shift);
+      this.stage.controls.update();
+    }
+    this.last.copy(this.base);
+  }
+
+  /** Aims at a point without turning. */
+  aimAt(point: Vector3): void {
+    const { camera, controls } = this.stage;
+    this.shift.subVectors(point, controls.target).multiplyScalar(0.6);
+    controls.target.add(this.shift);
+    camera.position.add(this.shift);
+    controls.update();
+  }
+}
+
+/** Heading of a base frame: the angle of its x axis about world z [rad]. */
+export function headingOf(world: Matrix4): number {
+  return Math.atan2(world.elements[1], world.elements[0]);
+}

@@ -1,0 +1,75 @@
+/** What the checker found: violated constraints on top, red; a click goes there. */
+import { element, quantity } from './dom';
+import { CheckReport, Violation } from './scene_format';
+import { Mark } from './violation_view';
+
+const FIGURES: [string, string, string][] = [
+  ['min_clearance_m', 'clearance', 'm'],
+  ['min_self_clearance_m', 'self-clearance', 'm'],
+  ['min_balance_margin', 'balance margin', ''],
+  ['max_torque_ratio', 'torque / limit', ''],
+  ['max_velocity_ratio', 'velocity / limit', ''],
+  ['max_contact_error_m', 'contact error', 'm'],
+];
+
+export class CheckList {
+  private readonly rows = new Map<number, HTMLElement>();
+
+  constructor(
+    parent: HTMLElement, check: CheckReport, marks: Mark[], private readonly jump: (i: number) => void,
+  ) {
+    const bad = marks.filter(({ violation }) => violation.violated).length;
+    const verdict = element('p', 'verdict', parent);
+    const feasible = check.feasible ?? bad === 0;
+    verdict.classList.add(feasible ? 'good' : 'bad');
+    verdict.textContent = feasible
+      ? `Feasible: all ${marks.length || ''} constraints hold`.replace('  ', ' ')
+      : `Infeasible: ${bad} of ${marks.length} constraints violated`;
+
+    const figures = element('dl', 'figures', parent);
+    for (const [key, name, unit] of FIGURES) {
+      if (typeof check[key] !== 'number') continue;
+      const tile = element('div', '', figures);
+      element('dt', '', tile).textContent = name;
+      element('dd', '', tile).textContent = quantity(check[key], unit);
+    }
+    const list = element('ul', 'violations', parent);
+    list.id = 'violations';
+    const order = marks.map((_, i) => i);
+    order.sort((a, b) => Number(marks[b].violation.violated) - Number(marks[a].violation.violated));
+    for (const i of order) this.addRow(list, marks[i], i);
+  }
+
+  select(index: number): void {
+    for (const [i, row] of this.rows) {
+      if (i === index) row.setAttribute('aria-current', 'true');
+      else row.removeAttribute('aria-current');
+    }
+  }
+
+  private addRow(list: HTMLElement, { violation, time }: Mark, index: number): void {
+    const row = element('button', violation.violated ? 'bad' : 'good', element('li', '', list));
+    row.type = 'button';
+    row.disabled = time === null;
+    element('span', 'name', row).textContent = violation.constraint;
+    element('span', 'worst', row).textContent = quantity(violation.worst, violation.unit);
+    const detail = element('span', 'detail', row);
+    details(violation, time).forEach((part, i) => {
+      if (i > 0) detail.append(' · ');
+      element('span', part.length < 24 ? 'short' : '', detail).textContent = part;
+    });
+    row.addEventListener('click', () => this.jump(index));
+    this.rows.set(index, row);
+  }
+}
+
+function details(violation: Violation, time: number | null): string[] {
+  const parts: string[] = [];
+  if (violation.what) parts.push(violation.what);
+  if (typeof violation.limit === 'number') {
+    parts.push(`limit ${quantity(violation.limit, violation.unit)}`);
+  }
+  if (violation.violated && violation.count) parts.push(`${violation.count} ×`);
+  if (time !== null) parts.push(`at ${time.toFixed(2)} s`);
+  return parts;
+}

@@ -1,0 +1,134 @@
+/** The robot on the screen, and its ghosts: translucent copies at key configurations. */
+import {
+  Box3, EqualDepth, Group, InstancedMesh, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial,
+  MeshPhongMaterial, Vector3,
+} from 'three';
+import { Kinematics } from './kinematics';
+import { Plan } from './plan';
+import { RobotDescription } from './scene_format';
+import { linkGeometry, Meshes } from './shapes';
+
+const COLLISION_COLOUR = [0.93, 0.6, 0.2];
+const MOST_GHOSTS = 60;
+export const GHOST_COLOUR = 0x8ab6ea;
+
+interface LinkMesh {
+  link: number;
+  mesh: Mesh;
+}
+
+export class RobotView {
+  readonly group = new Group();
+  readonly ghosts = new Group();
+  readonly hasVisual: boolean;
+  readonly hasCollision: boolean;
+
+  private readonly visual = new Group();
+  private readonly collision = new Group();
+  private readonly links: LinkMesh[] = [];
+  private readonly ghostLinks: { link: number; meshes: InstancedMesh[] }[] = [];
+  private readonly shape = new Box3();
+
+  constructor(
+    robot: RobotDescription,
+    private readonly kinematics: Kinematics,
+    private readonly ghostKinematics: Kinematics,
+  ) {
+    this.hasVisual = robot.links.some((link) => link.visual?.length);
+    this.hasCollision = robot.links.some((link) => link.collision?.length);
+    const meshes = new Meshes(robot);
+    const material = new MeshPhongMaterial({
+      vertexColors: true, specular: 0x30343a, shininess: 42,
+    });
+    const ghostDepth = new MeshBasicMaterial({ colorWrite: false });
+    const ghost = new MeshLambertMaterial({
+      color: GHOST_COLOUR, transparent: true, opacity: 0.36, depthWrite: false,
+      depthFunc: EqualDepth,
+    });
+    robot.links.forEach((link, i) => {
+      const visual = linkGeometry(link.visual, meshes);
+      const collision = linkGeometry(link.collision, meshes, COLLISION_COLOUR);
+      if (visual) this.addLink(this.visual, i, new Mesh(visual, material));
+      if (collision) this.addLink(this.collision, i, new Mesh(collision, material));
+      const ghostGeometry = this.hasVisual ? visual : collision;
+      if (!ghostGeometry) return;
+      // Depth first, then colour where it is nearest: no inner faces shine through.
+      const pair = [ghostDepth, ghost].map((m, pass) => {
+        const instances = new InstancedMesh(ghostGeometry, m, MOST_GHOSTS);
+        instances.count = 0;
+        instances.frustumCulled = false;
+        instances.renderOrder = 10 + pass;
+        this.ghosts.add(instances);
+        return instances;
+      });
+      this.ghostLinks.push({ link: i, meshes: pair });
+    });
+    this.group.add(this.visual, this.collision);
+    this.showCollision(!this.hasVisual);
+    this.ghosts.visible = false;
+  }
+
+  private addLink(group: Group, link: number, mesh: Mesh): void {
+    mesh.castShadow = true;
+    mesh.receiveShadow = true;
+    mesh.matrixAutoUpdate = false;
+    mesh.frustumCulled = false;
+    group.add(mesh);
+    this.links.push({ link, mesh });
+  }
+
+  showCollision(on: boolean): void {
+    this.collision.visible = on;
+    this.visual.visible = !on;
+  }
+
+  get collisionShown(): boolean {
+    return this.collision.visible;
+  }
+
+  /** Moves the links to where the kinematics has them now. */
+  update(): void {
+    for (const { link, mesh } of this.links) {
+      mesh.matrix.copy(this.kinematics.worldFromLink[link]);
+      mesh.matrixWorldNeedsUpdate = true;
+    }
+  }
+
+  /** Ghosts at `number` configurations, evenly spaced from the first to the last. */
+  placeGhosts(plan: Plan, number: number): void {
+    const count = Math.max(1, Math.min(number, plan.count, MOST_GHOSTS));
+    const configuration = new Float32Array(plan.size);
+    for (let ghost = 0; ghost < count; ++ghost) {
+      const index = count === 1 ? 0 : Math.round((ghost * (plan.count - 1)) / (count - 1));
+      plan.copyConfiguration(index, configuration);
+      this.ghostKinematics.update(configuration);
+      for (const { link, meshes } of this.ghostLinks) {
+        for (const mesh of meshes) mesh.setMatrixAt(ghost, this.ghostKinematics.worldFromLink[link]);
+      }
+    }
+    for (const { meshes } of this.ghostLinks) {
+      for (const mesh of meshes) {
+        mesh.count = count;
+        mesh.instanceMatrix.needsUpdate = true;
+      }
+    }
+  }
+
+  /** Middle and size of the robot as it stands. */
+  bounds(centre: Vector3): number {
+    this.shape.makeEmpty();
+    const part = new Box3();
+    const world = new Matrix4();
+    for (const { link, mesh } of this.links) {
+      if (!mesh.geometry.boundingBox) mesh.geometry.computeBoundingBox();
+      world.copy(this.kinematics.worldFromLink[link]);
+      this.shape.union(part.copy(mesh.geometry.boundingBox!).applyMatrix4(world));
+    }
+    if (this.shape.isEmpty()) {
+      centre.set(0, 0, 0.5);
+      return 1;
+    }
+    this.shape.getCenter(centre);
+    return this.shape.getSize(new Vector3()).length();
+  }
+}

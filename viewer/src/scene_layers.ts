@@ -1,0 +1,53 @@
+/** The switches of a scene: one for each thing in it that can be shown or hidden. */
+import type { App } from './app';
+
+interface Showable {
+  visible: boolean;
+}
+
+export function addSceneLayers(app: App): void {
+  const { layers, robot, path, contactView, track, voxels, world, graph, plan, kinematics } = app;
+  const show = (
+    id: string, label: string, key: string, object: Showable | null | undefined, there: boolean,
+    on = true,
+  ) => {
+    if (!object || !there) return;
+    layers.add({ id, label, key, on, apply: (visible) => (object.visible = visible) });
+  };
+  if (robot?.hasCollision && robot.hasVisual) {
+    layers.add({
+      id: 'collision', label: 'Collision shapes', key: 'v', on: false,
+      apply: (on) => robot.showCollision(on),
+    });
+  }
+  show('ghosts', 'Ghosts of key configurations', 'g', robot?.ghosts, (plan?.count ?? 0) > 1, false);
+  const contacts = (track?.most ?? 0) > 0;
+  show('dots', 'Contact path', 'd', path?.dots, contacts && plan!.count > 1);
+  if (contacts && plan!.count > 1) {
+    layers.add({
+      id: 'by_time', label: 'Colour path by the time shown', apply: () => {},
+      on: plan!.executed === null || plan!.executed >= plan!.count - 1,
+    });
+  }
+  const drives = !!kinematics?.floating && (plan?.count ?? 0) > 1;
+  show('base', 'Base path', 'b', path?.lines, drives);
+  show('reference', 'Reference plan', 'r', path?.referenceLine, !!plan?.reference);
+  show('contacts', 'Contacts and normals', 'c', contactView?.contacts, contacts);
+  show('forces', 'Forces and friction cones', 'f', contactView?.forces, track?.hasForces ?? false);
+  const massive = (kinematics?.mass ?? 0) > 0;
+  show('com', 'Centre of mass and support', 's', contactView?.balance, massive);
+  show('map', 'Map', 'm', voxels?.group, (voxels?.count ?? 0) > 0);
+  show('obstacles', 'Obstacles', 'o', world.obstacles, world.obstacles.children.length > 0);
+  show('surfaces', 'Surfaces', 'u', world.surfaces, world.surfaces.children.length > 0);
+  if (app.violations.group.children.length > 0) {
+    layers.add({
+      id: 'violations', label: 'Violations', key: 'x', on: true,
+      apply: (on) => app.violations.setVisible(on),
+    });
+  }
+  show('after', graph?.hasBefore ? 'After optimisation' : 'Odometry', 'a', graph?.after, !!graph);
+  show('before', 'Before optimisation', 'b', graph?.before, graph?.hasBefore ?? false);
+  show('loops', 'Loop closures', 'c', graph?.loops, (graph?.loopCount ?? 0) > 0);
+  show('landmarks', 'Landmarks', 'm', graph?.landmarks, (graph?.pointCount ?? 0) > 0);
+  show('ground', 'Ground grid', 'n', app.stage.ground, true, !graph);
+}

@@ -1,0 +1,58 @@
+/** The bar at the top: title, what the live run does, cameras, light or dark, help, panel. */
+import type { App } from './app';
+import { ViewName } from './cameras';
+import { button, element, number } from './dom';
+import { icon } from './icons';
+
+const CAMERAS: [ViewName, string, string][] = [
+  ['overview', 'All', '0'], ['front', 'Front', '1'], ['side', 'Side', '2'], ['top', 'Top', '3'],
+  ['follow', 'Follow', '4'],
+];
+
+export class TopBar {
+  readonly liveChip: HTMLButtonElement;
+  private readonly cameras = new Map<ViewName, HTMLButtonElement>();
+
+  constructor(parent: HTMLElement, app: App) {
+    const title = element('div', 'title', parent);
+    element('h1', '', title).textContent = app.scene.title;
+    const subtitle = element('p', '', title);
+    subtitle.textContent = subtitle.title = describe(app);
+    this.liveChip = element('button', 'chip live', parent);
+    this.liveChip.type = 'button';
+    this.liveChip.hidden = true;
+    const cameras = element('nav', 'group', parent);
+    cameras.setAttribute('aria-label', 'Camera');
+    for (const [view, text, key] of CAMERAS) {
+      if (view === 'follow' && !app.robot) continue;
+      const made = button(text, `Camera: ${view} (${key})`, cameras, () => app.setView(view));
+      this.cameras.set(view, made);
+    }
+    const tools = element('div', 'group', parent);
+    button('', 'Light or dark (t)', tools, () => app.toggleTheme()).innerHTML = icon('sun');
+    button('?', 'Keyboard (?)', tools, () => app.help.toggle());
+    const panel = button('', 'Side panel (p)', tools, () => app.togglePanel());
+    panel.innerHTML = icon('panel');
+    panel.id = 'toggle-panel';
+    panel.setAttribute('aria-controls', 'panel');
+  }
+
+  showView(view: ViewName): void {
+    for (const [name, made] of this.cameras) made.setAttribute('aria-pressed', String(name === view));
+  }
+}
+
+function describe({ scene, graph, plan, voxels }: App): string {
+  if (graph) return `${number(graph.vertexCount)} poses, ${number(graph.edgeCount)} edges`;
+  const parts: string[] = [];
+  if (scene.robot) parts.push(scene.robot.name);
+  if (plan && plan.count > 1) {
+    parts.push(`${plan.count} configurations`, `${number(plan.end - plan.start)} s`);
+  }
+  if (voxels) {
+    const left = scene.map?.left_out ?? 0;
+    const far = left > 0 ? ` (${number(left)} far away left out)` : '';
+    parts.push(`${number(voxels.count)} voxels${far}`);
+  }
+  return parts.join(' · ');
+}

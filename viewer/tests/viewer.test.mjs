@@ -1,0 +1,276 @@
+// What a person sees and does in the page, in headless Chromium. No network.
+import assert from 'node:assert/strict';
+import { statSync } from 'node:fs';
+import { after, before, describe, it } from 'node:test';
+import { Browser, CHROMIUM, difference, share } from './browser.mjs';
+import { serveLive } from './live_server.mjs';
+import { BASE_HEIGHT, page as pageText, planScene, SPEED, sphereGraph, squareGraph } from './scenes.mjs';
+
+if (!CHROMIUM) {
+  console.log('skipped: Chromium is missing (Debian package chromium)');
+  process.exit(0);
+}
+
+const blue = (r, g, b) => b > 90 && b > r + 45 && b > g + 20;
+const red = (r, g, b) => r > 170 && g < 110 && b < 110;
+
+describe('viewer', () => {
+  let browser;
+  before(async () => (browser = await Browser.start()));
+  after(async () => browser.stop());
+
+  /** Opens a scene, runs the body, and requires that the page had no error and asked for nothing. */
+  async function shown(scene, options, body) {
+    const opened = await browser.open(scene, options);
+    try {
+      await body(opened);
+      assert.deepEqual(opened.errors, []);
+      if (!options.url) assert.deepEqual(opened.requests, []);
+    } finally {
+      await opened.close();
+    }
+  }
+
+  it('is one file of at most 1 MB without a scene', () => {
+    const file = new URL('../dist/template.html', import.meta.url);
+    assert.ok(statSync(file).size < 1e6);
+  });
+
+  it('opens from disk with no request and no error, and shows title and robot', () =>
+    shown(planScene(), {}, async ({ page, state }) => {
+      assert.equal(await page.textContent('h1'), 'test <plan>.g2o');
+      assert.equal((await state()).configurations, 41);
+      assert.equal((await state()).violations, 1);
+      assert.match(await page.textContent('.legend'), /in the window.*contact force \(1 m = .* N\)/s);
+    }));
+
+  it('draws the robot in the middle of the picture and nothing of it in the corners', () =>
+    shown(
+      planScene(),
+      { hash: '#t=5&view=side&ui=0&hide=contacts,forces,com,base,dots,map,reference' },
+      async ({ page, state }) => {
+        const picture = await browser.pixels(page);
+        assert.equal((await state()).view, 'side');
+        assert.ok(share(picture, [0.35, 0.3, 0.65, 0.7], blue) > 0.12);
+        for (const corner of [[0, 0, 0.15, 0.3], [0.85, 0, 1, 0.3], [0, 0.8, 0.15, 1]]) {
+          assert.ok(share(picture, corner, blue) < 0.01);
+        }
+      },
+    ));
+
+  it('puts the base where the plan has it, also between configurations', () =>
+    shown(planScene(), {}, async ({ page }) => {
+      for (const time of [0, 1.3, 7.77, 20]) {
+        const { base, centreOfMass } = await page.evaluate((t) => {
+          window.locograph.setTime(t);
+          return window.locograph.state();
+        }, time);
+        assert.ok(Math.abs(base[0] - SPEED * time) < 1e-5);
+        assert.ok(Math.abs(base[2] - BASE_HEIGHT) < 1e-5);
+        // Legs hang symmetrically: the centre of mass is below the middle of the base.
+        assert.ok(Math.abs(centreOfMass[0] - SPEED * time) < 1e-5);
+        assert.ok(Math.abs(centreOfMass[1]) < 1e-6);
+        assert.ok(centreOfMass[2] < BASE_HEIGHT - 0.05);
+      }
+    }));
+
+  it('moves the robot with the scrubber', () =>
+    shown(planScene(), { hash: '#view=overview' }, async ({ page, state }) => {
+      const clip = await page.locator('#view').boundingBox();
+      const first = await browser.pixels(page, clip);
+      const track = await page.locator('#scrubber').boundingBox();
+      await page.mouse.click(track.x + 0.75 * track.width, track.y + 8);
+      assert.ok(Math.abs((await state()).time - 15) < 0.5);
+      assert.ok(difference(first, await browser.pixels(page, clip)) > 0.01);
+    }));
+
+  it('plays by itself until it is paused', () =>
+    shown(planScene(), {}, async ({ page, state }) => {
+      await page.click('#play');
+      await page.waitForFunction(() => window.locograph.state().time > 0.2);
+      await page.click('#play');
+      const { time, playing } = await state();
+      assert.equal(playing, false);
+      await page.waitForTimeout(200);
+      assert.equal((await state()).time, time);
+    }));
+
+  it('lists violations first, and a click goes to moment and place', () =>
+    shown(planScene(), { hash: '#hide=dots,contacts,forces' }, async ({ page, state }) => {
+      const rows = page.locator('#violations button');
+      assert.match(await rows.first().textContent(), /^obstacle_distance-0.03 m.*base and pillar/);
+      assert.match(await page.textContent('.verdict'), /Infeasible: 1 of 2/);
+      assert.equal(await page.locator('.mark-label:visible').count(), 0);
+      await rows.first().click();
+      const { time, index, selectedViolation } = await state();
+      assert.equal(time, 15);
+      assert.equal(index, 30);
+      assert.equal(selectedViolation, 'obstacle_distance');
+      const label = page.locator('.mark-label:visible');
+      await label.waitFor();
+      assert.equal(await label.textContent(), 'obstacle_distance-0.03 m');
+      const at = await label.boundingBox();
+      const below = { x: at.x + at.width / 2 - 20, y: at.y + at.height + 2, width: 40, height: 34 };
+      assert.ok(share(await browser.pixels(page, below), [0, 0, 1, 1], red) > 0.05);
+    }));
+
+  it('shows the sphere of a pose graph, with its figures', () =>
+    shown(sphereGraph(), {}, async ({ page }) => {
+      const clip = await page.locator('#view').boundingBox();
+      const picture = await browser.pixels(page, clip);
+      assert.ok(share(picture, [0.3, 0.2, 0.7, 0.8], blue) > 0.03);
+      assert.ok(share(picture, [0, 0, 0.12, 0.3], blue) < 0.001);
+      const text = await page.textContent('#panel');
+      assert.match(text, /poses1.250/);
+      assert.match(text, /loop closures1.200/);
+      assert.match(text, /χ² before2.500.000χ² after727/);
+      await page.keyboard.press('a');
+      await page.keyboard.press('c');
+      const without = await browser.pixels(page, clip);
+      assert.ok(share(without, [0.3, 0.2, 0.7, 0.8], blue) < 0.005);
+    }));
+
+  it('looks at a planar pose graph from above', () =>
+    shown(squareGraph(), {}, async ({ page, state }) => {
+      assert.equal((await state()).view, 'top');
+      const picture = await browser.pixels(page, await page.locator('#view').boundingBox());
+      assert.ok(share(picture, [0, 0, 1, 1], blue) > 0.001);
+      assert.match(await page.textContent('#panel'), /landmarks1/);
+    }));
+
+  it('fits a phone: panel closed, nothing wider than the screen, panel opens', () =>
+    shown(planScene(), { width: 390, height: 844 }, async ({ page }) => {
+      assert.equal(await page.locator('#panel').isVisible(), false);
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390);
+      const view = await page.locator('#view').boundingBox();
+      assert.equal(view.width, 390);
+      assert.ok(view.height > 400);
+      const picture = await browser.pixels(page, view);
+      assert.ok(share(picture, [0.1, 0.2, 0.9, 0.8], blue) > 0.01);
+      await page.click('#toggle-panel');
+      await page.locator('#violations button').first().click();
+      assert.equal(await page.locator('#panel').isVisible(), false);
+    }));
+
+  it('obeys the keyboard', () =>
+    shown(planScene(), {}, async ({ page, state }) => {
+      const press = async (key) => {
+        await page.keyboard.press(key);
+        return state();
+      };
+      assert.equal((await press('ArrowRight')).index, 1);
+      assert.equal((await press('ArrowRight')).time, 1);
+      assert.equal((await press('ArrowLeft')).index, 1);
+      assert.equal((await press('End')).time, 20);
+      assert.equal((await press('Home')).time, 0);
+      assert.equal((await press('+')).speed, 2);
+      assert.equal((await press('-')).speed, 1);
+      assert.equal((await press('Space')).playing, true);
+      assert.equal((await press('Space')).playing, false);
+      for (const [key, view] of [['1', 'front'], ['2', 'side'], ['3', 'top'], ['4', 'follow']]) {
+        assert.equal((await press(key)).view, view);
+      }
+      assert.equal((await press('g')).layers.ghosts, true);
+      assert.equal((await press('v')).layers.collision, true);
+      assert.equal((await press('m')).layers.map, false);
+      assert.equal((await press('l')).loop, false);
+      assert.equal((await press('t')).theme, 'dark');
+      await press('?');
+      assert.ok(await page.locator('dialog').isVisible());
+      await page.keyboard.press('Escape');
+      assert.equal(await page.locator('dialog').isVisible(), false);
+    }));
+
+  it('shows ghosts and collision shapes', () =>
+    shown(planScene(), { hash: '#view=overview&ui=0' }, async ({ page }) => {
+      const first = await browser.pixels(page);
+      await page.keyboard.press('g');
+      const ghosts = await browser.pixels(page);
+      assert.ok(difference(first, ghosts) > 0.01);
+      await page.keyboard.press('v');
+      assert.ok(difference(ghosts, await browser.pixels(page)) > 0.003);
+    }));
+
+  it('follows the colour scheme of the system', () =>
+    shown(squareGraph(), { colorScheme: 'dark' }, async ({ page, state }) => {
+      assert.equal((await state()).theme, 'dark');
+      const picture = await browser.pixels(page);
+      assert.ok(share(picture, [0, 0, 1, 1], (r, g, b) => r + g + b < 180) > 0.8);
+    }));
+
+  it('takes time, camera and bare picture from the address', () =>
+    shown(planScene(), { hash: '#t=12.3&view=front&ui=0&theme=dark' }, async ({ page, state }) => {
+      const { time, view, theme } = await state();
+      assert.deepEqual({ time, view, theme }, { time: 12.3, view: 'front', theme: 'dark' });
+      for (const part of ['.topbar', '.timeline', '.panel', '.legend']) {
+        assert.equal(await page.locator(part).isVisible(), false);
+      }
+      assert.deepEqual(await page.locator('#view').boundingBox(), { x: 0, y: 0, width: 1280, height: 720 });
+    }));
+
+  it('shows a robot without a plan, and a map without a robot', async () => {
+    const { version, kind, title, robot, map } = planScene();
+    await shown({ version, kind, title, robot }, { hash: '#ui=0' }, async ({ page }) => {
+      assert.ok(share(await browser.pixels(page), [0.3, 0.2, 0.7, 0.8], blue) > 0.02);
+    });
+    await shown({ version, kind, title, map }, {}, async ({ page }) => {
+      assert.equal(await page.locator('#scrubber').count(), 0);
+    });
+  });
+
+  it('takes over what a running refinement sends', async () => {
+    const scene = { ...planScene(), live: '/live' };
+    const server = await serveLive(pageText(scene));
+    try {
+      await shown(scene, { url: server.address }, async ({ page, state }) => {
+        assert.equal(await server.connection, '/live');
+        const moved = [9, 3, BASE_HEIGHT, 0, 0, 0, 1, ...Array(12).fill(0)];
+        server.send({ type: 'start', count: 41 });
+        server.send({
+          type: 'cycle', configurations: { 40: moved, 99: moved, 1: [1] }, executed: 40, window: 0,
+          feasible: true, cycle_time: 0.0051, violation: null,
+        });
+        await page.waitForFunction(() => window.locograph.state().executed === 40);
+        // The page follows what has been executed.
+        await page.waitForFunction(() => window.locograph.state().index === 40);
+        await page.evaluate(() => window.locograph.setTime(20));
+        assert.deepEqual((await state()).base.slice(0, 2), [9, 3]);
+        assert.equal(await page.textContent('.live'), 'live · 5.1 ms');
+        server.send({ type: 'end', success: false, reason: 'no way' });
+        await page.waitForFunction(
+          () => document.querySelector('.live').textContent === 'stopped: no way',
+        );
+      });
+    } finally {
+      await server.close();
+    }
+  });
+
+  it('says what is wrong with a scene that cannot be shown', async () => {
+    const with_ = (change) => {
+      const scene = planScene({ voxels: 10 });
+      change(scene);
+      return scene;
+    };
+    const cases = [
+      ['{}', /no scene/],
+      ['{"version": 1,', /not valid JSON/],
+      [{ version: 7, kind: 'plan', title: '' }, /version 7.*shows version 1/],
+      [{ version: 1, kind: 'film', title: '' }, /kind "film"/],
+      [{ version: 1, kind: 'plan', title: '' }, /neither a robot nor a world/],
+      [{ version: 1, kind: 'pose_graph', title: '', graph: { vertices: '' } }, /no vertices/],
+      [with_((scene) => (scene.plan.configurations = '')), /plan is empty/],
+      [with_((scene) => (scene.plan.configurations = 'AAAAAAAAAAA=')), /2 numbers .* whole rows of 19/],
+      [with_((scene) => (scene.plan.configurations = 'AAAAAAAA')), /cut off: 6 bytes/],
+      [with_((scene) => (scene.plan.configurations = '*')), /not base64/],
+      [with_((scene) => scene.plan.times.pop()), /41 configurations but 40 times/],
+      [with_((scene) => (scene.robot.joints[0].child = 99)), /refers to link 99/],
+      [with_((scene) => (scene.robot.joints[1].child = 1)), /two parents/],
+    ];
+    for (const [scene, message] of cases) {
+      await shown(scene, {}, async ({ page }) => {
+        assert.match(await page.textContent('[role=alert]'), message);
+      });
+    }
+  });
+});
