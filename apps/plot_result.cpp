@@ -127,7 +127,7 @@ void add_panel(PlotScript& plot, const std::string& unit, const std::vector<Bar>
     lowest = std::min({lowest, worst, limit});
     highest = std::max({highest, worst, limit});
     plot.line("set label " + std::to_string(i + 1) + ' ' + PlotScript::label(brief(worst)) +
-              " at " + short_number(std::max(0.0, worst)) + "," + std::to_string(y) +
+              " at " + short_number(std::max({0.0, worst, limit})) + "," + std::to_string(y) +
               " left offset 0.5,0 font ',11' noenhanced");
   }
   const double room = 0.18 * std::max(highest - lowest, 1e-9);

@@ -122,7 +122,7 @@ PlotScript plot_table(const std::filesystem::path& file) {
     solved += success >= 0 && is_yes(row[static_cast<std::size_t>(success)]) ? 1 : 0;
   }
   const long runs = static_cast<long>(table.rows.size());
-  PlotScript plot(std::max(700, 180 + 120 * count), 520);
+  PlotScript plot(std::max(700, 320 + 150 * count), 520);
   std::string title = file.filename().string() + ": " + counted(runs, "run", "runs");
   if (success >= 0) {
     title +=
@@ -133,10 +133,11 @@ PlotScript plot_table(const std::filesystem::path& file) {
   }
   plot.line("set multiplot title " + PlotScript::label(title));
   plot.line("set bmargin 4");
-  plot.line("set tmargin 4");
+  plot.line("set tmargin 5");
+  plot.line("set xtics font ',11'");
   if (success >= 0) {
     plot.line("set lmargin screen 0.09");
-    plot.line("set rmargin screen 0.2");
+    plot.line("set rmargin screen 0.22");
     plot.line("set yrange [0:" + std::to_string(runs) + "]");
     plot.line("set xrange [-0.8:1.8]");
     plot.line("set ylabel 'runs'");
@@ -157,7 +158,7 @@ PlotScript plot_table(const std::filesystem::path& file) {
   plot.line("set ylabel 'time [s]'");
   plot.line("set xtics (" + tics + ")");
   plot.line("set boxwidth 0.4");
-  plot.line("set key top right");
+  plot.line("set key above horizontal right");
   plot.data("times", boxes);
   plot.line(
       "plot $times using 1:2:3:4:5 with candlesticks linecolor '#2f6fb5' linewidth 1.4 "

@@ -11,7 +11,10 @@ function oneFile() {
       let html = page.source;
       for (const [name, file] of Object.entries(bundle)) {
         if (name.endsWith('.css')) {
-          html = html.replace(/<link rel="stylesheet"[^>]*>/, () => `<style>${file.source}</style>`);
+          html = html.replace(
+            /<link rel="stylesheet"[^>]*>/,
+            () => `<style>${file.source}</style>`,
+          );
         } else if (name.endsWith('.js')) {
           const code = file.code.replaceAll('</script', '<\\/script');
           html = html.replace(

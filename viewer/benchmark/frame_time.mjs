@@ -12,7 +12,9 @@ const percentile = (values, p) => {
   return Number(sorted[Math.max(index, 0)].toFixed(2));
 };
 const summary = (values) => ({
-  p50: percentile(values, 0.5), p95: percentile(values, 0.95), p99: percentile(values, 0.99),
+  p50: percentile(values, 0.5),
+  p95: percentile(values, 0.95),
+  p99: percentile(values, 0.99),
   max: percentile(values, 1),
 });
 
@@ -32,10 +34,19 @@ await browser.stop();
 console.log(
   JSON.stringify(
     {
-      joints: scene.robot.joints.length, voxels: 50000, configurations: 500, width: 1280,
-      height: 720, renderer, software_rendering: /swiftshader|llvmpipe/i.test(renderer), frames,
-      open_ms: Math.round(opened), draw_calls: drawCalls, triangles,
-      script_ms: summary(times.script_ms), frame_ms: summary(times.frame_ms),
+      joints: scene.robot.joints.length,
+      voxels: 50000,
+      configurations: 500,
+      width: 1280,
+      height: 720,
+      renderer,
+      software_rendering: /swiftshader|llvmpipe/i.test(renderer),
+      frames,
+      open_ms: Math.round(opened),
+      draw_calls: drawCalls,
+      triangles,
+      script_ms: summary(times.script_ms),
+      frame_ms: summary(times.frame_ms),
     },
     null,
     2,

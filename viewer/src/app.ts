@@ -73,7 +73,10 @@ export class App {
   /** The clock follows what a running refinement has executed. */
   followLive = false;
 
-  constructor(readonly scene: Scene, root: HTMLElement) {
+  constructor(
+    readonly scene: Scene,
+    root: HTMLElement,
+  ) {
     document.title = `${scene.title} – locograph`;
     this.page = element('div', 'page', root);
     const bar = element('header', 'topbar', this.page);
@@ -141,7 +144,12 @@ export class App {
     }
     if (this.plan && this.plan.count > 1) {
       this.timeline = new Timeline(
-        this.page, scene, this.plan, this.player, this.violations.marks, () => this.userMoved(),
+        this.page,
+        scene,
+        this.plan,
+        this.player,
+        this.violations.marks,
+        () => this.userMoved(),
       );
     }
     if (this.graph) this.panel.addGraph(this.graph);
@@ -163,7 +171,9 @@ export class App {
     this.resize();
     this.setExtent();
     this.update();
-    this.setView(this.graph ? (this.graph.planar ? 'top' : 'overview') : this.robot ? 'follow' : 'overview');
+    this.setView(
+      this.graph ? (this.graph.planar ? 'top' : 'overview') : this.robot ? 'follow' : 'overview',
+    );
   }
 
   // Building
@@ -223,7 +233,8 @@ export class App {
     this.panelTime = 0;
     if (legend) {
       this.paintedExecuted = undefined;
-      if (this.layers.isOn('ghosts') && this.plan) this.robot?.placeGhosts(this.plan, this.ghostNumber);
+      if (this.layers.isOn('ghosts') && this.plan)
+        this.robot?.placeGhosts(this.plan, this.ghostNumber);
       this.legend?.show(legendEntries(this), this.voxels?.count ? this.voxels : null);
     }
     this.stage.invalidate();
@@ -327,7 +338,9 @@ export class App {
 
   /** Takes over configurations, by their index, that a running refinement has changed. */
   applyLive(
-    configurations: Record<string, ArrayLike<number>>, executed: number, window: number,
+    configurations: Record<string, ArrayLike<number>>,
+    executed: number,
+    window: number,
   ): void {
     const { plan, track, ghostKinematics } = this;
     if (!plan || !track || !ghostKinematics) return;
@@ -434,7 +447,10 @@ export class App {
       }
     }
     this.panel.updateJoints(
-      this.configuration, kinematics.floating ? 7 : 0, this.velocities, this.torques,
+      this.configuration,
+      kinematics.floating ? 7 : 0,
+      this.velocities,
+      this.torques,
     );
   }
 }

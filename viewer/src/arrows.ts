@@ -1,7 +1,14 @@
 /** Many arrows of one colour in two draw calls; no allocation when they are set again. */
 import {
-  ColorRepresentation, ConeGeometry, CylinderGeometry, Group, InstancedMesh, Matrix4,
-  MeshLambertMaterial, Quaternion, Vector3,
+  ColorRepresentation,
+  ConeGeometry,
+  CylinderGeometry,
+  Group,
+  InstancedMesh,
+  Matrix4,
+  MeshLambertMaterial,
+  Quaternion,
+  Vector3,
 } from 'three';
 
 const Z = new Vector3(0, 0, 1);
@@ -20,10 +27,16 @@ export class Arrows {
 
   /** `onTop`: seen through what is in front of them. */
   constructor(
-    colour: ColorRepresentation, private readonly radius: number, most: number, onTop = false,
+    colour: ColorRepresentation,
+    private readonly radius: number,
+    most: number,
+    onTop = false,
   ) {
     this.material = new MeshLambertMaterial({
-      color: colour, transparent: onTop, depthTest: !onTop, depthWrite: !onTop,
+      color: colour,
+      transparent: onTop,
+      depthTest: !onTop,
+      depthWrite: !onTop,
     });
     const shaft = new CylinderGeometry(1, 1, 1, 14).rotateX(Math.PI / 2).translate(0, 0, 0.5);
     const head = new ConeGeometry(1, 1, 18).rotateX(Math.PI / 2).translate(0, 0, 0.5);
@@ -55,12 +68,16 @@ export class Arrows {
     const head = Math.min(6 * this.radius, 0.45 * length);
     this.place.set(x, y, z);
     this.matrix.compose(
-      this.place, this.rotation, this.scale.set(this.radius, this.radius, length - 0.9 * head),
+      this.place,
+      this.rotation,
+      this.scale.set(this.radius, this.radius, length - 0.9 * head),
     );
     this.shafts.setMatrixAt(this.count, this.matrix);
     this.place.addScaledVector(this.direction, length - head);
     this.matrix.compose(
-      this.place, this.rotation, this.scale.set(2.6 * this.radius, 2.6 * this.radius, head),
+      this.place,
+      this.rotation,
+      this.scale.set(2.6 * this.radius, 2.6 * this.radius, head),
     );
     this.heads.setMatrixAt(this.count, this.matrix);
     ++this.count;

@@ -31,7 +31,7 @@ export class CameraRig {
     this.view = view;
     const { camera, controls } = this.stage;
     const narrow = Math.min(1, camera.aspect);
-    const half = 0.5 * (camera.fov * Math.PI) / 180;
+    const half = (0.5 * (camera.fov * Math.PI)) / 180;
     const distance = radius / Math.sin(half) / Math.sqrt(narrow) / narrow ** 0.35;
     this.direction
       .fromArray(DIRECTIONS[view])

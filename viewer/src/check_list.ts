@@ -16,7 +16,10 @@ export class CheckList {
   private readonly rows = new Map<number, HTMLElement>();
 
   constructor(
-    parent: HTMLElement, check: CheckReport, marks: Mark[], private readonly jump: (i: number) => void,
+    parent: HTMLElement,
+    check: CheckReport,
+    marks: Mark[],
+    private readonly jump: (i: number) => void,
   ) {
     const bad = marks.filter(({ violation }) => violation.violated).length;
     const verdict = element('p', 'verdict', parent);

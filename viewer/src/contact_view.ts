@@ -1,8 +1,21 @@
 /** Contacts now: patches coloured by kind, normals, wrenches, friction cones, CoM and support. */
 import {
-  BufferAttribute, BufferGeometry, CircleGeometry, Color, ConeGeometry, DoubleSide, Group,
-  InstancedMesh, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, Quaternion, RingGeometry,
-  SphereGeometry, Vector3,
+  BufferAttribute,
+  BufferGeometry,
+  CircleGeometry,
+  Color,
+  ConeGeometry,
+  DoubleSide,
+  Group,
+  InstancedMesh,
+  Matrix4,
+  Mesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  Quaternion,
+  RingGeometry,
+  SphereGeometry,
+  Vector3,
 } from 'three';
 import { Arrows } from './arrows';
 import { ContactTrack, kindColour } from './contacts';
@@ -30,7 +43,9 @@ export class ContactView {
   private readonly momentArrows: Arrows;
   private readonly coneMaterial: MeshBasicMaterial;
   private readonly massMaterial = new MeshLambertMaterial({
-    transparent: true, depthTest: false, depthWrite: false,
+    transparent: true,
+    depthTest: false,
+    depthWrite: false,
   });
   private readonly sphere: Mesh;
   private readonly shadowRing: Mesh;
@@ -57,11 +72,19 @@ export class ContactView {
     this.forceScale = (1.1 * robotScale) / weight;
     this.patches = new InstancedMesh(
       new CircleGeometry(1, 36),
-      new MeshBasicMaterial({ transparent: true, opacity: 0.75, side: DoubleSide, depthWrite: false }),
+      new MeshBasicMaterial({
+        transparent: true,
+        opacity: 0.75,
+        side: DoubleSide,
+        depthWrite: false,
+      }),
       most,
     );
     this.coneMaterial = new MeshBasicMaterial({
-      transparent: true, opacity: 0.22, side: DoubleSide, depthWrite: false,
+      transparent: true,
+      opacity: 0.22,
+      side: DoubleSide,
+      depthWrite: false,
     });
     const cone = new ConeGeometry(1, 1, 40, 1, true).rotateX(-Math.PI / 2).translate(0, 0, 0.5);
     this.cones = new InstancedMesh(cone, this.coneMaterial, most);
@@ -77,7 +100,10 @@ export class ContactView {
 
     this.sphere = new Mesh(new SphereGeometry(0.045 * robotScale, 24, 16), this.massMaterial);
     const flat = new MeshBasicMaterial({
-      side: DoubleSide, transparent: true, depthTest: false, depthWrite: false,
+      side: DoubleSide,
+      transparent: true,
+      depthTest: false,
+      depthWrite: false,
     });
     flat.color = this.massMaterial.color;
     this.shadowRing = new Mesh(new RingGeometry(0.03 * robotScale, 0.045 * robotScale, 40), flat);
@@ -86,7 +112,12 @@ export class ContactView {
     polygon.setAttribute('position', new BufferAttribute(this.corners, 3));
     this.support = new Mesh(
       polygon,
-      new MeshBasicMaterial({ transparent: true, opacity: 0.16, side: DoubleSide, depthWrite: false }),
+      new MeshBasicMaterial({
+        transparent: true,
+        opacity: 0.16,
+        side: DoubleSide,
+        depthWrite: false,
+      }),
     );
     this.support.frustumCulled = false;
     for (const mesh of [this.sphere, this.shadowRing, this.plumb]) mesh.renderOrder = 35;
@@ -121,7 +152,15 @@ export class ContactView {
       this.matrix.compose(this.place, this.rotation, this.scale.set(size, size, size));
       this.patches.setMatrixAt(i, this.matrix);
       this.patches.setColorAt(i, this.colour.set(kindColour(contact.kind)));
-      this.normals.add(x, y, z, this.normal.x, this.normal.y, this.normal.z, 0.17 * this.robotScale);
+      this.normals.add(
+        x,
+        y,
+        z,
+        this.normal.x,
+        this.normal.y,
+        this.normal.z,
+        0.17 * this.robotScale,
+      );
       if (contact.force) {
         const [fx, fy, fz] = contact.force;
         this.forceArrows.add(x, y, z, fx, fy, fz, this.forceScale);

@@ -6,7 +6,11 @@ import { Contact } from './scene_format';
 
 /** Colours of contact kinds; other kinds get the last one. */
 export const KIND_COLOURS: Record<string, number> = {
-  wheel: 0x0c8599, surface: 0x1c7ed6, point: 0xd6336c, rung: 0x7048e8, other: 0x5c6773,
+  wheel: 0x0c8599,
+  surface: 0x1c7ed6,
+  point: 0xd6336c,
+  rung: 0x7048e8,
+  other: 0x5c6773,
 };
 
 export function kindColour(kind: string): number {

@@ -1,7 +1,9 @@
 /** Small helpers for the page. */
 
 export function element<K extends keyof HTMLElementTagNameMap>(
-  tag: K, className = '', parent?: HTMLElement,
+  tag: K,
+  className = '',
+  parent?: HTMLElement,
 ): HTMLElementTagNameMap[K] {
   const made = document.createElement(tag);
   if (className) made.className = className;
@@ -10,7 +12,10 @@ export function element<K extends keyof HTMLElementTagNameMap>(
 }
 
 export function button(
-  text: string, label: string, parent: HTMLElement, action: () => void,
+  text: string,
+  label: string,
+  parent: HTMLElement,
+  action: () => void,
 ): HTMLButtonElement {
   const made = element('button', '', parent);
   made.type = 'button';

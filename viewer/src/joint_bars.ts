@@ -13,7 +13,11 @@ interface Row {
 export class JointBars {
   private readonly rows: (Row | null)[];
 
-  constructor(parent: HTMLElement, private readonly joints: JointDescription[], torques: boolean) {
+  constructor(
+    parent: HTMLElement,
+    private readonly joints: JointDescription[],
+    torques: boolean,
+  ) {
     const legend = element('p', 'note', parent);
     legend.textContent = torques
       ? 'Dot: position between its limits. Thin bars: velocity (blue) and holding torque (orange), full at the limit.'
@@ -39,7 +43,10 @@ export class JointBars {
   }
 
   update(
-    positions: Float32Array, offset: number, velocities: Float32Array, torques: Float32Array | null,
+    positions: Float32Array,
+    offset: number,
+    velocities: Float32Array,
+    torques: Float32Array | null,
   ): void {
     this.rows.forEach((row, i) => {
       if (!row) return;

@@ -145,7 +145,9 @@ export class Kinematics {
         const world = this.worldFromLink[joint.child];
         const p = this.position.setFromMatrixPosition(world);
         const a = this.axis.copy(joint.axis).transformDirection(world);
-        const fx = w[c], fy = w[c + 1], fz = w[c + 2];
+        const fx = w[c],
+          fy = w[c + 1],
+          fz = w[c + 2];
         torques[joint.index] = joint.prismatic
           ? -(a.x * fx + a.y * fy + a.z * fz)
           : -(
@@ -160,8 +162,14 @@ export class Kinematics {
 }
 
 function addForce(
-  wrenches: Float64Array, link: number, x: number, y: number, z: number,
-  fx: number, fy: number, fz: number,
+  wrenches: Float64Array,
+  link: number,
+  x: number,
+  y: number,
+  z: number,
+  fx: number,
+  fy: number,
+  fz: number,
 ): void {
   const first = 6 * link;
   wrenches[first] += fx;

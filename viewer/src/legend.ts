@@ -14,7 +14,10 @@ export class Legend {
   readonly element: HTMLDetailsElement;
   private readonly list: HTMLElement;
 
-  constructor(parent: HTMLElement, private readonly isOn: (layer: string) => boolean) {
+  constructor(
+    parent: HTMLElement,
+    private readonly isOn: (layer: string) => boolean,
+  ) {
     this.element = element('details', 'legend', parent);
     this.element.open = innerWidth > 700;
     element('summary', '', this.element).textContent = 'Legend';

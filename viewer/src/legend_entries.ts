@@ -10,7 +10,8 @@ export function legendEntries(app: App): LegendEntry[] {
   const theme = THEMES[app.themeName];
   const entries: LegendEntry[] = [];
   const add = (label: string, colour: number, shape: LegendEntry['shape'], layer: string) => {
-    if (app.layers.all.some(({ id }) => id === layer)) entries.push({ label, colour, shape, layer });
+    if (app.layers.all.some(({ id }) => id === layer))
+      entries.push({ label, colour, shape, layer });
   };
   if (app.plan?.executed !== null || app.layers.isOn('by_time')) {
     add('executed', theme.executed, 'dot', 'dots');
@@ -38,7 +39,12 @@ export function legendEntries(app: App): LegendEntry[] {
   add('before', theme.before, 'line', 'before');
   add('loop closure', theme.loop, 'line', 'loops');
   add('landmark', theme.executed, 'dot', 'landmarks');
-  add(`grid ${number(app.gridCell)} m, ${number(5 * app.gridCell)} m`, theme.grid, 'line', 'ground');
+  add(
+    `grid ${number(app.gridCell)} m, ${number(5 * app.gridCell)} m`,
+    theme.grid,
+    'line',
+    'ground',
+  );
   return entries;
 }
 

@@ -47,7 +47,10 @@ export class LiveSession {
   private ended = false;
   private socket: WebSocket | null = null;
 
-  constructor(private readonly app: App, private readonly address: string) {
+  constructor(
+    private readonly app: App,
+    private readonly address: string,
+  ) {
     this.chip.hidden = false;
     this.chip.addEventListener('click', () => (this.ended ? this.connect() : this.follow()));
     this.connect();
@@ -105,7 +108,11 @@ export class LiveSession {
         ? ` · ${violation.constraint} ${quantity(violation.worst, violation.unit)}`
         : '';
       const time = cycle_time === undefined ? '' : ` · ${number(1000 * cycle_time)} ms`;
-      this.tell(message.feasible === false ? 'lost' : 'live', `live${time}${bad}`, 'Follow what is executed');
+      this.tell(
+        message.feasible === false ? 'lost' : 'live',
+        `live${time}${bad}`,
+        'Follow what is executed',
+      );
     } else if (message.type === 'end') {
       this.ended = true;
       const text = message.success ? 'done' : `stopped: ${message.reason}`;

@@ -20,7 +20,12 @@ export class Panel {
   private now: HTMLElement | null = null;
   private readonly nowValues = new Map<string, HTMLElement>();
 
-  constructor(parent: HTMLElement, private readonly scene: Scene, marks: Mark[], jump: (i: number) => void) {
+  constructor(
+    parent: HTMLElement,
+    private readonly scene: Scene,
+    marks: Mark[],
+    jump: (i: number) => void,
+  ) {
     this.element = element('aside', 'panel', parent);
     this.element.id = 'panel';
     this.element.setAttribute('aria-label', 'Details');
@@ -76,7 +81,10 @@ export class Panel {
 
   /** Figures of the moment. */
   update(
-    time: number, base: Vector3 | null, com: Vector3 | null, contacts: ContactTrack | null,
+    time: number,
+    base: Vector3 | null,
+    com: Vector3 | null,
+    contacts: ContactTrack | null,
   ): void {
     this.charts?.update(time);
     if (!this.now) return;
@@ -94,7 +102,10 @@ export class Panel {
   }
 
   updateJoints(
-    positions: Float32Array, offset: number, velocities: Float32Array, torques: Float32Array | null,
+    positions: Float32Array,
+    offset: number,
+    velocities: Float32Array,
+    torques: Float32Array | null,
   ): void {
     this.joints?.update(positions, offset, velocities, torques);
   }

@@ -1,6 +1,12 @@
 /** Where the plan goes: contact dots (executed, in the window, the rest), base and reference line. */
 import {
-  BufferGeometry, Color, Group, IcosahedronGeometry, InstancedMesh, Matrix4, MeshBasicMaterial,
+  BufferGeometry,
+  Color,
+  Group,
+  InstancedMesh,
+  Matrix4,
+  MeshBasicMaterial,
+  OctahedronGeometry,
 } from 'three';
 import { Line2 } from 'three/examples/jsm/lines/Line2.js';
 import { LineGeometry } from 'three/examples/jsm/lines/LineGeometry.js';
@@ -26,10 +32,13 @@ export class PathView {
   private readonly colour = new Color();
   private readonly matrix = new Matrix4();
 
-  constructor(private readonly plan: Plan, private readonly kinematics: Kinematics) {
+  constructor(
+    private readonly plan: Plan,
+    private readonly kinematics: Kinematics,
+  ) {
     plan.contacts.forEach((contacts, i) => contacts.forEach(() => this.indices.push(i)));
     this.spheres = new InstancedMesh(
-      new IcosahedronGeometry(0.017, 1),
+      new OctahedronGeometry(0.017, 1),
       new MeshBasicMaterial(),
       Math.max(this.indices.length, 1),
     );

@@ -1,6 +1,12 @@
 /** Pose graphs: odometry before and after, loop closures, landmarks. */
 import {
-  Box3, BufferAttribute, BufferGeometry, Group, Points, PointsMaterial, Vector3,
+  Box3,
+  BufferAttribute,
+  BufferGeometry,
+  Group,
+  Points,
+  PointsMaterial,
+  Vector3,
 } from 'three';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
@@ -49,7 +55,8 @@ export class PoseGraphView {
     this.after.add(segments(vertices, odometry, this.afterLine));
     this.loops.add(segments(vertices, loops, this.loopLine));
     const point = new Vector3();
-    for (let i = 0; i < vertices.length; i += 7) this.box.expandByPoint(point.fromArray(vertices, i));
+    for (let i = 0; i < vertices.length; i += 7)
+      this.box.expandByPoint(point.fromArray(vertices, i));
     if (graph.before) {
       const old = unpackFloats(graph.before, 7, 'the vertices before');
       if (old.length !== vertices.length) {
@@ -82,7 +89,9 @@ export class PoseGraphView {
 }
 
 function segments(
-  poses: Float32Array, pairs: number[], material: ReturnType<typeof fatLine>,
+  poses: Float32Array,
+  pairs: number[],
+  material: ReturnType<typeof fatLine>,
 ): LineSegments2 {
   const positions = new Float32Array(3 * Math.max(pairs.length, 2));
   pairs.forEach((vertex, i) => {

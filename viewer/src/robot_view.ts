@@ -1,7 +1,15 @@
 /** The robot on the screen, and its ghosts: translucent copies at key configurations. */
 import {
-  Box3, EqualDepth, Group, InstancedMesh, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial,
-  MeshPhongMaterial, Vector3,
+  Box3,
+  EqualDepth,
+  Group,
+  InstancedMesh,
+  Matrix4,
+  Mesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  MeshPhongMaterial,
+  Vector3,
 } from 'three';
 import { Kinematics } from './kinematics';
 import { Plan } from './plan';
@@ -38,11 +46,16 @@ export class RobotView {
     this.hasCollision = robot.links.some((link) => link.collision?.length);
     const meshes = new Meshes(robot);
     const material = new MeshPhongMaterial({
-      vertexColors: true, specular: 0x30343a, shininess: 42,
+      vertexColors: true,
+      specular: 0x30343a,
+      shininess: 42,
     });
     const ghostDepth = new MeshBasicMaterial({ colorWrite: false });
     const ghost = new MeshLambertMaterial({
-      color: GHOST_COLOUR, transparent: true, opacity: 0.36, depthWrite: false,
+      color: GHOST_COLOUR,
+      transparent: true,
+      opacity: 0.36,
+      depthWrite: false,
       depthFunc: EqualDepth,
     });
     robot.links.forEach((link, i) => {
@@ -103,7 +116,8 @@ export class RobotView {
       plan.copyConfiguration(index, configuration);
       this.ghostKinematics.update(configuration);
       for (const { link, meshes } of this.ghostLinks) {
-        for (const mesh of meshes) mesh.setMatrixAt(ghost, this.ghostKinematics.worldFromLink[link]);
+        for (const mesh of meshes)
+          mesh.setMatrixAt(ghost, this.ghostKinematics.worldFromLink[link]);
       }
     }
     for (const { meshes } of this.ghostLinks) {

@@ -172,44 +172,38 @@ function require(condition: unknown, message: string): asserts condition {
 }
 
 function validate(scene: Scene): void {
-  require(
-    scene.version === 1,
-    `The scene has version ${String(scene.version)}; this viewer shows version 1.`,
-  );
-  require(
-    scene.kind === 'plan' || scene.kind === 'pose_graph',
-    `The scene is of kind "${String(scene.kind)}"; expected "plan" or "pose_graph".`,
-  );
+  require(scene.version ===
+    1, `The scene has version ${String(scene.version)}; this viewer shows version 1.`);
+  require(scene.kind === 'plan' ||
+    scene.kind ===
+      'pose_graph', `The scene is of kind "${String(scene.kind)}"; expected "plan" or "pose_graph".`);
   if (scene.kind === 'pose_graph') {
     require(scene.graph?.vertices, 'The pose graph holds no vertices: there is nothing to show.');
     return;
   }
-  require(
-    scene.robot || scene.map || scene.surfaces || scene.obstacles,
-    'The scene holds neither a robot nor a world: there is nothing to show.',
-  );
+  require(scene.robot ||
+    scene.map ||
+    scene.surfaces ||
+    scene.obstacles, 'The scene holds neither a robot nor a world: there is nothing to show.');
   if (scene.robot) validateRobot(scene.robot);
   if (scene.plan) {
     require(scene.robot, 'The scene holds a plan but no robot that follows it.');
-    require(
-      scene.plan.configuration_size > 0,
-      `The plan says configuration_size ${scene.plan.configuration_size}; expected a positive number.`,
-    );
+    require(scene.plan.configuration_size >
+      0, `The plan says configuration_size ${scene.plan.configuration_size}; expected a positive number.`);
     require(scene.plan.configurations, 'The plan is empty: it holds no configurations.');
   }
 }
 
 function validateRobot(robot: RobotDescription): void {
-  require(
-    Array.isArray(robot.links) && robot.links.length > 0,
-    `Robot "${robot.name}" has no links.`,
-  );
+  require(Array.isArray(robot.links) &&
+    robot.links.length > 0, `Robot "${robot.name}" has no links.`);
   for (const joint of robot.joints ?? []) {
     for (const end of [joint.parent, joint.child]) {
-      require(
-        Number.isInteger(end) && end >= 0 && end < robot.links.length,
-        `Joint "${joint.name}" refers to link ${end}; the robot has ${robot.links.length} links.`,
-      );
+      require(Number.isInteger(end) &&
+        end >= 0 &&
+        end <
+          robot.links
+            .length, `Joint "${joint.name}" refers to link ${end}; the robot has ${robot.links.length} links.`);
     }
   }
 }
@@ -230,19 +224,15 @@ function bytesOf(packed: string, what: string): ArrayBuffer {
 /** Rows of `width` little-endian float32 numbers. */
 export function unpackFloats(packed: string, width: number, what: string): Float32Array {
   const numbers = new Float32Array(bytesOf(packed, what));
-  require(
-    numbers.length % width === 0,
-    `${what}: ${numbers.length} numbers are not whole rows of ${width}.`,
-  );
+  require(numbers.length % width ===
+    0, `${what}: ${numbers.length} numbers are not whole rows of ${width}.`);
   return numbers;
 }
 
 /** Rows of `width` little-endian int32 numbers. */
 export function unpackIntegers(packed: string, width: number, what: string): Int32Array {
   const numbers = new Int32Array(bytesOf(packed, what));
-  require(
-    numbers.length % width === 0,
-    `${what}: ${numbers.length} numbers are not whole rows of ${width}.`,
-  );
+  require(numbers.length % width ===
+    0, `${what}: ${numbers.length} numbers are not whole rows of ${width}.`);
   return numbers;
 }

@@ -8,7 +8,11 @@ interface Showable {
 export function addSceneLayers(app: App): void {
   const { layers, robot, path, contactView, track, voxels, world, graph, plan, kinematics } = app;
   const show = (
-    id: string, label: string, key: string, object: Showable | null | undefined, there: boolean,
+    id: string,
+    label: string,
+    key: string,
+    object: Showable | null | undefined,
+    there: boolean,
     on = true,
   ) => {
     if (!object || !there) return;
@@ -16,7 +20,10 @@ export function addSceneLayers(app: App): void {
   };
   if (robot?.hasCollision && robot.hasVisual) {
     layers.add({
-      id: 'collision', label: 'Collision shapes', key: 'v', on: false,
+      id: 'collision',
+      label: 'Collision shapes',
+      key: 'v',
+      on: false,
       apply: (on) => robot.showCollision(on),
     });
   }
@@ -25,7 +32,9 @@ export function addSceneLayers(app: App): void {
   show('dots', 'Contact path', 'd', path?.dots, contacts && plan!.count > 1);
   if (contacts && plan!.count > 1) {
     layers.add({
-      id: 'by_time', label: 'Colour path by the time shown', apply: () => {},
+      id: 'by_time',
+      label: 'Colour path by the time shown',
+      apply: () => {},
       on: plan!.executed === null || plan!.executed >= plan!.count - 1,
     });
   }
@@ -41,7 +50,10 @@ export function addSceneLayers(app: App): void {
   show('surfaces', 'Surfaces', 'u', world.surfaces, world.surfaces.children.length > 0);
   if (app.violations.group.children.length > 0) {
     layers.add({
-      id: 'violations', label: 'Violations', key: 'x', on: true,
+      id: 'violations',
+      label: 'Violations',
+      key: 'x',
+      on: true,
       apply: (on) => app.violations.setVisible(on),
     });
   }

@@ -12,7 +12,11 @@ interface Chart {
   value: HTMLElement;
 }
 
-function draw(name: string, attributes: Record<string, string | number>, parent: Element): SVGElement {
+function draw(
+  name: string,
+  attributes: Record<string, string | number>,
+  parent: Element,
+): SVGElement {
   const made = document.createElementNS(SVG, name);
   for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, String(value));
   parent.append(made);
@@ -22,13 +26,20 @@ function draw(name: string, attributes: Record<string, string | number>, parent:
 export class SeriesCharts {
   private readonly charts: Chart[];
 
-  constructor(parent: HTMLElement, private readonly plan: Plan) {
+  constructor(
+    parent: HTMLElement,
+    private readonly plan: Plan,
+  ) {
     this.charts = plan.series.map((series) => {
       const figure = element('figure', 'series', parent);
       const caption = element('figcaption', '', figure);
       element('span', '', caption).textContent = series.name.replaceAll('_', ' ');
       const value = element('span', 'value', caption);
-      const svg = draw('svg', { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, preserveAspectRatio: 'none' }, figure);
+      const svg = draw(
+        'svg',
+        { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, preserveAspectRatio: 'none' },
+        figure,
+      );
       svg.setAttribute('role', 'img');
       svg.setAttribute('aria-label', `${series.name} along the plan`);
       let low = Math.min(...series.values, series.limit ?? Infinity);
@@ -36,7 +47,8 @@ export class SeriesCharts {
       if (!(high > low)) [low, high] = [low - 1, high + 1];
       const y = (v: number) => 3 + (HEIGHT - 6) * (1 - (v - low) / (high - low));
       const points = Array.from(
-        series.values, (v, i) => `${this.x(plan.times[i]).toFixed(1)},${y(v).toFixed(1)}`,
+        series.values,
+        (v, i) => `${this.x(plan.times[i]).toFixed(1)},${y(v).toFixed(1)}`,
       );
       if (series.limit !== null) {
         const line = y(series.limit);

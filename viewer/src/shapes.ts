@@ -1,6 +1,12 @@
 /** Geometry of links and obstacles: primitives along z, as URDF has them, and triangle meshes. */
 import {
-  BoxGeometry, BufferAttribute, BufferGeometry, CapsuleGeometry, Color, CylinderGeometry, Matrix4,
+  BoxGeometry,
+  BufferAttribute,
+  BufferGeometry,
+  CapsuleGeometry,
+  Color,
+  CylinderGeometry,
+  Matrix4,
   SphereGeometry,
 } from 'three';
 import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
@@ -23,7 +29,8 @@ export class Meshes {
     let geometry = this.geometries.get(index);
     if (!geometry) {
       const mesh = this.robot.meshes?.[index];
-      if (!mesh) throw new SceneError(`A shape refers to mesh ${index}, which is not in the scene.`);
+      if (!mesh)
+        throw new SceneError(`A shape refers to mesh ${index}, which is not in the scene.`);
       geometry = new BufferGeometry();
       const corners = unpackFloats(mesh.triangles, 9, `mesh ${mesh.name}`);
       geometry.setAttribute('position', new BufferAttribute(corners, 3));
@@ -60,7 +67,9 @@ function geometryOf(shape: ShapeDescription, meshes: Meshes): BufferGeometry {
 
 /** All shapes of a link as one geometry with vertex colours; null if there are none. */
 export function linkGeometry(
-  shapes: ShapeDescription[] | undefined, meshes: Meshes, colour?: number[],
+  shapes: ShapeDescription[] | undefined,
+  meshes: Meshes,
+  colour?: number[],
 ): BufferGeometry | null {
   if (!shapes?.length) return null;
   const parts = shapes.map((shape) => {

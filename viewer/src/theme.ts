@@ -27,20 +27,49 @@ export interface Theme {
 }
 
 const COMMON = {
-  executed: 0x2a9d5c, window: 0xf08c00, force: 0xe8590c, moment: 0x9c36b5, cone: 0x12b886,
-  violation: 0xe03131, moving: 0xe8813a,
+  executed: 0x2a9d5c,
+  window: 0xf08c00,
+  force: 0xe8590c,
+  moment: 0x9c36b5,
+  cone: 0x12b886,
+  violation: 0xe03131,
+  moving: 0xe8813a,
 };
 
 export const THEMES: Record<ThemeName, Theme> = {
   light: {
-    ...COMMON, background: 0xe9edf2, grid: 0x8a97a6, ground: 0xf7f9fb, shadow: 0x1b2633,
-    sky: 0xffffff, rest: 0x3b7ddd, base: 0x1864ab, reference: 0x868e96, centreOfMass: 0xc2255c,
-    before: 0xd9822b, after: 0x1c66c4, loop: 0x9c36b5, obstacle: 0x9aa5b1, surface: 0x94a9c2,
+    ...COMMON,
+    background: 0xe9edf2,
+    grid: 0x8a97a6,
+    ground: 0xf7f9fb,
+    shadow: 0x1b2633,
+    sky: 0xffffff,
+    rest: 0x3b7ddd,
+    base: 0x1864ab,
+    reference: 0x868e96,
+    centreOfMass: 0xc2255c,
+    before: 0xd9822b,
+    after: 0x1c66c4,
+    loop: 0x9c36b5,
+    obstacle: 0x9aa5b1,
+    surface: 0x94a9c2,
   },
   dark: {
-    ...COMMON, background: 0x14181e, grid: 0x5f6d7e, ground: 0x1d232b, shadow: 0x000000,
-    sky: 0xdfe8f5, rest: 0x5c9bf5, base: 0x74b3ff, reference: 0x8d99a8, centreOfMass: 0xff6b9d,
-    before: 0xb9762f, after: 0x5aa9ff, loop: 0xd678ea, obstacle: 0x738091, surface: 0x5d7391,
+    ...COMMON,
+    background: 0x14181e,
+    grid: 0x5f6d7e,
+    ground: 0x1d232b,
+    shadow: 0x000000,
+    sky: 0xdfe8f5,
+    rest: 0x5c9bf5,
+    base: 0x74b3ff,
+    reference: 0x8d99a8,
+    centreOfMass: 0xff6b9d,
+    before: 0xb9762f,
+    after: 0x5aa9ff,
+    loop: 0xd678ea,
+    obstacle: 0x738091,
+    surface: 0x5d7391,
   },
 };
 

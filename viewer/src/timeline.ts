@@ -47,11 +47,21 @@ export class Timeline {
     };
     const step = (by: number) => act(() => this.player.step(by));
     button('', 'One configuration back (←)', controls, step(-1)).innerHTML = icon('back');
-    this.play = button('', 'Play', controls, act(() => this.player.toggle()));
+    this.play = button(
+      '',
+      'Play',
+      controls,
+      act(() => this.player.toggle()),
+    );
     this.play.classList.add('play');
     this.play.id = 'play';
     button('', 'One configuration on (→)', controls, step(1)).innerHTML = icon('forward');
-    this.loop = button('', 'Loop (l)', controls, act(() => (player.loop = !player.loop)));
+    this.loop = button(
+      '',
+      'Loop (l)',
+      controls,
+      act(() => (player.loop = !player.loop)),
+    );
     this.loop.innerHTML = icon('loop');
     this.speed = element('select', '', controls);
     this.speed.setAttribute('aria-label', 'Speed (+ and -)');
@@ -59,7 +69,10 @@ export class Timeline {
     for (const speed of SPEEDS) {
       this.speed.add(new Option(`× ${speed}`, String(speed)));
     }
-    this.speed.addEventListener('change', act(() => (player.speed = Number(this.speed.value))));
+    this.speed.addEventListener(
+      'change',
+      act(() => (player.speed = Number(this.speed.value))),
+    );
     this.clock = element('output', 'clock', controls);
     this.where = element('span', 'where', controls);
 

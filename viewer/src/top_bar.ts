@@ -5,7 +5,10 @@ import { button, element, number } from './dom';
 import { icon } from './icons';
 
 const CAMERAS: [ViewName, string, string][] = [
-  ['overview', 'All', '0'], ['front', 'Front', '1'], ['side', 'Side', '2'], ['top', 'Top', '3'],
+  ['overview', 'All', '0'],
+  ['front', 'Front', '1'],
+  ['side', 'Side', '2'],
+  ['top', 'Top', '3'],
   ['follow', 'Follow', '4'],
 ];
 
@@ -38,7 +41,8 @@ export class TopBar {
   }
 
   showView(view: ViewName): void {
-    for (const [name, made] of this.cameras) made.setAttribute('aria-pressed', String(name === view));
+    for (const [name, made] of this.cameras)
+      made.setAttribute('aria-pressed', String(name === view));
   }
 }
 

@@ -24,13 +24,24 @@ export class ViolationView {
   private readonly projected = new Vector3();
   private readonly heights: number[] = [];
 
-  constructor(violations: Violation[], plan: Plan | null, private readonly overlay: HTMLElement) {
+  constructor(
+    violations: Violation[],
+    plan: Plan | null,
+    private readonly overlay: HTMLElement,
+  ) {
     const geometry = new SphereGeometry(1, 28, 18);
     const red = new MeshBasicMaterial({
-      color: THEMES.light.violation, transparent: true, depthTest: false, depthWrite: false,
+      color: THEMES.light.violation,
+      transparent: true,
+      depthTest: false,
+      depthWrite: false,
     });
     const halo = new MeshBasicMaterial({
-      color: THEMES.light.violation, transparent: true, opacity: 0.28, depthTest: false, depthWrite: false,
+      color: THEMES.light.violation,
+      transparent: true,
+      opacity: 0.28,
+      depthTest: false,
+      depthWrite: false,
     });
     this.marks = violations.map((violation) => {
       const time = timeOf(violation, plan);

@@ -1,15 +1,28 @@
 /**
- * Occupied cubes of a map: one instanced square for each face that touches free space, coloured
- * by height. Faces between two occupied cubes are never seen, so they are left out.
+ * Occupied cubes of a map, coloured by height: the faces that touch free space, all in one geometry.
+ * Faces between two occupied cubes are never seen, so they are left out; and what remains is merged
+ * rather than instanced, because an instance of four corners costs more to start than to draw.
  */
 import {
-  BufferAttribute, BufferGeometry, Color, Group, InstancedBufferAttribute,
-  InstancedBufferGeometry, Mesh, MeshLambertMaterial, Sphere, Vector3,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  Group,
+  Mesh,
+  MeshLambertMaterial,
+  Vector3,
 } from 'three';
 import { unpackFloats } from './scene_format';
 import { HEIGHT_COLOURS } from './theme';
 
-const SIDES = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
+const SIDES = [
+  [1, 0, 0],
+  [-1, 0, 0],
+  [0, 1, 0],
+  [0, -1, 0],
+  [0, 0, 1],
+  [0, 0, -1],
+];
 
 export class VoxelView {
   readonly group = new Group();
@@ -32,26 +45,7 @@ export class VoxelView {
     this.highest = this.count ? highest : 0;
     if (this.count === 0) return;
     const grid = new Occupancy(voxels, resolution ?? smallest);
-    const sphere = boundingSphere(voxels);
-    const material = heightMaterial(this.lowest, this.highest);
-    for (const side of SIDES) this.addSide(voxels, side, grid, material, sphere);
-  }
-
-  private addSide(
-    voxels: Float32Array, side: number[], grid: Occupancy, material: MeshLambertMaterial,
-    sphere: Sphere,
-  ): void {
-    const faces: number[] = [];
-    for (let i = 0; i < voxels.length; i += 4) {
-      if (!grid.hidden(voxels, i, side)) {
-        faces.push(voxels[i], voxels[i + 1], voxels[i + 2], voxels[i + 3]);
-      }
-    }
-    if (faces.length === 0) return;
-    const geometry = squareFacing(side);
-    geometry.setAttribute('voxel', new InstancedBufferAttribute(new Float32Array(faces), 4));
-    geometry.boundingSphere = sphere;
-    const mesh = new Mesh(geometry, material);
+    const mesh = new Mesh(faceGeometry(voxels, grid), heightMaterial(this.lowest, this.highest));
     mesh.receiveShadow = true;
     this.group.add(mesh);
   }
@@ -61,7 +55,10 @@ export class VoxelView {
 class Occupancy {
   private readonly cells = new Set<number>();
 
-  constructor(voxels: Float32Array, private readonly resolution: number) {
+  constructor(
+    voxels: Float32Array,
+    private readonly resolution: number,
+  ) {
     for (let i = 0; i < voxels.length; i += 4) {
       if (this.fine(voxels[i + 3])) {
         this.cells.add(this.key(voxels[i], voxels[i + 1], voxels[i + 2]));
@@ -88,42 +85,60 @@ class Occupancy {
   }
 }
 
-function squareFacing(side: number[]): InstancedBufferGeometry {
+/** Corners of the face of a unit cube towards a side, counter-clockwise from outside. */
+function faceCorners(side: number[]): { corner: Vector3; u: number; v: number }[] {
   const normal = new Vector3().fromArray(side);
-  const u = new Vector3(side[1] !== 0 || side[2] !== 0 ? 1 : 0, side[0] !== 0 ? 1 : 0, 0);
-  const v = new Vector3().crossVectors(normal, u);
-  const positions: number[] = [];
-  const normals: number[] = [];
-  const corners: number[] = [];
-  for (const [a, b] of [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]) {
-    const corner = normal.clone().multiplyScalar(0.5).addScaledVector(u, a).addScaledVector(v, b);
-    positions.push(...corner.toArray());
-    normals.push(...side);
-    corners.push(a, b);
-  }
-  const geometry: BufferGeometry = new InstancedBufferGeometry();
-  geometry.setAttribute('position', new BufferAttribute(new Float32Array(positions), 3));
-  geometry.setAttribute('normal', new BufferAttribute(new Float32Array(normals), 3));
-  geometry.setAttribute('corner', new BufferAttribute(new Float32Array(corners), 2));
-  geometry.setIndex([0, 1, 2, 0, 2, 3]);
-  return geometry as InstancedBufferGeometry;
+  const across = new Vector3(side[0] === 0 ? 1 : 0, side[0] === 0 ? 0 : 1, 0);
+  const along = new Vector3().crossVectors(normal, across);
+  return [
+    [-0.5, -0.5],
+    [0.5, -0.5],
+    [0.5, 0.5],
+    [-0.5, 0.5],
+  ].map(([u, v]) => ({
+    corner: normal.clone().multiplyScalar(0.5).addScaledVector(across, u).addScaledVector(along, v),
+    u,
+    v,
+  }));
 }
 
-function boundingSphere(voxels: Float32Array): Sphere {
-  const centre = new Vector3();
+function faceGeometry(voxels: Float32Array, grid: Occupancy): BufferGeometry {
+  const faces: number[] = [];
   for (let i = 0; i < voxels.length; i += 4) {
-    centre.x += voxels[i];
-    centre.y += voxels[i + 1];
-    centre.z += voxels[i + 2];
+    SIDES.forEach((side, k) => {
+      if (!grid.hidden(voxels, i, side)) faces.push(i, k);
+    });
   }
-  centre.divideScalar(voxels.length / 4);
-  let radius = 0;
-  const point = new Vector3();
-  for (let i = 0; i < voxels.length; i += 4) {
-    point.set(voxels[i], voxels[i + 1], voxels[i + 2]);
-    radius = Math.max(radius, point.distanceTo(centre) + voxels[i + 3]);
+  const count = faces.length / 2;
+  const corners = SIDES.map(faceCorners);
+  const positions = new Float32Array(12 * count);
+  const heights = new Float32Array(4 * count);
+  const normals = new Int8Array(16 * count);
+  const places = new Int8Array(8 * count);
+  const index = new Uint32Array(6 * count);
+  for (let face = 0; face < count; ++face) {
+    const [i, k] = [faces[2 * face], faces[2 * face + 1]];
+    for (let c = 0; c < 4; ++c) {
+      const { corner, u, v } = corners[k][c];
+      const vertex = 4 * face + c;
+      positions[3 * vertex] = voxels[i] + corner.x * voxels[i + 3];
+      positions[3 * vertex + 1] = voxels[i + 1] + corner.y * voxels[i + 3];
+      positions[3 * vertex + 2] = voxels[i + 2] + corner.z * voxels[i + 3];
+      heights[vertex] = voxels[i + 2];
+      for (let axis = 0; axis < 3; ++axis) normals[4 * vertex + axis] = 127 * SIDES[k][axis];
+      places[2 * vertex] = 254 * u;
+      places[2 * vertex + 1] = 254 * v;
+    }
+    for (let c = 0; c < 6; ++c) index[6 * face + c] = 4 * face + [0, 1, 2, 0, 2, 3][c];
   }
-  return new Sphere(centre, radius);
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(positions, 3));
+  geometry.setAttribute('normal', new BufferAttribute(normals, 4, true));
+  geometry.setAttribute('height', new BufferAttribute(heights, 1));
+  geometry.setAttribute('place', new BufferAttribute(places, 2, true));
+  geometry.setIndex(new BufferAttribute(index, 1));
+  geometry.computeBoundingSphere();
+  return geometry;
 }
 
 function heightMaterial(lowest: number, highest: number): MeshLambertMaterial {
@@ -131,17 +146,21 @@ function heightMaterial(lowest: number, highest: number): MeshLambertMaterial {
   material.onBeforeCompile = (shader) => {
     shader.uniforms.uHeights = { value: [lowest, Math.max(highest, lowest + 1e-6)] };
     shader.uniforms.uColours = { value: HEIGHT_COLOURS.map((colour) => new Color(colour)) };
-    shader.vertexShader = shader.vertexShader
-      .replace('void main() {', 'attribute vec4 voxel;\nattribute vec2 corner;\nvarying float vHeight;\nvarying vec2 vCorner;\nvoid main() {')
-      .replace(
-        '#include <begin_vertex>',
-        'vec3 transformed = position * voxel.w + voxel.xyz;\nvHeight = voxel.z;\nvCorner = corner;',
-      );
+    shader.vertexShader = shader.vertexShader.replace(
+      'void main() {',
+      `attribute float height;
+attribute vec2 place;
+varying float vHeight;
+varying vec2 vPlace;
+void main() {
+vHeight = height;
+vPlace = place;`,
+    );
     shader.fragmentShader = shader.fragmentShader
       .replace(
         'void main() {',
         `varying float vHeight;
-varying vec2 vCorner;
+varying vec2 vPlace;
 uniform float uHeights[2];
 uniform vec3 uColours[5];
 void main() {`,
@@ -154,10 +173,10 @@ vec3 low = uColours[0], high = uColours[1];
 if (cell == 1) { low = uColours[1]; high = uColours[2]; }
 if (cell == 2) { low = uColours[2]; high = uColours[3]; }
 if (cell == 3) { low = uColours[3]; high = uColours[4]; }
-vec2 rim = 0.5 - abs(vCorner);
-vec2 pixel = fwidth(vCorner);
+vec2 rim = 1.0 - abs(vPlace);
+vec2 pixel = fwidth(vPlace);
 float edge = 1.0 - smoothstep(0.0, 1.5, min(rim.x / pixel.x, rim.y / pixel.y));
-float close = 1.0 - smoothstep(0.04, 0.2, max(pixel.x, pixel.y));
+float close = 1.0 - smoothstep(0.08, 0.4, max(pixel.x, pixel.y));
 diffuseColor.rgb *= mix(low, high, h - float(cell)) * (1.0 - 0.32 * edge * close);`,
       );
   };

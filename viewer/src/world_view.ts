@@ -1,7 +1,18 @@
 /** Surfaces and obstacles; obstacles with key frames move with the plan's time. */
 import {
-  BoxGeometry, BufferGeometry, DoubleSide, EdgesGeometry, Group, LineBasicMaterial, LineSegments,
-  Mesh, MeshLambertMaterial, PlaneGeometry, Quaternion, SphereGeometry, Vector3,
+  BoxGeometry,
+  BufferGeometry,
+  DoubleSide,
+  EdgesGeometry,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshLambertMaterial,
+  PlaneGeometry,
+  Quaternion,
+  SphereGeometry,
+  Vector3,
 } from 'three';
 import { ObstacleDescription, Pose, SurfaceDescription } from './scene_format';
 import { cylinderAlongZ } from './shapes';
@@ -41,8 +52,12 @@ export class WorldView {
   private readonly resting = new MeshLambertMaterial();
   private readonly mobile = new MeshLambertMaterial();
   private readonly plane = new MeshLambertMaterial({
-    side: DoubleSide, transparent: true, opacity: 0.55,
-    polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+    side: DoubleSide,
+    transparent: true,
+    opacity: 0.55,
+    polygonOffset: true,
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 1,
   });
   private readonly edges = new LineBasicMaterial({ transparent: true, opacity: 0.55 });
 

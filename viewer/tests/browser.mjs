@@ -7,9 +7,16 @@ import { chromium } from 'playwright-core';
 import { page as pageText } from './scenes.mjs';
 
 const FLAGS = [
-  '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
-  '--disable-background-networking', '--disable-component-update', '--disable-sync',
-  '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
+  '--no-sandbox',
+  '--disable-gpu',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+  '--use-gl=angle',
+  '--use-angle=swiftshader',
+  '--enable-unsafe-swiftshader',
 ];
 
 export const CHROMIUM =
@@ -21,7 +28,11 @@ export class Browser {
   static async start() {
     const browser = new Browser();
     browser.folder = mkdtempSync(join(tmpdir(), 'locograph-viewer-'));
-    browser.chromium = await chromium.launch({ executablePath: CHROMIUM, args: FLAGS, timeout: 60000 });
+    browser.chromium = await chromium.launch({
+      executablePath: CHROMIUM,
+      args: FLAGS,
+      timeout: 60000,
+    });
     browser.count = 0;
     return browser;
   }

@@ -28,7 +28,8 @@ export async function serveLive(html) {
       const text = Buffer.from(JSON.stringify(message));
       const head = Buffer.from([0x81, 126, text.length >> 8, text.length & 255]);
       const short = Buffer.from([0x81, text.length]);
-      for (const socket of sockets) socket.write(Buffer.concat([text.length < 126 ? short : head, text]));
+      for (const socket of sockets)
+        socket.write(Buffer.concat([text.length < 126 ? short : head, text]));
     },
     async close() {
       for (const socket of sockets) socket.destroy();

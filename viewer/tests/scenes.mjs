@@ -29,7 +29,9 @@ export function robot(perLeg = 3) {
   const blue = [0.05, 0.3, 0.9, 1];
   const links = [
     {
-      name: 'base', mass: 20, com: [0, 0, 0],
+      name: 'base',
+      mass: 20,
+      com: [0, 0, 0],
       visual: [{ type: 'box', pose: pose(), size: [0.8, 0.4, 0.2], color: blue }],
       collision: [{ type: 'capsule', pose: pose(), radius: 0.25, length: 0.4 }],
     },
@@ -44,12 +46,27 @@ export function robot(perLeg = 3) {
       const axle = [0, Math.SQRT1_2, Math.SQRT1_2, 0];
       links.push({
         name: last ? `wheel_${leg + 1}` : `leg_${leg + 1}_${k + 1}`,
-        mass: 2, com: [0, 0, 0],
+        mass: 2,
+        com: [0, 0, 0],
         visual: last
-          ? [{ type: 'cylinder', pose: [0, 0, 0, ...axle], radius: WHEEL_RADIUS, length: 0.08,
-               color: [0.1, 0.1, 0.12, 1] }]
-          : [{ type: 'capsule', pose: pose(0, 0, -drop / 2), radius: 0.05, length: drop,
-               color: blue }],
+          ? [
+              {
+                type: 'cylinder',
+                pose: [0, 0, 0, ...axle],
+                radius: WHEEL_RADIUS,
+                length: 0.08,
+                color: [0.1, 0.1, 0.12, 1],
+              },
+            ]
+          : [
+              {
+                type: 'capsule',
+                pose: pose(0, 0, -drop / 2),
+                radius: 0.05,
+                length: drop,
+                color: blue,
+              },
+            ],
         collision: [{ type: 'sphere', pose: pose(), radius: WHEEL_RADIUS }],
       });
       joints.push({
@@ -59,8 +76,12 @@ export function robot(perLeg = 3) {
         child: links.length - 1,
         origin: k === 0 ? pose(x, y, -drop) : pose(0, 0, -drop),
         axis: [0, 1, 0],
-        lower: last ? null : -1, upper: last ? null : 1, velocity: 5, effort: 100,
-        index: joints.length, frozen: 0,
+        lower: last ? null : -1,
+        upper: last ? null : 1,
+        velocity: 5,
+        effort: 100,
+        index: joints.length,
+        frozen: 0,
       });
     }
   }
@@ -83,36 +104,79 @@ export function planScene({ count = 41, step = 0.5, perLeg = 3, voxels = 300 } =
     }
     contacts.push(
       [0, 1, 2, 3].map((leg) => ({
-        link: perLeg * (leg + 1), kind: 'wheel', radius: WHEEL_RADIUS, friction: 0.5,
-        position: [x + (leg < 2 ? 0.35 : -0.35), leg % 2 ? -0.3 : 0.3, 0], normal: [0, 0, 1],
-        force: [5, 0, (20 + 8 * perLeg) * 9.80665 / 4],
+        link: perLeg * (leg + 1),
+        kind: 'wheel',
+        radius: WHEEL_RADIUS,
+        friction: 0.5,
+        position: [x + (leg < 2 ? 0.35 : -0.35), leg % 2 ? -0.3 : 0.3, 0],
+        normal: [0, 0, 1],
+        force: [5, 0, ((20 + 8 * perLeg) * 9.80665) / 4],
       })),
     );
   }
   const end = times[count - 1];
   return {
-    version: 1, kind: 'plan', title: 'test <plan>.g2o', robot: model,
+    version: 1,
+    kind: 'plan',
+    title: 'test <plan>.g2o',
+    robot: model,
     plan: {
-      times, configurations: pack(configurations), configuration_size: size,
-      reference: pack(configurations), ids: times.map((_, i) => i), contacts,
-      executed: Math.floor(count / 4), window: Math.floor(count / 4),
-      series: [{ name: 'clearance', unit: 'm', limit: 0, values: pack(times.map((t) => Math.cos(t))) }],
+      times,
+      configurations: pack(configurations),
+      configuration_size: size,
+      reference: pack(configurations),
+      ids: times.map((_, i) => i),
+      contacts,
+      executed: Math.floor(count / 4),
+      window: Math.floor(count / 4),
+      series: [
+        { name: 'clearance', unit: 'm', limit: 0, values: pack(times.map((t) => Math.cos(t))) },
+      ],
     },
     map: { resolution: 0.05, voxels: pack(wall(voxels)) },
     surfaces: [{ name: 'plate', pose: pose(2, -1.2, 0.3), size: [0.5, 0.5] }],
     obstacles: [
       { name: 'pillar', type: 'cylinder', size: [0.1, 1], pose: pose(3, 1, 0.5) },
-      { name: 'cart', type: 'box', size: [0.3, 0.3, 0.3], pose: pose(4, -1, 0.15),
-        keyframes: [{ time: end / 2, pose: pose(4, 1, 0.15) }], repeat: end },
+      {
+        name: 'cart',
+        type: 'box',
+        size: [0.3, 0.3, 0.3],
+        pose: pose(4, -1, 0.15),
+        keyframes: [{ time: end / 2, pose: pose(4, 1, 0.15) }],
+        repeat: end,
+      },
     ],
     check: {
-      feasible: false, min_clearance_m: -0.03, max_velocity_ratio: 0.5,
+      feasible: false,
+      min_clearance_m: -0.03,
+      max_velocity_ratio: 0.5,
       violations: [
-        { constraint: 'joint_limits', violated: false, worst: -0.4, unit: 'rad', limit: 0,
-          at_vertex: 3, index: 3, count: 0, time: times[3], at_point: [0, 0, 0.5], what: 'joint_1_1' },
-        { constraint: 'obstacle_distance', violated: true, worst: -0.03, unit: 'm', limit: 0,
-          at_vertex: 30, index: 30, count: 4, time: times[30],
-          at_point: [SPEED * times[30] + 0.4, 0, 0.6], what: 'base and pillar' },
+        {
+          constraint: 'joint_limits',
+          violated: false,
+          worst: -0.4,
+          unit: 'rad',
+          limit: 0,
+          at_vertex: 3,
+          index: 3,
+          count: 0,
+          time: times[3],
+          at_point: [0, 0, 0.5],
+          what: 'joint_1_1',
+        },
+        {
+          constraint: 'obstacle_distance',
+          violated: true,
+          worst: -0.03,
+          unit: 'm',
+          limit: 0,
+          at_vertex: 30,
+          index: 30,
+          count: 4,
+          time: times[30],
+          at_point: [SPEED * times[30] + 0.4, 0, 0.6],
+          what: 'base and pillar',
+        },
       ],
     },
   };
@@ -146,9 +210,14 @@ export function sphereGraph({ rounds = 25, each = 50, radius = 50 } = {}) {
     if (i >= each) edges.push(i - each, i);
   }
   return {
-    version: 1, kind: 'pose_graph', title: 'sphere.g2o',
+    version: 1,
+    kind: 'pose_graph',
+    title: 'sphere.g2o',
     graph: {
-      dimension: 3, vertices: pack(vertices), before: pack(before), edges: pack(edges, Int32Array),
+      dimension: 3,
+      vertices: pack(vertices),
+      before: pack(before),
+      edges: pack(edges, Int32Array),
       chi2: [2500000, 727.1],
     },
   };
@@ -160,15 +229,25 @@ export function squareGraph(side = 10) {
   const edges = [];
   for (let i = 0; i < 4 * side; ++i) {
     const [edge, k] = [Math.floor(i / side), i % side];
-    const [x, y] = [[k, 0], [side, k], [side - k, side], [0, side - k]][edge];
+    const [x, y] = [
+      [k, 0],
+      [side, k],
+      [side - k, side],
+      [0, side - k],
+    ][edge];
     vertices.push(x, y, 0, 0, 0, 0, 1);
     edges.push(i, (i + 1) % (4 * side));
   }
   return {
-    version: 1, kind: 'pose_graph', title: 'square.g2o',
+    version: 1,
+    kind: 'pose_graph',
+    title: 'square.g2o',
     graph: {
-      dimension: 2, vertices: pack(vertices), edges: pack(edges, Int32Array),
-      points: pack([side / 2, side / 2, 0]), chi2: [10, 1],
+      dimension: 2,
+      vertices: pack(vertices),
+      edges: pack(edges, Int32Array),
+      points: pack([side / 2, side / 2, 0]),
+      chi2: [10, 1],
     },
   };
 }

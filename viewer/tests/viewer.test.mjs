@@ -4,7 +4,14 @@ import { statSync } from 'node:fs';
 import { after, before, describe, it } from 'node:test';
 import { Browser, CHROMIUM, difference, share } from './browser.mjs';
 import { serveLive } from './live_server.mjs';
-import { BASE_HEIGHT, page as pageText, planScene, SPEED, sphereGraph, squareGraph } from './scenes.mjs';
+import {
+  BASE_HEIGHT,
+  page as pageText,
+  planScene,
+  SPEED,
+  sphereGraph,
+  squareGraph,
+} from './scenes.mjs';
 
 if (!CHROMIUM) {
   console.log('skipped: Chromium is missing (Debian package chromium)');
@@ -41,7 +48,10 @@ describe('viewer', () => {
       assert.equal(await page.textContent('h1'), 'test <plan>.g2o');
       assert.equal((await state()).configurations, 41);
       assert.equal((await state()).violations, 1);
-      assert.match(await page.textContent('.legend'), /in the window.*contact force \(1 m = .* N\)/s);
+      assert.match(
+        await page.textContent('.legend'),
+        /in the window.*contact force \(1 m = .* N\)/s,
+      );
     }));
 
   it('draws the robot in the middle of the picture and nothing of it in the corners', () =>
@@ -52,7 +62,11 @@ describe('viewer', () => {
         const picture = await browser.pixels(page);
         assert.equal((await state()).view, 'side');
         assert.ok(share(picture, [0.35, 0.3, 0.65, 0.7], blue) > 0.12);
-        for (const corner of [[0, 0, 0.15, 0.3], [0.85, 0, 1, 0.3], [0, 0.8, 0.15, 1]]) {
+        for (const corner of [
+          [0, 0, 0.15, 0.3],
+          [0.85, 0, 1, 0.3],
+          [0, 0.8, 0.15, 1],
+        ]) {
           assert.ok(share(picture, corner, blue) < 0.01);
         }
       },
@@ -167,7 +181,12 @@ describe('viewer', () => {
       assert.equal((await press('-')).speed, 1);
       assert.equal((await press('Space')).playing, true);
       assert.equal((await press('Space')).playing, false);
-      for (const [key, view] of [['1', 'front'], ['2', 'side'], ['3', 'top'], ['4', 'follow']]) {
+      for (const [key, view] of [
+        ['1', 'front'],
+        ['2', 'side'],
+        ['3', 'top'],
+        ['4', 'follow'],
+      ]) {
         assert.equal((await press(key)).view, view);
       }
       assert.equal((await press('g')).layers.ghosts, true);
@@ -205,7 +224,12 @@ describe('viewer', () => {
       for (const part of ['.topbar', '.timeline', '.panel', '.legend']) {
         assert.equal(await page.locator(part).isVisible(), false);
       }
-      assert.deepEqual(await page.locator('#view').boundingBox(), { x: 0, y: 0, width: 1280, height: 720 });
+      assert.deepEqual(await page.locator('#view').boundingBox(), {
+        x: 0,
+        y: 0,
+        width: 1280,
+        height: 720,
+      });
     }));
 
   it('shows a robot without a plan, and a map without a robot', async () => {
@@ -227,8 +251,13 @@ describe('viewer', () => {
         const moved = [9, 3, BASE_HEIGHT, 0, 0, 0, 1, ...Array(12).fill(0)];
         server.send({ type: 'start', count: 41 });
         server.send({
-          type: 'cycle', configurations: { 40: moved, 99: moved, 1: [1] }, executed: 40, window: 0,
-          feasible: true, cycle_time: 0.0051, violation: null,
+          type: 'cycle',
+          configurations: { 40: moved, 99: moved, 1: [1] },
+          executed: 40,
+          window: 0,
+          feasible: true,
+          cycle_time: 0.0051,
+          violation: null,
         });
         await page.waitForFunction(() => window.locograph.state().executed === 40);
         // The page follows what has been executed.
@@ -260,7 +289,10 @@ describe('viewer', () => {
       [{ version: 1, kind: 'plan', title: '' }, /neither a robot nor a world/],
       [{ version: 1, kind: 'pose_graph', title: '', graph: { vertices: '' } }, /no vertices/],
       [with_((scene) => (scene.plan.configurations = '')), /plan is empty/],
-      [with_((scene) => (scene.plan.configurations = 'AAAAAAAAAAA=')), /2 numbers .* whole rows of 19/],
+      [
+        with_((scene) => (scene.plan.configurations = 'AAAAAAAAAAA=')),
+        /2 numbers .* whole rows of 19/,
+      ],
       [with_((scene) => (scene.plan.configurations = 'AAAAAAAA')), /cut off: 6 bytes/],
       [with_((scene) => (scene.plan.configurations = '*')), /not base64/],
       [with_((scene) => scene.plan.times.pop()), /41 configurations but 40 times/],
