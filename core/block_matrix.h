@@ -6,6 +6,9 @@
 ///
 /// The values are one flat array; block k is column-major, dimension[row] × dimension[c], and
 /// starts at value_offset[k]. Diagonal blocks are stored in full.
+///
+/// The last block rows, from `kept` on, are those of vertices marked for elimination: a Schur
+/// complement takes them out first, other solvers treat them like the rest.
 
 #include <cstdint>
 #include <vector>
@@ -18,6 +21,8 @@ struct BlockPattern {
   std::vector<int> column_begin;  ///< size + 1 entries
   std::vector<int> row;
   std::vector<std::int64_t> value_offset;  ///< blocks + 1 entries
+
+  int kept = 0;  ///< block rows before the eliminated ones
 
   int size() const { return static_cast<int>(dimension.size()); }
   int scalar_size() const { return scalar_begin.empty() ? 0 : scalar_begin.back(); }

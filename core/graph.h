@@ -36,8 +36,9 @@ class Graph {
     int pool = -1;  ///< -1: removed
     int index = 0;
     bool fixed = false;
-    int line = 0;    ///< in the file it came from, 0 otherwise
-    int alias = -1;  ///< which alias of its type's tag the file used, -1 for the tag itself
+    bool eliminate = false;  ///< by a Schur complement
+    int line = 0;            ///< in the file it came from, 0 otherwise
+    int alias = -1;          ///< which alias of its type's tag the file used, -1 for the tag itself
   };
   struct EdgeRecord {
     int pool = -1;  ///< -1: removed
@@ -84,6 +85,9 @@ class Graph {
     set_fixed(v.slot, fixed);
   }
   void set_fixed(int slot, bool fixed) { vertex_records_[slot].fixed = fixed; }
+  /// Marks vertices (landmarks, contact wrenches) that a Schur complement eliminates first. No edge
+  /// between two marked vertices may exist when the Schur solver is used.
+  void set_eliminate(int slot, bool eliminate) { vertex_records_[slot].eliminate = eliminate; }
   /// Removes a vertex and every edge on it.
   void remove_vertex(int slot);
 

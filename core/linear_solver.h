@@ -8,6 +8,7 @@
 ///
 /// After analyse(), factorise() and solve() do not allocate. Not thread-safe.
 
+#include <locograph/common/thread_pool.h>
 #include <locograph/core/block_matrix.h>
 
 #include <string>
@@ -19,6 +20,9 @@ class LinearSolver {
   virtual ~LinearSolver() = default;
 
   virtual std::string name() const = 0;
+  /// Threads to use from now on, null for the caller's alone. The bits of a result never depend on
+  /// it. The pool must outlive the solver's use.
+  virtual void use_threads(ThreadPool* /*threads*/) {}
   /// Ordering and symbolic factorisation; cheap when the pattern is the one it already has.
   virtual void analyse(const BlockPattern& pattern) = 0;
   /// values: as laid out by the pattern; damping: one number ≥ 0 for each scalar row. False when

@@ -53,9 +53,14 @@ void Problem::add_vertex(int slot, int block) {
 
 void Problem::compile(Graph& graph) {
   begin(graph);
-  for (int slot = 0; slot < graph.vertex_slots(); ++slot) {
-    if (!graph.vertex_alive(slot)) continue;
-    add_vertex(slot, graph.vertex_record(slot).fixed ? -1 : static_cast<int>(free_.size()));
+  for (const bool eliminated : {false, true}) {
+    for (int slot = 0; slot < graph.vertex_slots(); ++slot) {
+      if (!graph.vertex_alive(slot)) continue;
+      const Graph::VertexRecord& vertex = graph.vertex_record(slot);
+      if (vertex.eliminate != eliminated) continue;
+      add_vertex(slot, vertex.fixed ? -1 : static_cast<int>(free_.size()));
+    }
+    if (!eliminated) pattern_.kept = static_cast<int>(free_.size());
   }
   std::vector<int> all;
   all.reserve(graph.edge_count());
@@ -78,9 +83,14 @@ void Problem::compile(Graph& graph, std::span<const int> free_vertex_slots,
 
 void Problem::compile_window(std::span<const int> free_vertex_slots,
                              const std::span<const int>* held) {
-  for (const int slot : free_vertex_slots) {
-    if (place_[slot].state_offset >= 0 || graph_->vertex_record(slot).fixed) continue;
-    add_vertex(slot, static_cast<int>(free_.size()));
+  for (const bool eliminated : {false, true}) {
+    for (const int slot : free_vertex_slots) {
+      const Graph::VertexRecord& vertex = graph_->vertex_record(slot);
+      if (vertex.eliminate != eliminated || vertex.fixed || place_[slot].state_offset >= 0)
+        continue;
+      add_vertex(slot, static_cast<int>(free_.size()));
+    }
+    if (!eliminated) pattern_.kept = static_cast<int>(free_.size());
   }
   std::vector<int> touching;
   for (const int slot : free_) {
