@@ -79,11 +79,14 @@ void guess(Graph& graph, const OptimizeOptions& options) {
 OptimiserResult run(Graph& graph, const OptimizeOptions& options, LinearSolver& solver,
                     int& dimension, Times& times) {
   Stopwatch watch;
+  ThreadPool threads(options.threads);
   Problem problem;
   problem.compile(graph);
   Workspace workspace;
   workspace.allocate(problem);
+  workspace.use_threads(&threads);
   workspace.load_state();
+  solver.use_threads(&threads);
   Optimiser optimiser(options.optimiser);
   optimiser.start(workspace, solver);
   times.compile = watch.lap();
@@ -97,6 +100,7 @@ OptimiserResult run(Graph& graph, const OptimizeOptions& options, LinearSolver& 
     });
   }
   workspace.store_state();
+  solver.use_threads(nullptr);
   times.optimize = watch.seconds();
   return optimiser.result();
 }
@@ -190,7 +194,7 @@ ExitCode optimize(const OptimizeOptions& options) {
       {"reason", reason(result, graph)},
       {"algorithm", options.algorithm},
       {"linear_solver", solver->name()},
-      {"threads", 1},
+      {"threads", options.threads},
       {"time",
        {{"load", times.load},
         {"compile", times.compile},
@@ -238,9 +242,8 @@ Command add_optimize(CLI::App& app) {
                    "Converged when a step lowers the cost by less than this fraction")
       ->capture_default_str();
   parser
-      ->add_option("--threads", o.threads,
-                   "Most threads to use (this version uses one); the result never depends on it")
-      ->check(CLI::PositiveNumber)
+      ->add_option("--threads", o.threads, "Most threads to use; the result never depends on it")
+      ->check(CLI::Range(1, 64))
       ->capture_default_str();
   parser->add_flag(
       "--lenient", o.lenient,

@@ -29,8 +29,8 @@ struct BlockPattern {
   int blocks() const { return static_cast<int>(row.size()); }
   std::int64_t values() const { return value_offset.empty() ? 0 : value_offset.back(); }
 
-  /// Offset of block (r, c), r ≤ c. It must exist.
-  std::int64_t offset_of(int r, int c) const;
+  /// Number of block (r, c), r ≤ c. It must exist.
+  int block_of(int r, int c) const;
 
   bool operator==(const BlockPattern&) const = default;
 };

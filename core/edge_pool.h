@@ -28,19 +28,22 @@ struct CompiledEdges {
     int pool_number;         ///< of its pool, in Evaluation::derived
     int derived_index;       ///< in that DerivedStore
     int state_offset;        ///< in the flat state
-    int tangent_offset;      ///< in gradient and step; -1 when the vertex is held fixed
+    int tangent_offset;      ///< in the step; -1 when the vertex is held fixed
+    int gradient_offset;     ///< where this edge's share of the gradient is summed
   };
   /// A Hessian block: twice its offset, plus one when the transpose is stored; -1 for none.
   using Block = std::int64_t;
 
-  std::vector<int> edges;       ///< indices in the pool, ascending
-  std::vector<int> slot_begin;  ///< edges + 1
+  std::vector<int> edges;        ///< indices in the pool, ascending within a chunk
+  std::vector<int> chunk_begin;  ///< first edge of each chunk (see problem.h); chunks + 1
+  std::vector<int> slot_begin;   ///< edges + 1
   std::vector<Slot> slots;
   std::vector<std::int64_t> block_begin;  ///< edges + 1
   std::vector<Block> blocks;  ///< for each edge the pairs (i, j), i ≤ j, of its slots, row by row
 
   void clear() {
     edges.clear();
+    chunk_begin.assign(2, 0);
     slot_begin.assign(1, 0);
     slots.clear();
     block_begin.assign(1, 0);
@@ -91,10 +94,11 @@ class EdgePool {
   /// Error of one edge, unweighted.
   virtual void error(const CompiledEdges& edges, int k, const Evaluation& x,
                      double* error) const = 0;
-  virtual Cost cost(const CompiledEdges& edges, const Evaluation& x) const = 0;
-  /// Adds JᵀΩJ to `hessian` and JᵀΩe to `gradient`; returns the cost.
-  virtual Cost linearise(const CompiledEdges& edges, const Evaluation& x, double* hessian,
-                         double* gradient) const = 0;
+  /// Of edges [begin, end) of the list.
+  virtual Cost cost(const CompiledEdges& edges, int begin, int end, const Evaluation& x) const = 0;
+  /// Adds JᵀΩJ of those edges to `hessian` and JᵀΩe to `gradient`; returns their cost.
+  virtual Cost linearise(const CompiledEdges& edges, int begin, int end, const Evaluation& x,
+                         double* hessian, double* gradient) const = 0;
   /// Jacobian of edge k by slot, dimension × tangent: as linearise() uses it (numeric = false), or
   /// by central differences on local copies (numeric = true). For tests; allocates.
   virtual Eigen::MatrixXd jacobian(const CompiledEdges& edges, int k, int slot, const Evaluation& x,

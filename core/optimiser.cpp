@@ -11,7 +11,7 @@ using Vector = Eigen::Map<Eigen::VectorXd>;
 
 constexpr int kMostStatistics = 10000;
 
-Vector map(std::vector<double>& values) {
+Vector map(std::span<double> values) {
   return Vector(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
@@ -27,6 +27,7 @@ void OptimiserOptions::validate() const {
   check(gradient_tolerance >= 0.0, "gradient_tolerance", "0 or more");
   check(step_tolerance >= 0.0, "step_tolerance", "0 or more");
   check(initial_lambda > 0.0, "initial_lambda", "a positive number");
+  check(refused_lambda > 0.0, "refused_lambda", "a positive number");
   check(initial_radius > 0.0, "initial_radius", "a positive number");
   check(max_refusals >= 1, "max_refusals", "1 or more");
 }
@@ -170,8 +171,8 @@ bool Optimiser::iterate_gauss_newton(IterationStatistics& now) {
 bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
   workspace_->diagonal(diagonal_);
   if (lambda_ == 0.0) {
-    lambda_ =
-        options_.initial_lambda * (options_.scale_by_diagonal ? 1.0 : map(diagonal_).maxCoeff());
+    lambda_unit_ = options_.scale_by_diagonal ? 1.0 : map(diagonal_).maxCoeff();
+    lambda_ = options_.initial_lambda * lambda_unit_;
   }
   bool factorised = false;
   for (; now.refusals < options_.max_refusals; ++now.refusals) {
@@ -201,7 +202,7 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
       // At the bottom of the valley rounding decides; the model says there is nothing to gain.
       if (predicted <= options_.gain * cost_.robust * 1e-3) return finish(Reason::kGain);
     }
-    lambda_ *= lambda_growth_;
+    lambda_ = std::max(lambda_ * lambda_growth_, options_.refused_lambda * lambda_unit_);
     lambda_growth_ *= 2.0;
     if (options_.deadline.passed()) return finish(Reason::kDeadline);
   }
@@ -253,17 +254,21 @@ bool Optimiser::iterate_dogleg(IterationStatistics& now) {
   return finish(Reason::kNoProgress);
 }
 
-OptimiserResult optimise(Graph& graph, const OptimiserOptions& options, LinearSolver& solver) {
+OptimiserResult optimise(Graph& graph, const OptimiserOptions& options, LinearSolver& solver,
+                         ThreadPool* threads) {
   Problem problem;
   problem.compile(graph);
   Workspace workspace;
   workspace.allocate(problem);
+  workspace.use_threads(threads);
   workspace.load_state();
+  solver.use_threads(threads);
   Optimiser optimiser(options);
   optimiser.start(workspace, solver);
   while (optimiser.iterate()) {
   }
   workspace.store_state();
+  solver.use_threads(nullptr);
   return optimiser.result();
 }
 

@@ -36,9 +36,13 @@ struct OptimiserOptions {
   double gradient_tolerance = 1e-10;
   /// Converged when |step| is below this fraction of |state|.
   double step_tolerance = 1e-12;
-  /// First λ, as a fraction of the largest diagonal entry of H.
-  double initial_lambda = 1e-5;
-  /// Damp by λ·diag(H) (Marquardt 1963) instead of λ·I; initial_lambda is then λ itself.
+  /// First λ, as a fraction of the largest diagonal entry of H: next to nothing, since a good first
+  /// guess is best followed by Gauss-Newton steps.
+  double initial_lambda = 1e-12;
+  /// A refused step makes λ at least this fraction: the customary first value where the model is
+  /// not to be trusted.
+  double refused_lambda = 1e-5;
+  /// Damp by λ·diag(H) (Marquardt 1963) instead of λ·I; the two options above are then λ itself.
   bool scale_by_diagonal = false;
   /// First trust-region radius of the dogleg, in units of the tangent.
   double initial_radius = 1e4;
@@ -111,11 +115,13 @@ class Optimiser {
   LinearSolver* solver_ = nullptr;
   OptimiserResult result_;
   Cost cost_;
-  double lambda_ = 0.0, lambda_growth_ = 2.0, radius_ = 0.0;
+  double lambda_ = 0.0, lambda_unit_ = 1.0, lambda_growth_ = 2.0, radius_ = 0.0;
   std::vector<double> diagonal_, newton_step_, negative_gradient_;
 };
 
-/// Compiles, optimises and writes the result back to the graph. Vertices that are fixed stay.
-OptimiserResult optimise(Graph& graph, const OptimiserOptions& options, LinearSolver& solver);
+/// Compiles, optimises and writes the result back to the graph. Vertices that are fixed stay. The
+/// threads share the work of large problems; they never change a bit of the result.
+OptimiserResult optimise(Graph& graph, const OptimiserOptions& options, LinearSolver& solver,
+                         ThreadPool* threads = nullptr);
 
 }  // namespace locograph

@@ -4,10 +4,64 @@
 
 namespace locograph {
 
-std::int64_t BlockPattern::offset_of(int r, int c) const {
+namespace {
+
+/// Chunks of a problem worth sharing: enough for the threads of one processor to stay busy.
+constexpr int kChunks = 8;
+/// Below this much estimated work a pass is over before a second thread has woken up.
+constexpr double kLeastWork = 100e-6;  // s
+
+/// Seconds that linearising an edge takes, roughly: it only has to balance chunks.
+double edge_work(double rows, double columns) {
+  return 1e-9 * (40.0 + rows * columns * (1.5 + 0.15 * columns));
+}
+
+/// Gives each chunk that sums into a place a destination of its own, the first one the place.
+class Destinations {
+ public:
+  Destinations(std::int64_t places, std::int64_t size) : last_(places), size_(size) {}
+
+  std::int64_t of(std::int64_t place, std::int64_t own, int size, int chunk) {
+    Last& last = last_[place];
+    if (last.chunk < 0) last = {chunk, own};
+    if (last.chunk != chunk) {
+      reductions_.push_back({size_, own, size});
+      last = {chunk, size_};
+      size_ += size;
+    }
+    return last.offset;
+  }
+
+  void finish(Problem::Reductions& out) {
+    std::stable_sort(reductions_.begin(), reductions_.end(),
+                     [](const auto& a, const auto& b) { return a.to < b.to; });
+    out.size = size_;
+    out.part_begin.assign(1, 0);
+    const int count = static_cast<int>(reductions_.size());
+    for (int part = 1; part <= kChunks && out.part_begin.back() < count; ++part) {
+      int end = std::max(out.part_begin.back() + 1, count * part / kChunks);
+      while (end < count && reductions_[end].to == reductions_[end - 1].to) ++end;
+      out.part_begin.push_back(end);
+    }
+    out.all = std::move(reductions_);
+  }
+
+ private:
+  struct Last {
+    int chunk = -1;
+    std::int64_t offset = 0;
+  };
+  std::vector<Last> last_;
+  std::vector<Problem::Reduction> reductions_;
+  std::int64_t size_;
+};
+
+}  // namespace
+
+int BlockPattern::block_of(int r, int c) const {
   const auto begin = row.begin() + column_begin[c];
   const auto end = row.begin() + column_begin[c + 1];
-  return value_offset[std::lower_bound(begin, end, r) - row.begin()];
+  return static_cast<int>(std::lower_bound(begin, end, r) - row.begin());
 }
 
 void Problem::begin(Graph& graph) {
@@ -122,11 +176,12 @@ void Problem::compile_edges(const std::vector<int>& edge_slots) {
     residual_count_ += graph_->edge_pools()[record.pool]->dimension(record.index);
   }
   edge_count_ = static_cast<int>(edge_slots.size());
+  for (CompiledEdges& compiled : edges_) std::sort(compiled.edges.begin(), compiled.edges.end());
+  divide_into_chunks();
   scratch_bytes_ = 0;
   for (std::size_t p = 0; p < edges_.size(); ++p) {
     CompiledEdges& compiled = edges_[p];
     const EdgePool& pool = *graph_->edge_pools()[p];
-    std::sort(compiled.edges.begin(), compiled.edges.end());
     for (const int index : compiled.edges) {
       for (const int v : pool.vertices(index)) {
         const Graph::VertexRecord& vertex = graph_->vertex_record(v);
@@ -138,6 +193,7 @@ void Problem::compile_edges(const std::vector<int>& edge_slots) {
         slot.derived_index = place.derived_index;
         slot.state_offset = place.state_offset;
         slot.tangent_offset = place.block < 0 ? -1 : pattern_.scalar_begin[place.block];
+        slot.gradient_offset = slot.tangent_offset;
         compiled.slots.push_back(slot);
       }
       compiled.slot_begin.push_back(static_cast<int>(compiled.slots.size()));
@@ -146,6 +202,59 @@ void Problem::compile_edges(const std::vector<int>& edge_slots) {
   }
   build_pattern();
   build_offsets();
+}
+
+void Problem::divide_into_chunks() {
+  // Edges by the last of their free vertices; those without one come first.
+  work_.assign(free_.size() + 1, 0.0);
+  const auto last_block = [&](const EdgePool& pool, int index) {
+    int last = -1;
+    for (const int v : pool.vertices(index)) last = std::max(last, place_[v].block);
+    return last;
+  };
+  double total = 0.0;
+  for (std::size_t p = 0; p < edges_.size(); ++p) {
+    const EdgePool& pool = *graph_->edge_pools()[p];
+    for (const int index : edges_[p].edges) {
+      double columns = 0.0;
+      int last = -1;
+      for (const int v : pool.vertices(index)) {
+        const int block = place_[v].block;
+        if (block >= 0) columns += pattern_.dimension[block];
+        last = std::max(last, block);
+      }
+      const double work = edge_work(pool.dimension(index), columns);
+      work_[last + 1] += work;
+      total += work;
+    }
+  }
+  chunks_ = total < kLeastWork ? 1 : kChunks;
+  for (CompiledEdges& compiled : edges_) {
+    compiled.chunk_begin.assign(chunks_ + 1, static_cast<int>(compiled.edges.size()));
+    compiled.chunk_begin[0] = 0;
+  }
+  if (chunks_ == 1) return;
+  std::vector<int> chunk_of(work_.size());
+  double sum = 0.0;
+  for (std::size_t b = 0; b < work_.size(); ++b) {
+    chunk_of[b] = std::min(chunks_ - 1, static_cast<int>(chunks_ * (sum + 0.5 * work_[b]) / total));
+    sum += work_[b];
+  }
+  std::vector<int> sorted;
+  for (std::size_t p = 0; p < edges_.size(); ++p) {
+    CompiledEdges& compiled = edges_[p];
+    const EdgePool& pool = *graph_->edge_pools()[p];
+    std::vector<int>& begin = compiled.chunk_begin;
+    begin.assign(chunks_ + 1, 0);
+    for (const int index : compiled.edges) ++begin[chunk_of[last_block(pool, index) + 1] + 1];
+    for (int c = 0; c < chunks_; ++c) begin[c + 1] += begin[c];
+    sorted.resize(compiled.edges.size());
+    std::vector<int> next(begin.begin(), begin.end() - 1);
+    for (const int index : compiled.edges) {
+      sorted[next[chunk_of[last_block(pool, index) + 1]]++] = index;
+    }
+    compiled.edges.swap(sorted);
+  }
 }
 
 void Problem::build_pattern() {
@@ -185,27 +294,45 @@ void Problem::build_pattern() {
 }
 
 void Problem::build_offsets() {
-  for (std::size_t p = 0; p < edges_.size(); ++p) {
-    CompiledEdges& compiled = edges_[p];
-    const EdgePool& pool = *graph_->edge_pools()[p];
-    for (const int index : compiled.edges) {
-      const std::span<const int> vertices = pool.vertices(index);
-      for (std::size_t i = 0; i < vertices.size(); ++i) {
-        const int bi = place_[vertices[i]].block;
-        for (std::size_t j = i; j < vertices.size(); ++j) {
-          const int bj = place_[vertices[j]].block;
-          if (bi < 0 || bj < 0) {
-            compiled.blocks.push_back(-1);
-          } else {
-            const bool transposed = bi > bj;
-            const std::int64_t offset = pattern_.offset_of(std::min(bi, bj), std::max(bi, bj));
-            compiled.blocks.push_back(2 * offset + (transposed ? 1 : 0));
+  Destinations hessian(pattern_.blocks(), pattern_.values());
+  Destinations gradient(pattern_.size(), pattern_.scalar_size());
+  for (CompiledEdges& compiled : edges_) {
+    compiled.blocks.clear();
+    compiled.block_begin.assign(1, 0);
+  }
+  for (int chunk = 0; chunk < chunks_; ++chunk) {
+    for (std::size_t p = 0; p < edges_.size(); ++p) {
+      CompiledEdges& compiled = edges_[p];
+      const EdgePool& pool = *graph_->edge_pools()[p];
+      for (int k = compiled.chunk_begin[chunk]; k < compiled.chunk_begin[chunk + 1]; ++k) {
+        const std::span<const int> vertices = pool.vertices(compiled.edges[k]);
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+          const int bi = place_[vertices[i]].block;
+          if (bi >= 0) {
+            CompiledEdges::Slot& slot = compiled.slots[compiled.slot_begin[k] + i];
+            slot.gradient_offset = static_cast<int>(
+                gradient.of(bi, slot.tangent_offset, pattern_.dimension[bi], chunk));
+          }
+          for (std::size_t j = i; j < vertices.size(); ++j) {
+            const int bj = place_[vertices[j]].block;
+            if (bi < 0 || bj < 0) {
+              compiled.blocks.push_back(-1);
+              continue;
+            }
+            const int row = std::min(bi, bj), column = std::max(bi, bj);
+            const int block = pattern_.block_of(row, column);
+            const std::int64_t offset =
+                hessian.of(block, pattern_.value_offset[block],
+                           pattern_.dimension[row] * pattern_.dimension[column], chunk);
+            compiled.blocks.push_back(2 * offset + (bi > bj ? 1 : 0));
           }
         }
+        compiled.block_begin.push_back(static_cast<std::int64_t>(compiled.blocks.size()));
       }
-      compiled.block_begin.push_back(static_cast<std::int64_t>(compiled.blocks.size()));
     }
   }
+  hessian.finish(hessian_reductions_);
+  gradient.finish(gradient_reductions_);
 }
 
 }  // namespace locograph

@@ -15,6 +15,12 @@
 /// must be compiled again after vertices or edges are added, removed, fixed or freed (changing
 /// their values is fine). The order of edges and vertices is that of the graph's pools: results do
 /// not depend on anything else.
+///
+/// Large problems are evaluated in chunks, so that threads can share the work. A chunk holds the
+/// edges whose last free vertex lies in its range of block rows, and sums straight into H and the
+/// gradient; only where an earlier chunk has already done so it sums aside, and the sums are added
+/// in the order of the chunks (`Reduction`). The chunks follow from the problem alone, never from
+/// the number of threads: so do the bits of a result.
 
 #include <locograph/core/block_matrix.h>
 #include <locograph/core/graph.h>
@@ -27,6 +33,18 @@ namespace locograph {
 
 class Problem {
  public:
+  /// A sum of one chunk, kept behind the matrix (or gradient), to be added to its place there.
+  struct Reduction {
+    std::int64_t from;
+    std::int64_t to;
+    int size;
+  };
+  struct Reductions {
+    std::vector<Reduction> all;   ///< by destination, then by chunk
+    std::vector<int> part_begin;  ///< parts with destinations of their own; parts + 1
+    std::int64_t size = 0;        ///< of the array, sums aside included
+  };
+
   void compile(Graph& graph);
   void compile(Graph& graph, std::span<const int> free_vertex_slots);
   /// The same, without the edges that touch a vertex which is neither free nor in `held`: the end
@@ -46,12 +64,16 @@ class Problem {
   std::span<const std::vector<ActiveVertex>> active() const { return active_; }
   std::span<const CompiledEdges> edges() const { return edges_; }
   std::size_t scratch_bytes() const { return scratch_bytes_; }
+  int chunks() const { return chunks_; }
+  const Reductions& hessian_reductions() const { return hessian_reductions_; }
+  const Reductions& gradient_reductions() const { return gradient_reductions_; }
 
  private:
   void begin(Graph& graph);
   void add_vertex(int slot, int tangent_offset);
   void compile_window(std::span<const int> free_vertex_slots, const std::span<const int>* held);
   void compile_edges(const std::vector<int>& edge_slots);
+  void divide_into_chunks();
   void build_pattern();
   void build_offsets();
 
@@ -69,6 +91,9 @@ class Problem {
   std::vector<CompiledEdges> edges_;
   BlockPattern pattern_;
   std::vector<std::uint64_t> pairs_;
+  std::vector<double> work_;  ///< of the edges that end in each block row
+  int chunks_ = 1;
+  Reductions hessian_reductions_, gradient_reductions_;
   int state_size_ = 0;
   int edge_count_ = 0;
   int residual_count_ = 0;

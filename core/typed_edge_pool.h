@@ -66,10 +66,9 @@ class TypedEdgePool final : public EdgePool {
     Evaluator(edge, slots(compiled, k), x).error(e);
   }
 
-  Cost cost(const CompiledEdges& compiled, const Evaluation& x) const override {
+  Cost cost(const CompiledEdges& compiled, int begin, int end, const Evaluation& x) const override {
     Cost total;
-    const int count = static_cast<int>(compiled.edges.size());
-    for (int k = 0; k < count; ++k) {
+    for (int k = begin; k < end; ++k) {
       x.scratch->reset();
       const E& edge = edges[compiled.edges[k]];
       detail::LocalMatrix<Error> e = detail::make_local<Error>(edge.dimension(), 1, *x.scratch);
@@ -80,11 +79,10 @@ class TypedEdgePool final : public EdgePool {
     return total;
   }
 
-  Cost linearise(const CompiledEdges& compiled, const Evaluation& x, double* hessian,
-                 double* gradient) const override {
+  Cost linearise(const CompiledEdges& compiled, int begin, int end, const Evaluation& x,
+                 double* hessian, double* gradient) const override {
     Cost total;
-    const int count = static_cast<int>(compiled.edges.size());
-    for (int k = 0; k < count; ++k) {
+    for (int k = begin; k < end; ++k) {
       x.scratch->reset();
       total += linearise_one(compiled, k, x, hessian, gradient);
     }
@@ -368,7 +366,7 @@ class TypedEdgePool final : public EdgePool {
       const CompiledEdges::Block* block = compiled.blocks.data() + compiled.block_begin[k];
       for (int i = 0; i < count; ++i) {
         const RowEntries& left = entries[i];
-        double* g = gradient + own[i].tangent_offset;
+        double* g = gradient + own[i].gradient_offset;
         for (int a = 0; a < left.count; ++a) g[left.column[a]] += w * e[r] * left.value[a];
         for (int j = i; j < count; ++j, ++block) {
           const RowEntries& right = entries[j];
@@ -421,7 +419,7 @@ class TypedEdgePool final : public EdgePool {
       } else {
         weighted.noalias() = ji.transpose().lazyProduct(edge.information * weight);
       }
-      Eigen::Map<Eigen::Matrix<double, A::kDimension, 1>> g(gradient + own[i].tangent_offset, di);
+      Eigen::Map<Eigen::Matrix<double, A::kDimension, 1>> g(gradient + own[i].gradient_offset, di);
       g.noalias() += weighted * e;
       evaluator.each_slot([&]<class B>(std::type_identity<B>, int j) {
         if (j < i || data[j] == nullptr) return;

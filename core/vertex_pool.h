@@ -52,8 +52,13 @@ class VertexPool {
   /// Null when the type has no derived quantities.
   virtual std::unique_ptr<DerivedStore> make_derived(
       std::span<const ActiveVertex> vertices) const = 0;
-  virtual void derive(std::span<const ActiveVertex> vertices, const double* state,
-                      DerivedStore& derived) const = 0;
+  /// Fills those of vertices [begin, end) of the list.
+  virtual void derive(std::span<const ActiveVertex> vertices, std::size_t begin, std::size_t end,
+                      const double* state, DerivedStore& derived) const = 0;
+  void derive(std::span<const ActiveVertex> vertices, const double* state,
+              DerivedStore& derived) const {
+    derive(vertices, 0, vertices.size(), state, derived);
+  }
 
   virtual int add_default() = 0;
   virtual int read(FieldReader& in) = 0;  ///< returns the index of the new vertex
@@ -102,12 +107,14 @@ class TypedVertexPool final : public VertexPool {
     }
   }
 
+  using VertexPool::derive;
   void derive([[maybe_unused]] std::span<const ActiveVertex> active,
+              [[maybe_unused]] std::size_t begin, [[maybe_unused]] std::size_t end,
               [[maybe_unused]] const double* state,
               [[maybe_unused]] DerivedStore& derived) const override {
     if constexpr (HasDerived<V>) {
       std::vector<typename V::Derived>& values = static_cast<TypedDerivedStore<V>&>(derived).values;
-      for (std::size_t i = 0; i < active.size(); ++i) {
+      for (std::size_t i = begin; i < end; ++i) {
         vertices[active[i].index].derive(state + active[i].state_offset, values[i]);
       }
     }

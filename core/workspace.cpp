@@ -8,9 +8,9 @@ void Workspace::allocate(const Problem& problem) {
   problem_ = &problem;
   state_.resize(problem.state_size());
   trial_.resize(problem.state_size());
-  hessian_.resize(problem.pattern().values());
+  hessian_.resize(problem.hessian_reductions().size);
   const int n = problem.dimension();
-  gradient_.resize(n);
+  gradient_.resize(problem.gradient_reductions().size);
   step_.resize(n);
   damping_.assign(n, 0.0);
   const std::size_t pools = problem.active().size();
@@ -24,7 +24,9 @@ void Workspace::allocate(const Problem& problem) {
     derived_[p] = pool.make_derived(active);
     if (derived_[p]) derived_for_[p].assign(pool, active);
   }
-  scratch_.reserve(problem.scratch_bytes());
+  if (static_cast<int>(scratch_.size()) < problem.chunks()) scratch_.resize(problem.chunks());
+  for (Scratch& scratch : scratch_) scratch.reserve(problem.scratch_bytes());
+  chunk_costs_.resize(problem.chunks());
 }
 
 bool Workspace::DerivedFor::fits(const VertexPool& other,
@@ -70,33 +72,81 @@ void Workspace::apply_step() {
   }
 }
 
+template <class Task>
+void Workspace::for_each(int count, Task&& task) {
+  if (threads_ != nullptr && problem_->chunks() > 1) {
+    threads_->run(count, task);
+  } else {
+    for (int i = 0; i < count; ++i) task(i);
+  }
+}
+
+/// Σ over the chunks of task(chunk, pool number), in their order.
+template <class Task>
+Cost Workspace::sum_chunks(Task&& task) {
+  for_each(problem_->chunks(), [&](int chunk) {
+    Cost sum;
+    for (std::size_t p = 0; p < problem_->edges().size(); ++p) sum += task(chunk, p);
+    chunk_costs_[chunk] = sum;
+  });
+  Cost total;
+  for (const Cost& cost : chunk_costs_) total += cost;
+  return total;
+}
+
 Cost Workspace::evaluate(const std::vector<double>& state) {
+  const std::size_t chunks = problem_->chunks();
   for (std::size_t p = 0; p < derived_.size(); ++p) {
     if (!derived_[p]) continue;
-    problem_->graph().vertex_pools()[p]->derive(problem_->active()[p], state.data(), *derived_[p]);
+    const std::vector<ActiveVertex>& active = problem_->active()[p];
+    for_each(problem_->chunks(), [&](std::size_t chunk) {
+      problem_->graph().vertex_pools()[p]->derive(active, active.size() * chunk / chunks,
+                                                  active.size() * (chunk + 1) / chunks,
+                                                  state.data(), *derived_[p]);
+    });
   }
-  Cost total;
-  const Evaluation x = evaluation(state);
-  for (std::size_t p = 0; p < problem_->edges().size(); ++p) {
-    total += problem_->graph().edge_pools()[p]->cost(problem_->edges()[p], x);
-  }
-  return total;
+  return sum_chunks([&](int chunk, std::size_t p) {
+    const CompiledEdges& edges = problem_->edges()[p];
+    return problem_->graph().edge_pools()[p]->cost(
+        edges, edges.chunk_begin[chunk], edges.chunk_begin[chunk + 1], evaluation(state, chunk));
+  });
 }
 
 Cost Workspace::linearise() {
-  std::fill(hessian_.begin(), hessian_.end(), 0.0);
+  const auto zero = [&](std::vector<double>& values) {
+    const std::size_t parts = problem_->chunks();
+    for_each(problem_->chunks(), [&](std::size_t part) {
+      std::fill(values.begin() + values.size() * part / parts,
+                values.begin() + values.size() * (part + 1) / parts, 0.0);
+    });
+  };
+  zero(hessian_);
   std::fill(gradient_.begin(), gradient_.end(), 0.0);
-  Cost total;
-  const Evaluation x = evaluation(state_);
-  for (std::size_t p = 0; p < problem_->edges().size(); ++p) {
-    total += problem_->graph().edge_pools()[p]->linearise(problem_->edges()[p], x, hessian_.data(),
-                                                          gradient_.data());
-  }
+  const Cost total = sum_chunks([&](int chunk, std::size_t p) {
+    const CompiledEdges& edges = problem_->edges()[p];
+    return problem_->graph().edge_pools()[p]->linearise(
+        edges, edges.chunk_begin[chunk], edges.chunk_begin[chunk + 1], evaluation(state_, chunk),
+        hessian_.data(), gradient_.data());
+  });
+  reduce(problem_->hessian_reductions(), hessian_);
+  reduce(problem_->gradient_reductions(), gradient_);
   return total;
 }
 
+/// Adds the sums that chunks kept aside.
+void Workspace::reduce(const Problem::Reductions& reductions, std::vector<double>& values) {
+  for_each(static_cast<int>(reductions.part_begin.size()) - 1, [&](int part) {
+    for (int r = reductions.part_begin[part]; r < reductions.part_begin[part + 1]; ++r) {
+      const Problem::Reduction& reduction = reductions.all[r];
+      const double* from = values.data() + reduction.from;
+      double* to = values.data() + reduction.to;
+      for (int i = 0; i < reduction.size; ++i) to[i] += from[i];
+    }
+  });
+}
+
 void Workspace::error(int pool, int k, double* error) {
-  problem_->graph().edge_pools()[pool]->error(problem_->edges()[pool], k, evaluation(state_),
+  problem_->graph().edge_pools()[pool]->error(problem_->edges()[pool], k, evaluation(state_, 0),
                                               error);
 }
 

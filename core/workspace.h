@@ -4,7 +4,11 @@
 /// See problem.h for the order of calls. linearise() uses the derived quantities of the last
 /// evaluate(), so it is called on the state that was evaluated last: that is why an accepted trial
 /// costs no second kinematics.
+///
+/// With use_threads() the chunks of a large problem are shared between threads; the bits of every
+/// number stay what they are on one thread.
 
+#include <locograph/common/thread_pool.h>
 #include <locograph/core/problem.h>
 
 namespace locograph {
@@ -13,13 +17,20 @@ class Workspace {
  public:
   /// Keeps memory that is large enough. The problem must outlive the workspace's use.
   void allocate(const Problem& problem);
+  /// Null for the caller's thread alone. The pool must outlive the workspace's use.
+  void use_threads(ThreadPool* threads) { threads_ = threads; }
   void load_state();         ///< graph → state()
   void store_state() const;  ///< state() → graph
 
   std::vector<double>& state() { return state_; }
   std::vector<double>& trial() { return trial_; }
-  std::vector<double>& hessian() { return hessian_; }
-  std::vector<double>& gradient() { return gradient_; }  ///< JᵀΩe
+  std::span<double> hessian() {
+    return {hessian_.data(), static_cast<std::size_t>(problem_->pattern().values())};
+  }
+  /// JᵀΩe
+  std::span<double> gradient() {
+    return {gradient_.data(), static_cast<std::size_t>(problem_->dimension())};
+  }
   std::vector<double>& step() { return step_; }
   std::vector<double>& damping() { return damping_; }
 
@@ -53,15 +64,22 @@ class Workspace {
     void assign(const VertexPool& other, std::span<const ActiveVertex> active);
   };
 
-  Evaluation evaluation(const std::vector<double>& state) {
-    return {state.data(), derived_, &scratch_};
+  Evaluation evaluation(const std::vector<double>& state, int chunk) {
+    return {state.data(), derived_, &scratch_[chunk]};
   }
+  template <class Task>
+  void for_each(int count, Task&& task);
+  template <class Task>
+  Cost sum_chunks(Task&& task);
+  void reduce(const Problem::Reductions& reductions, std::vector<double>& values);
 
   const Problem* problem_ = nullptr;
   std::vector<double> state_, trial_, hessian_, gradient_, step_, damping_;
   std::vector<std::unique_ptr<DerivedStore>> derived_;
   std::vector<DerivedFor> derived_for_;
-  Scratch scratch_;
+  std::vector<Scratch> scratch_;  ///< one for each chunk
+  std::vector<Cost> chunk_costs_;
+  ThreadPool* threads_ = nullptr;
 };
 
 }  // namespace locograph

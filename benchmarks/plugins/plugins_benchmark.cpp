@@ -111,11 +111,13 @@ void measure(benchmark::State& run, Drive& drive, bool linearise) {
   Scratch scratch;
   scratch.reserve(problem.scratch_bytes());
   const Evaluation x{drive.workspace().state().data(), derived, &scratch};
+  const CompiledEdges& compiled = problem.edges()[0];
+  const int all = problem.edge_count();
   for (auto _ : run) {
-    const Cost cost =
-        linearise ? pool.linearise(problem.edges()[0], x, drive.workspace().hessian().data(),
-                                   drive.workspace().gradient().data())
-                  : pool.cost(problem.edges()[0], x);
+    const Cost cost = linearise
+                          ? pool.linearise(compiled, 0, all, x, drive.workspace().hessian().data(),
+                                           drive.workspace().gradient().data())
+                          : pool.cost(compiled, 0, all, x);
     benchmark::DoNotOptimize(cost.chi2);
     benchmark::ClobberMemory();
   }

@@ -74,7 +74,7 @@ inline DenseSystem one_by_one(const Problem& problem, const std::vector<double>&
 }
 
 /// The full symmetric matrix whose upper triangle the values are.
-inline Eigen::MatrixXd dense(const BlockPattern& pattern, const std::vector<double>& values) {
+inline Eigen::MatrixXd dense(const BlockPattern& pattern, std::span<const double> values) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(pattern.scalar_size(), pattern.scalar_size());
   for (int c = 0; c < pattern.size(); ++c) {
     for (int k = pattern.column_begin[c]; k < pattern.column_begin[c + 1]; ++k) {
