@@ -1,325 +1,323 @@
 #include <locograph/solvers/block_cholesky.h>
 #include <locograph/solvers/dense_kernels.h>
+#include <locograph/solvers/simd.h>
 
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseCore>
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 namespace locograph {
 namespace {
 
-/// Blocks of N × N with leading dimension LD, a power of two: columns are vectors.
-template <int N, int LD>
-struct FixedKernel {
-  // A typedef: GCC drops the attribute from an alias declaration when its size is dependent.
-  typedef double Column __attribute__((vector_size(LD * sizeof(double))));
-  static_assert(sizeof(Column) == LD * sizeof(double));
+/// Fronts below this are not worth the microseconds that threads need to meet.
+constexpr double kShareFront = 30e-6;
+constexpr int kColumnChunk = 16;   // columns of a child that one task adds
+constexpr int kPanelColumns = 64;  // columns of a shared front factored before threads meet
+constexpr int kRowChunk = 96;      // rows of a shared panel that one task divides
+constexpr int kTileColumns = 48, kTileRows = 192;  // of a shared product
 
-  // By reference: a vector that is returned would depend on the flags this file is compiled with.
-  static void load(Column& column, const double* from) {
-    std::memcpy(&column, from, sizeof column);
+template <int N>
+LOCOGRAPH_INLINE void copy_square(double* to, long leading, const double* from, bool transposed) {
+  if (transposed) {
+    for (int i = 0; i < N; ++i) {
+      for (int j = 0; j < N; ++j) to[i * leading + j] = from[j * N + i];
+    }
+  } else {
+    for (int j = 0; j < N; ++j) {
+      for (int i = 0; i < N; ++i) to[j * leading + i] = from[j * N + i];
+    }
   }
-  static void store(double* to, const Column& column) { std::memcpy(to, &column, sizeof column); }
+}
 
-  // C −= A Bᵀ
-  void subtract_product(double* c, const double* a, const double* b, int, int, int) const {
-    Column left[N];
-    for (int k = 0; k < N; ++k) load(left[k], a + k * LD);
-    for (int j = 0; j < N; ++j) {
-      Column target;
-      load(target, c + j * LD);
-      for (int k = 0; k < N; ++k) target -= left[k] * b[k * LD + j];
-      store(c + j * LD, target);
+/// The lower trapezoid of an m × n product in tiles, each of which one call computes.
+struct LowerTiles {
+  int m, n;
+  int count() const {
+    int total = 0;
+    for (int j = 0; j < n; j += kTileColumns) total += (m - j + kTileRows - 1) / kTileRows;
+    return total;
+  }
+  void compute(int tile, double* c, int ldc, const double* a, int lda, int k,
+               bool overwrite) const {
+    int j = 0;
+    for (int tiles; tile >= (tiles = (m - j + kTileRows - 1) / kTileRows); tile -= tiles) {
+      j += kTileColumns;
+    }
+    const int i = j + tile * kTileRows;
+    const int rows = std::min(kTileRows, m - i), columns = std::min(kTileColumns, n - j);
+    double* target = c + static_cast<long>(j) * ldc + i;
+    if (overwrite) {
+      negative_product(target, ldc, a + i, lda, a + j, lda, rows, columns, k, tile == 0);
+    } else if (tile == 0) {
+      subtract_lower_product(target, ldc, a + i, lda, rows, columns, k);
+    } else {
+      subtract_product(target, ldc, a + i, lda, a + j, lda, rows, columns, k);
     }
   }
-  bool cholesky(double* d, int) const {
-    for (int j = 0; j < N; ++j) {
-      const double pivot = d[j * LD + j];
-      if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
-      const double root = std::sqrt(pivot);
-      for (int i = j; i < N; ++i) d[j * LD + i] /= root;
-      for (int c = j + 1; c < N; ++c) {
-        for (int i = c; i < N; ++i) d[c * LD + i] -= d[j * LD + i] * d[j * LD + c];
-      }
-    }
-    return true;
-  }
-  // X ← X L⁻ᵀ
-  void divide(double* x, const double* l, int, int) const {
-    Column columns[N];
-    for (int j = 0; j < N; ++j) {
-      Column target;
-      load(target, x + j * LD);
-      for (int k = 0; k < j; ++k) target -= columns[k] * l[k * LD + j];
-      columns[j] = target / l[j * LD + j];
-      store(x + j * LD, columns[j]);
-    }
-  }
-  static int leading(int) { return LD; }
-  static int size(int) { return N; }
 };
 
-struct DynamicKernel {
-  void subtract_product(double* c, const double* a, const double* b, int rows, int columns,
-                        int inner) const {
-    if (rows * columns * inner > 512) {
-      locograph::subtract_product(c, rows, a, rows, b, columns, rows, columns, inner);
-      return;
-    }
-    for (int j = 0; j < columns; ++j) {
-      for (int k = 0; k < inner; ++k) {
-        const double factor = b[k * columns + j];
-        for (int i = 0; i < rows; ++i) c[j * rows + i] -= a[k * rows + i] * factor;
-      }
-    }
+template <class Task>
+void run(ThreadPool* threads, int count, Task&& task) {
+  if (threads) {
+    threads->run(count, task);
+  } else {
+    for (int i = 0; i < count; ++i) task(i);
   }
-  bool cholesky(double* d, int n) const { return cholesky_in_place(d, n, n, n) < 0; }
-  void divide(double* x, const double* l, int rows, int n) const {
-    for (int j = 0; j < n; ++j) {
-      for (int k = 0; k < j; ++k) {
-        for (int i = 0; i < rows; ++i) x[j * rows + i] -= x[k * rows + i] * l[k * n + j];
-      }
-      for (int i = 0; i < rows; ++i) x[j * rows + i] /= l[j * n + j];
-    }
-  }
-  static int leading(int rows) { return rows; }
-  static int size(int n) { return n; }
-};
-
-int leading_dimension(int uniform, int rows) { return uniform == 3 ? 4 : uniform == 6 ? 8 : rows; }
+}
 
 }  // namespace
 
 void BlockCholesky::analyse(const BlockPattern& pattern) {
   if (pattern == pattern_) return;
   pattern_ = pattern;
-  uniform_ = pattern.size() == 0 ? 0 : pattern.dimension.front();
-  for (const int d : pattern.dimension) {
-    if (d != uniform_) uniform_ = 0;
+  const BlockGraph graph = block_graph(pattern);
+  EliminationTree tree = elimination_tree(graph, pattern.dimension, minimum_degree_order(graph));
+  seconds_ = factorisation_seconds(tree, pattern.dimension);
+  nested_ = false;
+  // Nested dissection takes microseconds for each block row and may save a third of each of about
+  // ten factorisations.
+  if (nested_dissection_available() && 3.0 * seconds_ > 4e-6 * pattern.size()) {
+    EliminationTree other =
+        elimination_tree(graph, pattern.dimension, nested_dissection_order(graph));
+    const double seconds = factorisation_seconds(other, pattern.dimension);
+    if (seconds < seconds_) {
+      tree = std::move(other);
+      seconds_ = seconds;
+      nested_ = true;
+    }
   }
-  if (uniform_ != 3 && uniform_ != 6) uniform_ = 0;
-  order();
-  symbolic();
+  s_ = supernodes(graph, tree, pattern.dimension);
   place_entries();
-}
-
-void BlockCholesky::order() {
-  const int n = pattern_.size();
-  std::vector<Eigen::Triplet<char>> entries;
-  for (int c = 0; c < n; ++c) {
-    for (int k = pattern_.column_begin[c]; k < pattern_.column_begin[c + 1]; ++k) {
-      entries.emplace_back(pattern_.row[k], c, 1);
-      if (pattern_.row[k] != c) entries.emplace_back(c, pattern_.row[k], 1);
-    }
-  }
-  Eigen::SparseMatrix<char, Eigen::ColMajor, int> graph(n, n);
-  graph.setFromTriplets(entries.begin(), entries.end());
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
-  Eigen::AMDOrdering<int>()(graph, permutation);
-  old_of_new_.resize(n);
-  new_of_old_.resize(n);
-  for (int i = 0; i < n; ++i) {
-    old_of_new_[i] = permutation.indices()[i];
-    new_of_old_[permutation.indices()[i]] = i;
-  }
-}
-
-void BlockCholesky::symbolic() {
-  const int n = pattern_.size();
-  dimension_.resize(n);
-  scalar_begin_.assign(n + 1, 0);
-  for (int i = 0; i < n; ++i) {
-    dimension_[i] = pattern_.dimension[old_of_new_[i]];
-    scalar_begin_[i + 1] = scalar_begin_[i] + dimension_[i];
-  }
-  // Lower pattern of the permuted matrix, by column.
-  std::vector<std::vector<int>> below(n);
-  for (int c = 0; c < n; ++c) {
-    for (int k = pattern_.column_begin[c]; k < pattern_.column_begin[c + 1]; ++k) {
-      const int a = new_of_old_[pattern_.row[k]], b = new_of_old_[c];
-      if (a != b) below[std::min(a, b)].push_back(std::max(a, b));
-    }
-  }
-  // The structure of a column is its own and that of its children in the elimination tree.
-  std::vector<std::vector<int>> children(n);
-  std::vector<int> mark(n, -1);
-  column_begin_.assign(1, 0);
-  rows_.clear();
-  for (int c = 0; c < n; ++c) {
-    const std::size_t begin = rows_.size();
-    rows_.push_back(c);
-    mark[c] = c;
-    const auto add = [&](int r) {
-      if (mark[r] == c) return;
-      mark[r] = c;
-      rows_.push_back(r);
-    };
-    for (const int r : below[c]) add(r);
-    for (const int child : children[c]) {
-      for (int k = column_begin_[child] + 2; k < column_begin_[child + 1]; ++k) add(rows_[k]);
-    }
-    std::sort(rows_.begin() + begin, rows_.end());
-    column_begin_.push_back(static_cast<int>(rows_.size()));
-    if (rows_.size() > begin + 1) children[rows_[begin + 1]].push_back(c);
-    std::vector<int>().swap(below[c]);
-  }
-  offset_.assign(1, 0);
-  row_begin_.assign(n + 1, 0);
-  cost_ = 0.0;
-  for (int c = 0; c < n; ++c) {
-    double height = 0.0;
-    for (int k = column_begin_[c]; k < column_begin_[c + 1]; ++k) {
-      const int r = rows_[k];
-      offset_.push_back(offset_.back() +
-                        std::int64_t{leading_dimension(uniform_, dimension_[r])} * dimension_[c]);
-      height += dimension_[r];
-      if (r != c) ++row_begin_[r + 1];
-    }
-    cost_ += 0.5 * height * height * dimension_[c];
-  }
-  for (int r = 0; r < n; ++r) row_begin_[r + 1] += row_begin_[r];
-  row_blocks_.resize(row_begin_.back());
-  std::vector<int> next(row_begin_.begin(), row_begin_.end() - 1);
-  for (int c = 0; c < n; ++c) {
-    for (int k = column_begin_[c] + 1; k < column_begin_[c + 1]; ++k) {
-      row_blocks_[next[rows_[k]]++] = {c, k};
-    }
-  }
-  factor_.resize(offset_.back());
-  position_.resize(n);
-  permuted_.resize(scalar_begin_.back());
+  factor_.reserve(s_.panel_begin.back());
+  updates_.reserve(s_.update_size);
+  vectors_.reserve(s_.vector_begin.back());
+  failed_.assign(s_.tasks() + 1, -1);
 }
 
 void BlockCholesky::place_entries() {
-  entries_.clear();
-  for (int c = 0; c < pattern_.size(); ++c) {
+  const int n = pattern_.size();
+  // Blocks by the column of the factor they go to.
+  std::vector<int> begin(n + 1, 0), block(pattern_.blocks()), column(pattern_.blocks());
+  for (int c = 0; c < n; ++c) {
     for (int k = pattern_.column_begin[c]; k < pattern_.column_begin[c + 1]; ++k) {
-      const int r = pattern_.row[k];
-      const int a = new_of_old_[r], b = new_of_old_[c];
-      const int column = std::min(a, b), row = std::max(a, b);
-      const auto begin = rows_.begin() + column_begin_[column];
-      const auto end = rows_.begin() + column_begin_[column + 1];
-      const std::int64_t block = std::lower_bound(begin, end, row) - rows_.begin();
-      // H stores (r, c); the factor wants (row, column): transposed when r is the column.
-      entries_.push_back({pattern_.value_offset[k], offset_[block], pattern_.dimension[r],
-                          pattern_.dimension[c], a < b});
+      column[k] = c;
+      ++begin[std::min(s_.new_of_old[pattern_.row[k]], s_.new_of_old[c]) + 1];
     }
   }
+  for (int c = 0; c < n; ++c) begin[c + 1] += begin[c];
+  std::vector<int> next(begin.begin(), begin.end() - 1);
+  for (int k = 0; k < pattern_.blocks(); ++k) {
+    const int a = s_.new_of_old[pattern_.row[k]], b = s_.new_of_old[column[k]];
+    block[next[std::min(a, b)]++] = k;
+  }
+  entries_.clear();
+  entries_.reserve(pattern_.blocks());
+  entry_begin_.assign(1, 0);
+  std::vector<int> place(n);
+  for (int s = 0; s < s_.count(); ++s) {
+    const int first = s_.first[s], end = s_.first[s + 1];
+    for (int c = first; c < end; ++c) place[c] = s_.scalar_begin[c] - s_.scalar_begin[first];
+    int row = padded(s_.width[s]);
+    for (std::int64_t k = s_.row_begin[s]; k < s_.row_begin[s + 1]; ++k) {
+      place[s_.row[k]] = row;
+      row += s_.scalar_begin[s_.row[k] + 1] - s_.scalar_begin[s_.row[k]];
+    }
+    for (int i = begin[first]; i < begin[end]; ++i) {
+      const int k = block[i], r = pattern_.row[k], c = column[k];
+      const int a = s_.new_of_old[r], b = s_.new_of_old[c];
+      // H stores (r, c); the panel wants (larger, smaller): transposed when r is its column.
+      const std::int64_t to = s_.panel_begin[s] +
+                              std::int64_t{place[std::min(a, b)]} * s_.leading[s] +
+                              place[std::max(a, b)];
+      entries_.push_back({pattern_.value_offset[k], to, s_.leading[s],
+                          static_cast<short>(pattern_.dimension[r]),
+                          static_cast<short>(pattern_.dimension[c]), a < b});
+    }
+    entry_begin_.push_back(static_cast<std::int64_t>(entries_.size()));
+  }
+}
+
+void BlockCholesky::assemble_entries(int s, const double* values, const double* damping) {
+  double* factor = factor_.data();
+  for (std::int64_t k = entry_begin_[s]; k < entry_begin_[s + 1]; ++k) {
+    const Entry& e = entries_[k];
+    const double* from = values + e.from;
+    double* to = factor + e.to;
+    const long leading = e.leading;
+    if (e.rows == e.columns && e.rows == 6) {
+      copy_square<6>(to, leading, from, e.transposed);
+    } else if (e.rows == e.columns && e.rows == 3) {
+      copy_square<3>(to, leading, from, e.transposed);
+    } else if (e.transposed) {
+      for (int i = 0; i < e.rows; ++i) {
+        for (int j = 0; j < e.columns; ++j) to[i * leading + j] = from[j * e.rows + i];
+      }
+    } else {
+      for (int j = 0; j < e.columns; ++j) {
+        for (int i = 0; i < e.rows; ++i) to[j * leading + i] = from[j * e.rows + i];
+      }
+    }
+  }
+  double* diagonal = factor + s_.panel_begin[s];
+  for (int c = s_.first[s]; c < s_.first[s + 1]; ++c) {
+    const int old = s_.old_of_new[c];
+    const double* own = damping + pattern_.scalar_begin[old];
+    for (int i = 0; i < pattern_.dimension[old]; ++i) {
+      *diagonal += own[i];
+      diagonal += s_.leading[s] + 1;
+    }
+  }
+}
+
+/// Adds the columns begin … end − 1 of a child's update matrix to its parent's panel, if they are
+/// pivots there, or else to the parent's update matrix.
+void BlockCholesky::add_child(int child, bool pivots, int begin, int end) {
+  const int parent = s_.parent[child];
+  const long from_leading = padded(s_.below[child]);
+  const double* from = updates_.data() + s_.update_begin[child];
+  const int skipped = pivots ? 0 : padded(s_.width[parent]);
+  const long to_leading = pivots ? s_.leading[parent] : padded(s_.below[parent]);
+  double* to =
+      pivots ? factor_.data() + s_.panel_begin[parent] : updates_.data() + s_.update_begin[parent];
+  const Supernodes::Run* runs = s_.run.data();
+  const std::int64_t middle = s_.run_begin[child] + s_.pivot_runs[child];
+  const std::int64_t last = s_.run_end[child];
+  for (std::int64_t a = pivots ? s_.run_begin[child] : middle; a < (pivots ? middle : last); ++a) {
+    const Supernodes::Run across = runs[a];
+    const int stop = std::min(across.length, end - across.from);
+    for (int j = std::max(0, begin - across.from); j < stop; ++j) {
+      const double* source = from + (across.from + j) * from_leading;
+      double* target = to + (across.to - skipped + j) * to_leading - skipped;
+      add(target + across.to + j, source + across.from + j, across.length - j);
+      for (std::int64_t b = a + 1; b < last; ++b) {
+        add(target + runs[b].to, source + runs[b].from, runs[b].length);
+      }
+    }
+  }
+}
+
+void BlockCholesky::factorise_front(int s, const double* values, const double* damping,
+                                    int* failed) {
+  const int width = s_.width[s], below = s_.below[s], leading = s_.leading[s];
+  double* panel = factor_.data() + s_.panel_begin[s];
+  std::memset(panel, 0, sizeof(double) * leading * width);
+  assemble_entries(s, values, damping);
+  const int* begin = s_.child.data() + s_.child_begin[s];
+  const int* end = s_.child.data() + s_.child_begin[s + 1];
+  for (const int* c = begin; c != end; ++c) add_child(*c, true, 0, s_.below[*c]);
+  *failed = cholesky_in_place(panel, leading, leading, width);
+  if (*failed >= 0 || below == 0) return;
+  const double* under = panel + padded(width);
+  negative_product(updates_.data() + s_.update_begin[s], padded(below), under, leading, under,
+                   leading, padded(below), below, width, true);
+  for (const int* c = begin; c != end; ++c) add_child(*c, false, 0, s_.below[*c]);
+}
+
+bool BlockCholesky::worth_sharing(int s) const {
+  return s >= s_.task_begin.back() && s_.seconds[s] > kShareFront;
+}
+
+/// The same front, its work divided among the threads. How it is divided depends on its size only.
+void BlockCholesky::factorise_front_together(int s, const double* values, const double* damping,
+                                             int* failed) {
+  const int width = s_.width[s], below = s_.below[s], leading = s_.leading[s];
+  const long ld = leading;
+  double* panel = factor_.data() + s_.panel_begin[s];
+  const auto chunks = [](int count, int size) { return (count + size - 1) / size; };
+  const auto add_children = [&](bool pivots) {
+    for (int k = s_.child_begin[s]; k < s_.child_begin[s + 1]; ++k) {
+      const int child = s_.child[k];
+      run(threads_, chunks(s_.below[child], kColumnChunk),
+          [&](int i) { add_child(child, pivots, i * kColumnChunk, (i + 1) * kColumnChunk); });
+    }
+  };
+  run(threads_, chunks(width, kColumnChunk), [&](int i) {
+    const int begin = i * kColumnChunk, end = std::min(width, begin + kColumnChunk);
+    std::memset(panel + begin * ld, 0, sizeof(double) * ld * (end - begin));
+  });
+  assemble_entries(s, values, damping);
+  add_children(true);
+  for (int first = 0; first < width; first += kPanelColumns) {
+    const int end = std::min(width, first + kPanelColumns);
+    const int next = end == width ? padded(width) : end;
+    double* square = panel + first * ld + first;
+    *failed = cholesky_in_place(square, leading, next - first, end - first);
+    if (*failed >= 0) {
+      *failed += first;
+      return;
+    }
+    double* rest = panel + first * ld + next;
+    run(threads_, chunks(leading - next, kRowChunk), [&](int i) {
+      const int row = i * kRowChunk;
+      divide_rows(rest + row, leading, std::min(kRowChunk, leading - next - row), square, leading,
+                  end - first);
+    });
+    if (end == width) break;
+    const LowerTiles tiles{leading - end, width - end};
+    run(threads_, tiles.count(), [&](int i) {
+      tiles.compute(i, panel + end * ld + end, leading, rest, leading, end - first, false);
+    });
+  }
+  if (below == 0) return;
+  const LowerTiles tiles{padded(below), below};
+  run(threads_, tiles.count(), [&](int i) {
+    tiles.compute(i, updates_.data() + s_.update_begin[s], padded(below), panel + padded(width),
+                  leading, width, true);
+  });
+  add_children(false);
 }
 
 bool BlockCholesky::factorise(const double* values, const double* damping) {
-  std::fill(factor_.begin(), factor_.end(), 0.0);
-  for (const Entry& entry : entries_) {
-    const double* from = values + entry.from;
-    double* to = factor_.data() + entry.to;
-    const int ld = leading_dimension(uniform_, entry.transposed ? entry.columns : entry.rows);
-    for (int j = 0; j < entry.columns; ++j) {
-      for (int i = 0; i < entry.rows; ++i) {
-        to[entry.transposed ? i * ld + j : j * ld + i] = from[j * entry.rows + i];
+  const auto factorise_range = [&](int task, int begin, int end) {
+    failed_[task] = -1;
+    for (int s = begin; s < end; ++s) {
+      int failed = -1;
+      if (worth_sharing(s)) {
+        factorise_front_together(s, values, damping, &failed);
+      } else {
+        factorise_front(s, values, damping, &failed);
       }
+      if (failed < 0) continue;
+      const int row = s_.scalar_begin[s_.first[s]] + failed;
+      failed_[task] =
+          static_cast<int>(std::upper_bound(s_.scalar_begin.begin(), s_.scalar_begin.end(), row) -
+                           s_.scalar_begin.begin()) -
+          1;
+      return;
     }
-  }
-  for (int c = 0; c < pattern_.size(); ++c) {
-    double* diagonal = factor_.data() + offset_[column_begin_[c]];
-    const int ld = leading_dimension(uniform_, dimension_[c]);
-    const double* own = damping + pattern_.scalar_begin[old_of_new_[c]];
-    for (int i = 0; i < dimension_[c]; ++i) diagonal[i * ld + i] += own[i];
-  }
+  };
+  failed_row_ = -1;
+  const int tasks = s_.tasks(), top = s_.task_begin.back();
+  run(threads_, tasks, [&](int t) { factorise_range(t, s_.task_begin[t], s_.task_begin[t + 1]); });
+  // The lowest of all columns that failed, whichever task came first.
+  failed_[tasks] = -1;
   int failed = -1;
-  switch (uniform_) {
-    case 3:
-      failed = factorise_columns(FixedKernel<3, 4>());
-      break;
-    case 6:
-      failed = factorise_columns(FixedKernel<6, 8>());
-      break;
-    default:
-      failed = factorise_columns(DynamicKernel());
+  for (int t = 0; t < tasks; ++t) {
+    if (failed_[t] >= 0 && (failed < 0 || failed_[t] < failed)) failed = failed_[t];
   }
-  failed_row_ = failed < 0 ? -1 : old_of_new_[failed];
+  if (failed < 0) {
+    factorise_range(tasks, top, s_.count());
+    failed = failed_[tasks];
+  }
+  if (failed >= 0) failed_row_ = s_.old_of_new[failed];
   return failed < 0;
 }
 
-template <class Kernel>
-int BlockCholesky::factorise_columns(const Kernel& kernel) {
-  const int n = pattern_.size();
-  double* factor = factor_.data();
-  for (int c = 0; c < n; ++c) {
-    const int begin = column_begin_[c], end = column_begin_[c + 1], width = dimension_[c];
-    for (int k = begin; k < end; ++k) position_[rows_[k]] = k;
-    for (int b = row_begin_[c]; b < row_begin_[c + 1]; ++b) {
-      const RowBlock& left = row_blocks_[b];
-      const double* pivot = factor + offset_[left.position];
-      const int inner = dimension_[left.column];
-      for (int k = left.position; k < column_begin_[left.column + 1]; ++k) {
-        kernel.subtract_product(factor + offset_[position_[rows_[k]]], factor + offset_[k], pivot,
-                                dimension_[rows_[k]], width, inner);
-      }
-    }
-    double* diagonal = factor + offset_[begin];
-    if (!kernel.cholesky(diagonal, width)) return c;
-    for (int k = begin + 1; k < end; ++k) {
-      kernel.divide(factor + offset_[k], diagonal, dimension_[rows_[k]], width);
-    }
+double BlockCholesky::multiply_adds() const {
+  double total = 0.0;
+  for (int s = 0; s < s_.count(); ++s) {
+    const double w = s_.width[s], m = s_.below[s];
+    total += w * w * w / 6.0 + 0.5 * w * w * m + 0.5 * w * m * m;
   }
-  return -1;
+  return total;
 }
 
-template <class Kernel>
-void BlockCholesky::solve_columns(const Kernel& kernel, double* y) const {
-  const int n = pattern_.size();
-  for (int c = 0; c < n; ++c) {
-    double* own = y + scalar_begin_[c];
-    const int width = kernel.size(dimension_[c]);
-    solve_lower(factor_.data() + offset_[column_begin_[c]], kernel.leading(width), width, own);
-    for (int k = column_begin_[c] + 1; k < column_begin_[c + 1]; ++k) {
-      double* other = y + scalar_begin_[rows_[k]];
-      const double* block = factor_.data() + offset_[k];
-      const int rows = kernel.size(dimension_[rows_[k]]), ld = kernel.leading(rows);
-      for (int j = 0; j < width; ++j) {
-        for (int i = 0; i < rows; ++i) other[i] -= block[j * ld + i] * own[j];
-      }
-    }
+std::int64_t BlockCholesky::factor_size() const {
+  std::int64_t total = 0;
+  for (int s = 0; s < s_.count(); ++s) {
+    total +=
+        std::int64_t{s_.width[s]} * (s_.width[s] + 1) / 2 + std::int64_t{s_.width[s]} * s_.below[s];
   }
-  for (int c = n - 1; c >= 0; --c) {
-    double* own = y + scalar_begin_[c];
-    const int width = kernel.size(dimension_[c]);
-    for (int k = column_begin_[c] + 1; k < column_begin_[c + 1]; ++k) {
-      const double* other = y + scalar_begin_[rows_[k]];
-      const double* block = factor_.data() + offset_[k];
-      const int rows = kernel.size(dimension_[rows_[k]]), ld = kernel.leading(rows);
-      for (int j = 0; j < width; ++j) {
-        double sum = 0.0;
-        for (int i = 0; i < rows; ++i) sum += block[j * ld + i] * other[i];
-        own[j] -= sum;
-      }
-    }
-    solve_lower_transposed(factor_.data() + offset_[column_begin_[c]], kernel.leading(width), width,
-                           own);
-  }
-}
-
-void BlockCholesky::solve(const double* right_hand_side, double* x) const {
-  for (int c = 0; c < pattern_.size(); ++c) {
-    std::copy_n(right_hand_side + pattern_.scalar_begin[old_of_new_[c]], dimension_[c],
-                permuted_.begin() + scalar_begin_[c]);
-  }
-  switch (uniform_) {
-    case 3:
-      solve_columns(FixedKernel<3, 4>(), permuted_.data());
-      break;
-    case 6:
-      solve_columns(FixedKernel<6, 8>(), permuted_.data());
-      break;
-    default:
-      solve_columns(DynamicKernel(), permuted_.data());
-  }
-  for (int c = 0; c < pattern_.size(); ++c) {
-    std::copy_n(permuted_.begin() + scalar_begin_[c], dimension_[c],
-                x + pattern_.scalar_begin[old_of_new_[c]]);
-  }
+  return total;
 }
 
 }  // namespace locograph

@@ -1,12 +1,21 @@
 #pragma once
-/// Block-sparse Cholesky: left-looking, minimum-degree order on the block pattern, kernels of
-/// compile-time size where all blocks have the same one (3 or 6).
+/// Block-sparse Cholesky: multifrontal, on supernodes of block columns.
 ///
-/// Blocks of the factor are column-major with a leading dimension rounded up to a power of two, so
-/// that a column of a 6 × 6 block is one vector register. A left-looking column c gathers
-/// A(:,c) − Σ_k L(:,k) L(c,k)ᵀ over the columns k of its row, then factors its diagonal block.
+///     BlockCholesky solver;
+///     solver.use_threads(&threads);                   // optional; the same bits
+///     solver.analyse(pattern);
+///     if (solver.factorise(values, damping)) solver.solve(rhs, x);
+///
+/// The order is minimum degree or nested dissection on the block pattern, whichever is estimated
+/// to be faster. A front gathers its columns of H and the update matrices of its children, factors
+/// its pivot columns and leaves an update matrix to its parent (Duff & Reid 1983; Liu 1992);
+/// everything in it is dense and runs in kernels whose tiles are register-sized. Subtrees run side
+/// by side; above them, threads share the work inside a front. Every number is computed by one
+/// thread in an order of operations that is fixed by the pattern.
 
 #include <locograph/core/linear_solver.h>
+#include <locograph/solvers/aligned_memory.h>
+#include <locograph/solvers/supernodes.h>
 
 #include <cstdint>
 #include <vector>
@@ -16,53 +25,51 @@ namespace locograph {
 class BlockCholesky final : public LinearSolver {
  public:
   std::string name() const override { return "block-cholesky"; }
+  void use_threads(ThreadPool* threads) override { threads_ = threads; }
   void analyse(const BlockPattern& pattern) override;
   bool factorise(const double* values, const double* damping) override;
   void solve(const double* right_hand_side, double* x) const override;
   int failed_row() const override { return failed_row_; }
 
-  /// Multiply-adds of one factorisation; valid after analyse().
-  double cost() const { return cost_; }
-  /// Blocks of the factor, diagonal included.
-  std::int64_t factor_blocks() const { return static_cast<std::int64_t>(rows_.size()); }
+  /// After analyse(): the symbolic factorisation, the estimated seconds of one factorisation, its
+  /// multiply-adds and the numbers in the factor, zeros of joined columns included.
+  const Supernodes& structure() const { return s_; }
+  double seconds() const { return seconds_; }
+  double multiply_adds() const;
+  std::int64_t factor_size() const;
+  /// "minimum degree" or "nested dissection".
+  const char* order() const { return nested_ ? "nested dissection" : "minimum degree"; }
 
  private:
-  /// Where a block of H goes in the factor.
+  /// Where a block of H goes in a panel.
   struct Entry {
     std::int64_t from;
     std::int64_t to;
-    int rows, columns;  ///< of the block of H
+    int leading;
+    short rows, columns;  ///< of the block of H
     bool transposed;
   };
-  /// A block L(c, k) left of the diagonal of row c: its position among the blocks of column k.
-  struct RowBlock {
-    int column;
-    int position;
-  };
 
-  void order();
-  void symbolic();
   void place_entries();
-  template <class Kernel>
-  int factorise_columns(const Kernel& kernel);
-  template <class Kernel>
-  void solve_columns(const Kernel& kernel, double* y) const;
+  void assemble_entries(int supernode, const double* values, const double* damping);
+  void add_child(int child, bool pivots, int begin, int end);
+  void factorise_front(int supernode, const double* values, const double* damping, int* failed);
+  void factorise_front_together(int supernode, const double* values, const double* damping,
+                                int* failed);
+  bool worth_sharing(int supernode) const;
+  void forward(int supernode, const double* right_hand_side) const;
+  void backward(int supernode, double* x) const;
 
   BlockPattern pattern_;
-  std::vector<int> old_of_new_, new_of_old_;
-  std::vector<int> dimension_;     ///< by new index
-  std::vector<int> scalar_begin_;  ///< by new index
-  std::vector<int> column_begin_;  ///< blocks of the factor by column, rows ascending
-  std::vector<int> rows_;
-  std::vector<std::int64_t> offset_;  ///< of each block in factor_
-  std::vector<int> row_begin_;
-  std::vector<RowBlock> row_blocks_;
+  Supernodes s_;
   std::vector<Entry> entries_;
-  std::vector<double> factor_;
-  std::vector<int> position_;  ///< work: block of the current column by row
-  mutable std::vector<double> permuted_;
-  int uniform_ = 0;  ///< the block size all share, 0 if none
-  double cost_ = 0.0;
+  std::vector<std::int64_t> entry_begin_;  ///< by supernode
+  AlignedMemory factor_, updates_;
+  mutable AlignedMemory vectors_;
+  std::vector<int> failed_;  ///< by task, and one for the top: block column, or -1
+  ThreadPool* threads_ = nullptr;
+  double seconds_ = 0.0;
+  bool nested_ = false;
   int failed_row_ = -1;
 };
 

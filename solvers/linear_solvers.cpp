@@ -2,7 +2,11 @@
 #include <locograph/solvers/banded_solver.h>
 #include <locograph/solvers/block_cholesky.h>
 #include <locograph/solvers/dense_solver.h>
+#include <locograph/solvers/eigen_solver.h>
 #include <locograph/solvers/linear_solvers.h>
+#if LOCOGRAPH_HAVE_CHOLMOD
+#include <locograph/solvers/cholmod_solver.h>
+#endif
 
 #include <algorithm>
 
@@ -26,13 +30,18 @@ class AutoSolver final : public LinearSolver {
       auto sparse = std::make_unique<BlockCholesky>();
       sparse->analyse(pattern);
       // Panels run at several times the speed of small blocks: a band may cost twice the flops.
-      if (banded <= 2.0 * sparse->cost()) {
+      if (banded <= 2.0 * sparse->multiply_adds()) {
         chosen_ = std::make_unique<BandedSolver>();
       } else {
         chosen_ = std::move(sparse);
       }
     }
+    chosen_->use_threads(threads_);
     chosen_->analyse(pattern);
+  }
+  void use_threads(ThreadPool* threads) override {
+    threads_ = threads;
+    if (chosen_) chosen_->use_threads(threads);
   }
   bool factorise(const double* values, const double* damping) override {
     return chosen_->factorise(values, damping);
@@ -45,18 +54,29 @@ class AutoSolver final : public LinearSolver {
  private:
   BlockPattern pattern_;
   std::unique_ptr<LinearSolver> chosen_;
+  ThreadPool* threads_ = nullptr;
 };
 
 }  // namespace
 
 std::vector<std::string> linear_solver_names() {
-  return {"auto", "banded", "block-cholesky", "dense"};
+  return {
+    "auto", "banded", "block-cholesky",
+#if LOCOGRAPH_HAVE_CHOLMOD
+        "cholmod",
+#endif
+        "dense", "eigen"
+  };
 }
 
 std::unique_ptr<LinearSolver> make_linear_solver(const std::string& name) {
   if (name == "auto") return std::make_unique<AutoSolver>();
   if (name == "banded") return std::make_unique<BandedSolver>();
   if (name == "block-cholesky") return std::make_unique<BlockCholesky>();
+#if LOCOGRAPH_HAVE_CHOLMOD
+  if (name == "cholmod") return std::make_unique<CholmodSolver>();
+#endif
+  if (name == "eigen") return std::make_unique<EigenSolver>();
   if (name == "dense") return std::make_unique<DenseSolver>();
   std::string all;
   for (const std::string& known : linear_solver_names()) all += (all.empty() ? "" : ", ") + known;

@@ -5,8 +5,10 @@
 ///
 /// dense           Cholesky of the whole matrix: a few dozen scalar rows
 /// banded          block band, natural order: trajectories, moving horizons
-/// block-cholesky  block-sparse, minimum-degree order on the block pattern: pose graphs
+/// block-cholesky  block-sparse, supernodal, for everything else: pose graphs
 /// auto            the cheapest of the three by estimated cost, decided in analyse()
+/// eigen           Eigen::SimplicialLLT, to compare with
+/// cholmod         CHOLMOD, if it was there when this was built; GPL, never chosen by auto
 
 #include <locograph/core/linear_solver.h>
 

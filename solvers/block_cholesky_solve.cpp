@@ -1,0 +1,69 @@
+#include <locograph/solvers/block_cholesky.h>
+#include <locograph/solvers/panel_solve.h>
+#include <locograph/solvers/simd.h>
+
+#include <algorithm>
+
+namespace locograph {
+
+/// The segment of a front starts with the right-hand sides of its pivots, then come the rows under
+/// them: what its children have left to subtract, and its parent takes it from there.
+void BlockCholesky::forward(int s, const double* right_hand_side) const {
+  double* own = vectors_.data() + s_.vector_begin[s];
+  double* next = own;
+  for (int c = s_.first[s]; c < s_.first[s + 1]; ++c) {
+    const int old = s_.old_of_new[c];
+    next = std::copy_n(right_hand_side + pattern_.scalar_begin[old], pattern_.dimension[old], next);
+  }
+  std::fill(next, own + s_.leading[s], 0.0);
+  for (int k = s_.child_begin[s]; k < s_.child_begin[s + 1]; ++k) {
+    const int child = s_.child[k];
+    const double* from = vectors_.data() + s_.vector_begin[child] + padded(s_.width[child]);
+    for (std::int64_t r = s_.run_begin[child]; r < s_.run_end[child]; ++r) {
+      const Supernodes::Run& run = s_.run[r];
+      add(own + run.to, from + run.from, run.length);
+    }
+  }
+  solve_panel(factor_.data() + s_.panel_begin[s], s_.leading[s], s_.width[s], own);
+}
+
+/// The rows under the pivots come from the parent, which is solved by now.
+void BlockCholesky::backward(int s, double* x) const {
+  double* own = vectors_.data() + s_.vector_begin[s];
+  if (s_.parent[s] != -1) {
+    const double* from = vectors_.data() + s_.vector_begin[s_.parent[s]];
+    double* to = own + padded(s_.width[s]);
+    for (std::int64_t r = s_.run_begin[s]; r < s_.run_end[s]; ++r) {
+      const Supernodes::Run& run = s_.run[r];
+      std::copy_n(from + run.to, run.length, to + run.from);
+    }
+  }
+  solve_panel_transposed(factor_.data() + s_.panel_begin[s], s_.leading[s], s_.width[s], own);
+  const double* next = own;
+  for (int c = s_.first[s]; c < s_.first[s + 1]; ++c) {
+    const int old = s_.old_of_new[c];
+    std::copy_n(next, pattern_.dimension[old], x + pattern_.scalar_begin[old]);
+    next += pattern_.dimension[old];
+  }
+}
+
+void BlockCholesky::solve(const double* right_hand_side, double* x) const {
+  const int tasks = s_.tasks(), top = s_.task_begin.back();
+  const auto run = [&](auto&& task) {
+    if (threads_) {
+      threads_->run(tasks, task);
+    } else {
+      for (int t = 0; t < tasks; ++t) task(t);
+    }
+  };
+  run([&](int t) {
+    for (int s = s_.task_begin[t]; s < s_.task_begin[t + 1]; ++s) forward(s, right_hand_side);
+  });
+  for (int s = top; s < s_.count(); ++s) forward(s, right_hand_side);
+  for (int s = s_.count() - 1; s >= top; --s) backward(s, x);
+  run([&](int t) {
+    for (int s = s_.task_begin[t + 1] - 1; s >= s_.task_begin[t]; --s) backward(s, x);
+  });
+}
+
+}  // namespace locograph

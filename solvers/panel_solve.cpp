@@ -1,0 +1,69 @@
+#include <locograph/solvers/panel_solve.h>
+#include <locograph/solvers/simd.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace locograph {
+namespace {
+
+template <int N>
+void forward_strip(const double* panel, long ld, long rows, double* x) {
+  double value[N];
+  for (int j = 0; j < N; ++j) {
+    double v = x[j];
+    for (int k = 0; k < j; ++k) v -= panel[k * ld + j] * value[k];
+    x[j] = value[j] = v / panel[j * ld + j];
+  }
+  for (long i = kLanes; i < rows; i += kLanes) {
+    Vector v = load(x + i);
+#pragma GCC unroll 8
+    for (int j = 0; j < N; ++j) v -= load(panel + j * ld + i) * value[j];
+    store(x + i, v);
+  }
+}
+
+template <int N>
+void backward_strip(const double* panel, long ld, long rows, double* x) {
+  Vector total[N] = {};
+  for (long i = kLanes; i < rows; i += kLanes) {
+    const Vector v = load(x + i);
+#pragma GCC unroll 8
+    for (int j = 0; j < N; ++j) total[j] += load(panel + j * ld + i) * v;
+  }
+  for (int j = N - 1; j >= 0; --j) {
+    double v = x[j] - sum(total[j]);
+    for (int k = j + 1; k < N; ++k) v -= panel[j * ld + k] * x[k];
+    x[j] = v / panel[j * ld + j];
+  }
+}
+
+using Strip = void (*)(const double* panel, long ld, long rows, double* x);
+
+template <bool kBackward, int... N>
+constexpr auto strips(std::integer_sequence<int, N...>) {
+  struct Table {
+    Strip by_width[kLanes];
+  };
+  return Table{{(kBackward ? &backward_strip<N + 1> : &forward_strip<N + 1>)...}};
+}
+constexpr auto kForward = strips<false>(std::make_integer_sequence<int, kLanes>());
+constexpr auto kBackward = strips<true>(std::make_integer_sequence<int, kLanes>());
+
+}  // namespace
+
+void solve_panel(const double* panel, int leading_dimension, int columns, double* x) {
+  const long ld = leading_dimension;
+  for (int j = 0; j < columns; j += kLanes) {
+    kForward.by_width[std::min(kLanes, columns - j) - 1](panel + j * ld + j, ld, ld - j, x + j);
+  }
+}
+
+void solve_panel_transposed(const double* panel, int leading_dimension, int columns, double* x) {
+  const long ld = leading_dimension;
+  for (int j = (columns - 1) / kLanes * kLanes; j >= 0; j -= kLanes) {
+    kBackward.by_width[std::min(kLanes, columns - j) - 1](panel + j * ld + j, ld, ld - j, x + j);
+  }
+}
+
+}  // namespace locograph

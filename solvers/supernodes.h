@@ -1,0 +1,66 @@
+#pragma once
+/// The symbolic half of a multifrontal Cholesky factorisation: which block columns are factored
+/// together, what their fronts look like, where they are in memory and what may run at once.
+///
+///     const Supernodes s = supernodes(tree, dimension);
+///     double* panel = factor + s.panel_begin[i];       // padded(width) + padded(below) rows
+///
+/// A supernode is a set of block columns eliminated together. Its front has `width` scalar pivot
+/// rows, padded to whole registers, and `below` rows, padded as well; the first `width` columns are
+/// a panel of the factor, the rest is the update matrix that it hands to its parent (Duff & Reid
+/// 1983; Liu 1992). Which columns are joined is decided by an estimate of the time of a front.
+///
+/// Order: every task is a contiguous range of supernodes without dependencies on other tasks; what
+/// comes after the tasks is the top of the tree. Children precede parents everywhere. Nothing here
+/// depends on the number of threads.
+
+#include <locograph/solvers/elimination_tree.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace locograph {
+
+struct Supernodes {
+  /// Rows that are contiguous both in the update matrix of a supernode and in its parent's front.
+  struct Run {
+    int from;    ///< row of the update matrix
+    int to;      ///< row of the parent's front, padding included
+    int length;  ///< scalar rows
+  };
+
+  std::vector<int> old_of_new, new_of_old;  ///< block rows
+  std::vector<int> scalar_begin;            ///< by new block row; size + 1 entries
+
+  std::vector<int> first;        ///< first block column of each supernode; count + 1 entries
+  std::vector<int> parent;       ///< -1 for a root
+  std::vector<int> child_begin;  ///< into child; count + 1 entries
+  std::vector<int> child;
+  std::vector<int> width, below;                 ///< scalar columns, and rows under them
+  std::vector<int> leading;                      ///< rows of the panel in memory
+  std::vector<std::int64_t> panel_begin;         ///< into the factor; count + 1 entries
+  std::vector<std::int64_t> vector_begin;        ///< into a vector with one segment for each front
+  std::vector<std::int64_t> row_begin;           ///< into row; count + 1 entries
+  std::vector<int> row;                          ///< block rows under each supernode, ascending
+  std::vector<std::int64_t> run_begin, run_end;  ///< of each supernode, into run
+  std::vector<Run> run;
+  std::vector<int> pivot_runs;             ///< how many runs of each end among the parent's pivots
+  std::vector<std::int64_t> update_begin;  ///< of each update matrix in working memory
+  std::int64_t update_size = 0;            ///< working memory, in numbers
+  std::vector<double> seconds;             ///< estimated, of each front
+
+  std::vector<int> task_begin;  ///< first supernode of each task; the last entry begins the top
+
+  int count() const { return static_cast<int>(parent.size()); }
+  int tasks() const { return static_cast<int>(task_begin.size()) - 1; }
+};
+
+/// Estimated seconds of a front on one thread of a current desktop processor.
+double front_seconds(int width, int below);
+/// Estimated seconds of a factorisation, from the heights alone.
+double factorisation_seconds(const EliminationTree& tree, const std::vector<int>& dimension);
+
+Supernodes supernodes(const BlockGraph& graph, const EliminationTree& tree,
+                      const std::vector<int>& dimension);
+
+}  // namespace locograph
