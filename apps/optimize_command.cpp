@@ -8,6 +8,7 @@
 #include <locograph/core/initial_guess.h>
 #include <locograph/core/optimiser.h>
 #include <locograph/solvers/linear_solvers.h>
+#include <locograph/types/chordal_guess.h>
 
 #include <CLI/Validators.hpp>
 #include <cmath>
@@ -66,10 +67,11 @@ Graph load(const OptimizeOptions& options, ReadReport& report) {
   return graph;
 }
 
-void guess(Graph& graph, const OptimizeOptions& options) {
+void guess(Graph& graph, const OptimizeOptions& options, LinearSolver& solver) {
   int unreached = 0;
   if (options.initial_guess == "odometry") unreached = guess_from_odometry(graph);
   if (options.initial_guess == "spanning-tree") unreached = guess_from_spanning_tree(graph);
+  if (options.initial_guess == "chordal") unreached = guess_chordal(graph, solver);
   if (unreached > 0) {
     print_warning(counted(unreached, "vertex", "vertices") +
                   " cannot be predicted from any edge: first values kept");
@@ -171,7 +173,7 @@ ExitCode optimize(const OptimizeOptions& options) {
   times.load = total.seconds();
   if (kernel.kind != RobustKernel::Kind::kNone) graph.set_kernel(kernel);
   const Gauge gauge = hold_gauge(graph, options.input_name(), options.lenient);
-  guess(graph, options);
+  guess(graph, options, *solver);
   int dimension = 0;
   const OptimiserResult result = run(graph, options, *solver, dimension, times);
   gauge.release(graph);
@@ -232,8 +234,8 @@ Command add_optimize(CLI::App& app) {
       ->add_option("--kernel", o.kernel,
                    "Robust kernel of every edge, NAME[:WIDTH] (see: locograph list kernels)")
       ->capture_default_str();
-  parser->add_option("--initial-guess", o.initial_guess, "none, odometry or spanning-tree")
-      ->check(CLI::IsMember({"none", "odometry", "spanning-tree"}))
+  parser->add_option("--initial-guess", o.initial_guess, "none, odometry, spanning-tree or chordal")
+      ->check(CLI::IsMember({"none", "odometry", "spanning-tree", "chordal"}))
       ->capture_default_str();
   parser->add_option("--iterations", o.optimiser.max_iterations, "Most iterations to make")
       ->capture_default_str();

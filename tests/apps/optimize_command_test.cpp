@@ -132,9 +132,10 @@ TEST(Optimize, HoldsAPoseRatherThanAPoint) {
 TEST(Optimize, EveryAlgorithmAndSolverReachesTheSameCost) {
   const CommandRunner runner;
   runner.write("a.g2o", kTriangle);
-  for (const char* options : {"--algorithm gn", "--algorithm dogleg", "--linear-solver dense",
-                              "--linear-solver banded", "--linear-solver block-cholesky",
-                              "--initial-guess odometry", "--initial-guess spanning-tree"}) {
+  for (const char* options :
+       {"--algorithm gn", "--algorithm dogleg", "--linear-solver dense", "--linear-solver banded",
+        "--linear-solver block-cholesky", "--initial-guess odometry",
+        "--initial-guess spanning-tree", "--initial-guess chordal"}) {
     const Outcome outcome = runner.run(std::string("optimize a.g2o --json ") + options);
     ASSERT_EQ(outcome.exit_code, 0) << options << ": " << outcome.err;
     EXPECT_NEAR(outcome.json()["final_chi2"], 1.0 / 3.0, 1e-6) << options;
