@@ -243,8 +243,7 @@ Command add_optimize(CLI::App& app) {
       ->add_option("--gain", o.optimiser.gain,
                    "Converged when a step lowers the cost by less than this fraction")
       ->capture_default_str();
-  parser
-      ->add_option("--threads", o.threads, "Most threads to use; the result never depends on it")
+  parser->add_option("--threads", o.threads, "Most threads to use; the result never depends on it")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   parser->add_flag(

@@ -218,7 +218,8 @@ class Relaxation {
   }
 
   Eigen::Map<Matrix<N>> block(int row, int column) {
-    return Eigen::Map<Matrix<N>>(values_.data() + pattern_.offset_of(row, column));
+    return Eigen::Map<Matrix<N>>(values_.data() +
+                                 pattern_.value_offset[pattern_.block_of(row, column)]);
   }
   /// Adds `value` at (a, b), a ≠ b, or its transpose at (b, a): whichever is stored.
   void add(int a, int b, const Matrix<N>& value) {

@@ -2,27 +2,36 @@
 /// the same problem, from the same initial values, in the same run, one thread each.
 ///
 ///     pose_graph_benchmark [--runs N] [FILE.g2o…]      # default: all public files of shared data
+///     pose_graph_benchmark --g2o PROGRAM --gtsam PROGRAM   # these as well (see peer_program.h)
+///     pose_graph_benchmark --guess chordal …           # everybody starts from a better guess
 ///
 /// Prints one JSON object. Times in seconds, median of the runs; `time_to_0.1%` is from the loaded
 /// graph to the first accepted step whose cost is within 0.1 % of the value that optimiser
 /// converges to. For locograph this includes compiling the problem; for Ceres it is what
 /// Solver::Solve takes, its preprocessing included, building the ceres::Problem not (reported as
-/// `build`). Both see the same error: the residual of Ceres is locograph's own error() evaluated on
-/// ceres::Jet, times a square root of Ω.
+/// `build`). Peers read the same initial values from a file. locograph and Ceres see the same
+/// error: the residual of Ceres is locograph's own error() evaluated on ceres::Jet, times a square
+/// root of Ω.
 
 #include <ceres/ceres.h>
 #include <locograph/common/deadline.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/core/optimiser.h>
 #include <locograph/solvers/linear_solvers.h>
+#include <locograph/types/chordal_guess.h>
 #include <locograph/types/slam2d/edges.h>
 #include <locograph/types/slam3d/edges.h>
 #include <locograph/types/standard_types.h>
+#include <unistd.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
+
+#include "peer_program.h"
 
 namespace locograph {
 namespace {
@@ -36,6 +45,7 @@ struct Run {
   double near_s = 0.0;  ///< to within 0.1 %
   int iterations = 0;
   std::string reason;
+  std::vector<double> state;
 };
 
 /// When the cost first came within 0.1 % of the last one; pairs of (seconds, cost).
@@ -46,20 +56,43 @@ double time_to_near(const std::vector<std::pair<double, double>>& history) {
   return history.back().first;
 }
 
-Run run_locograph(const std::filesystem::path& file, std::string* solver_name) {
+Graph copy_of(const Graph& graph) {
+  return read_graph_text(write_graph_text(graph), "copy", ".", standard_types());
+}
+
+/// The graph that everybody starts from.
+Graph start_of(const std::filesystem::path& file, bool chordal) {
   Graph graph = read_graph(file, standard_types(), {.lenient = true});
   graph.set_fixed(0, true);
+  if (chordal) guess_chordal(graph, *make_linear_solver("auto"));
+  return graph;
+}
+
+Run finished(std::vector<std::pair<double, double>> history) {
+  Run run;
+  run.total_s = history.back().first;
+  run.chi2 = history.back().second;
+  run.near_s = time_to_near(history);
+  return run;
+}
+
+Run run_locograph(const Graph& start, int threads, std::string* solver_name) {
+  Graph graph = copy_of(start);
   OptimiserOptions options;
+  options.gain = 1e-7;
   std::vector<std::pair<double, double>> history;
-  history.reserve(options.max_iterations + 1);
+  history.reserve(options.max_iterations + 2);
   const std::unique_ptr<LinearSolver> solver = make_linear_solver("auto");
+  ThreadPool pool(threads);
 
   const Stopwatch watch;
   Problem problem;
   problem.compile(graph);
   Workspace workspace;
   workspace.allocate(problem);
+  workspace.use_threads(&pool);
   workspace.load_state();
+  solver->use_threads(&pool);
   Optimiser optimiser(options);
   const double compiled = watch.seconds();
   optimiser.start(workspace, *solver);
@@ -67,16 +100,14 @@ Run run_locograph(const std::filesystem::path& file, std::string* solver_name) {
   while (optimiser.iterate()) {
     history.emplace_back(watch.seconds(), optimiser.result().final.chi2);
   }
-  history.emplace_back(watch.seconds(), optimiser.result().final.chi2);
   workspace.store_state();
+  history.emplace_back(watch.seconds(), optimiser.result().final.chi2);
 
-  Run run;
-  run.total_s = watch.seconds();
+  Run run = finished(std::move(history));
   run.build_s = compiled;
-  run.chi2 = optimiser.result().final.chi2;
-  run.near_s = time_to_near(history);
   run.iterations = optimiser.result().iterations;
   run.reason = optimiser.result().reason_text();
+  run.state = workspace.state();
   *solver_name = solver->name();
   return run;
 }
@@ -120,8 +151,8 @@ void add_edges(Graph& graph, std::vector<typename V::State>& states, ceres::Prob
   }
 }
 
-Run run_ceres(const std::filesystem::path& file) {
-  Graph graph = read_graph(file, standard_types(), {.lenient = true});
+Run run_ceres(const Graph& start) {
+  Graph graph = copy_of(start);
   const Stopwatch build;
   ceres::Problem problem;
   std::vector<double*> place;
@@ -172,82 +203,142 @@ Run run_ceres(const std::filesystem::path& file) {
   return run;
 }
 
-double median(std::vector<Run>& runs, double Run::*value) {
-  std::sort(runs.begin(), runs.end(),
-            [&](const Run& a, const Run& b) { return a.*value < b.*value; });
-  return runs[runs.size() / 2].*value;
+double median(const std::vector<Run>& runs, double Run::*value) {
+  std::vector<double> values;
+  for (const Run& run : runs) values.push_back(run.*value);
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
 }
 
-Json report(std::vector<Run>& runs) {
+Json report(const std::vector<Run>& runs) {
   Json json;
   json["chi2"] = runs[0].chi2;
-  json["iterations"] = runs[0].iterations;
-  json["reason"] = runs[0].reason;
-  json["build"] = median(runs, &Run::build_s);
+  if (runs[0].iterations > 0) json["iterations"] = runs[0].iterations;
+  if (!runs[0].reason.empty()) json["reason"] = runs[0].reason;
   json["time_to_0.1%"] = median(runs, &Run::near_s);
   json["total"] = median(runs, &Run::total_s);
   return json;
 }
 
-Json compare(const std::filesystem::path& file, int runs) {
-  std::vector<Run> ours, theirs;
+struct Options {
+  int runs = 3;
+  bool chordal = false;
+  std::vector<PeerProgram> peers;
+  std::vector<std::filesystem::path> files;
+};
+
+/// How much longer each peer took: time to 0.1 %, by name.
+using Ratios = std::map<std::string, std::vector<double>>;
+
+Json compare(const std::filesystem::path& file, const Options& options, Ratios& ratios) {
+  const Graph start = start_of(file, options.chordal);
+  const std::filesystem::path copy = std::filesystem::temp_directory_path() /
+                                     ("pose_graph_benchmark_" + std::to_string(getpid()) + ".g2o");
+  if (!options.peers.empty()) write_graph(start, copy);
+  std::vector<Run> one, two, ceres;
+  std::vector<std::vector<Run>> peers(options.peers.size());
   std::string solver;
-  // Alternating, so that both see the same state of the machine.
-  for (int i = 0; i < runs; ++i) {
-    ours.push_back(run_locograph(file, &solver));
-    theirs.push_back(run_ceres(file));
+  // Alternating, so that all see the same state of the machine.
+  for (int i = 0; i < options.runs; ++i) {
+    one.push_back(run_locograph(start, 1, &solver));
+    two.push_back(run_locograph(start, 2, &solver));
+    ceres.push_back(run_ceres(start));
+    for (std::size_t p = 0; p < peers.size(); ++p) {
+      auto history = run_peer(options.peers[p], copy);
+      if (!history.empty()) peers[p].push_back(finished(std::move(history)));
+    }
   }
+  std::filesystem::remove(copy);
   Json json;
   json["file"] = file.filename().string();
-  json["locograph"] = report(ours);
+  json["locograph"] = report(one);
   json["locograph"]["linear_solver"] = solver;
-  json["ceres"] = report(theirs);
-  const double a = ours[0].chi2, b = theirs[0].chi2;
-  json["same_optimum"] = std::abs(a - b) <= 1e-3 * std::min(a, b);
-  json["ceres_over_locograph"]["time_to_0.1%"] =
-      median(theirs, &Run::near_s) / median(ours, &Run::near_s);
-  json["ceres_over_locograph"]["total"] =
-      median(theirs, &Run::total_s) / median(ours, &Run::total_s);
+  json["locograph"]["compile"] = median(one, &Run::build_s);
+  json["two_threads"] = {{"total", median(two, &Run::total_s)},
+                         {"speed_up", median(one, &Run::total_s) / median(two, &Run::total_s)},
+                         {"same_bits", one[0].state == two[0].state}};
+  const double ours = median(one, &Run::near_s);
+  const auto add = [&](const std::string& name, const std::vector<Run>& theirs) {
+    if (theirs.empty()) {
+      json[name] = nullptr;
+      return;
+    }
+    json[name] = report(theirs);
+    json[name]["ratio"] = median(theirs, &Run::near_s) / ours;
+    ratios[name].push_back(median(theirs, &Run::near_s) / ours);
+  };
+  add("ceres", ceres);
+  for (std::size_t p = 0; p < peers.size(); ++p) add(options.peers[p].name, peers[p]);
+  const double a = one[0].chi2, b = ceres[0].chi2;
+  json["same_optimum_as_ceres"] = std::abs(a - b) <= 1e-3 * std::min(a, b);
   return json;
+}
+
+Options parse(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    const auto value = [&]() -> std::string {
+      if (i + 1 >= argc) throw Error("option " + argument + " without a value", "one");
+      return argv[++i];
+    };
+    if (argument == "--runs") {
+      options.runs = std::atoi(value().c_str());
+      if (options.runs < 1) throw Error("option --runs", "a number of 1 or more");
+    } else if (argument == "--guess") {
+      options.chordal = value() == "chordal";
+      if (!options.chordal) throw Error("option --guess", "chordal");
+    } else if (argument == "--g2o") {
+      const std::string program = value();
+      for (const char* solver : {"lm_var_cholmod", "lm_var", "gn_var_cholmod"}) {
+        options.peers.push_back({std::string("g2o ") + solver, program, solver});
+      }
+    } else if (argument == "--gtsam") {
+      options.peers.push_back({"gtsam", value(), ""});
+    } else {
+      options.files.emplace_back(argument);
+    }
+  }
+  const std::filesystem::path folder = std::filesystem::path(LOCOGRAPH_SHARED_DATA) / "pose_graphs";
+  if (options.files.empty() && std::filesystem::exists(folder)) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+      if (entry.path().extension() == ".g2o") options.files.push_back(entry.path());
+    }
+    std::sort(options.files.begin(), options.files.end());
+  }
+  if (options.files.empty()) throw Error("no graph files", "FILE.g2o arguments");
+  return options;
+}
+
+int run(const Options& options) {
+  Json all = {{"unit", "s"},
+              {"runs", options.runs},
+              {"guess", options.chordal ? "chordal" : "file"},
+              {"graphs", Json::array()}};
+  Ratios ratios;
+  for (const std::filesystem::path& file : options.files) {
+    std::cerr << file.filename().string() << "\n";
+    all["graphs"].push_back(compare(file, options, ratios));
+  }
+  for (const auto& [name, values] : ratios) {
+    double logarithms = 0.0;
+    for (const double ratio : values) logarithms += std::log(ratio);
+    all["times_faster_than"][name] = {{"files", values.size()},
+                                      {"geometric_mean", std::exp(logarithms / values.size())},
+                                      {"least", *std::min_element(values.begin(), values.end())}};
+  }
+  std::cout << all.dump(1) << "\n";
+  return 0;
 }
 
 }  // namespace
 }  // namespace locograph
 
 int main(int argc, char** argv) {
-  int runs = 3;
-  std::vector<std::filesystem::path> files;
   try {
-    for (int i = 1; i < argc; ++i) {
-      const std::string argument = argv[i];
-      if (argument == "--runs") {
-        runs = i + 1 < argc ? std::atoi(argv[++i]) : 0;
-        if (runs < 1) throw locograph::Error("option --runs", "a number of 1 or more");
-      } else {
-        files.emplace_back(argument);
-      }
-    }
-    if (files.empty()) {
-      const std::filesystem::path folder =
-          std::filesystem::path(LOCOGRAPH_SHARED_DATA) / "pose_graphs";
-      if (std::filesystem::exists(folder)) {
-        for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-          if (entry.path().extension() == ".g2o") files.push_back(entry.path());
-        }
-      }
-      std::sort(files.begin(), files.end());
-    }
-    if (files.empty()) throw locograph::Error("no graph files", "FILE.g2o arguments");
-    locograph::Json all = {{"unit", "s"}, {"threads", 1}, {"runs", runs}};
-    all["graphs"] = locograph::Json::array();
-    for (const std::filesystem::path& file : files) {
-      std::cerr << file.filename().string() << "\n";
-      all["graphs"].push_back(locograph::compare(file, runs));
-    }
-    std::cout << all.dump(1) << "\n";
+    return locograph::run(locograph::parse(argc, argv));
   } catch (const locograph::Error& error) {
     std::cerr << "pose_graph_benchmark: " << error.what() << "\n";
     return 2;
   }
-  return 0;
 }
