@@ -6,6 +6,7 @@
 /// offsets computed when the problem was compiled. The templates that do it are in
 /// edge_evaluation.h; edge types are instantiated where they are registered, nowhere else.
 
+#include <locograph/core/constraint.h>
 #include <locograph/core/edge.h>
 #include <locograph/core/parameters.h>
 #include <locograph/core/scratch.h>
@@ -40,6 +41,9 @@ struct CompiledEdges {
   std::vector<Slot> slots;
   std::vector<std::int64_t> block_begin;  ///< edges + 1
   std::vector<Block> blocks;  ///< for each edge the pairs (i, j), i ≤ j, of its slots, row by row
+  /// For each edge its first row in Evaluation::constraint_rows, -1 when it is no constraint; empty
+  /// when none is.
+  std::vector<int> constraint_row;
 
   void clear() {
     edges.clear();
@@ -48,6 +52,7 @@ struct CompiledEdges {
     slots.clear();
     block_begin.assign(1, 0);
     blocks.clear();
+    constraint_row.clear();
   }
 };
 
@@ -56,6 +61,7 @@ struct Evaluation {
   const double* state;
   std::span<const std::unique_ptr<DerivedStore>> derived;  ///< one for each vertex pool
   Scratch* scratch;
+  const ConstraintRow* constraint_rows = nullptr;
 };
 
 /// A sum over edges: with the robust kernels, and without.
@@ -86,12 +92,13 @@ class EdgePool {
   virtual std::type_index slot_type(int slot) const = 0;
   virtual std::unique_ptr<VertexPool> make_slot_pool(int slot) const = 0;
   virtual bool has_weights() const = 0;  ///< Ω is diagonal
+  virtual bool one_sided() const = 0;    ///< the error is hinged: never negative
   virtual Eigen::MatrixXd information(int index) const = 0;
   virtual void set_information(int index, const Eigen::MatrixXd& information) = 0;
   virtual RobustKernel& kernel(int index) = 0;
 
   virtual std::size_t scratch_bytes(const CompiledEdges& edges) const = 0;
-  /// Error of one edge, unweighted.
+  /// Error of one edge, unweighted, as its type gives it also where it is a constraint.
   virtual void error(const CompiledEdges& edges, int k, const Evaluation& x,
                      double* error) const = 0;
   /// Of edges [begin, end) of the list.

@@ -1,6 +1,7 @@
 #include <locograph/core/graph.h>
 #include <locograph/core/information.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 
 namespace locograph {
@@ -147,6 +148,21 @@ void Graph::remove_edge(EdgeId e) {
   slots.pop_back();
   record = {};
   --edge_count_;
+}
+
+void Graph::set_constraint(EdgeId e, ConstraintKind kind) {
+  EdgeRecord& record = edge_records_[e.slot];
+  const EdgePool& pool = *edge_pools_[record.pool];
+  const bool diagonal =
+      pool.has_weights() || Eigen::MatrixXd(pool.information(record.index)).isDiagonal(0.0);
+  if (kind == ConstraintKind::kInequality && !diagonal) {
+    throw Error("an inequality with an information matrix that is not diagonal", "a diagonal one");
+  }
+  if (kind == ConstraintKind::kEquality && !diagonal &&
+      pool.information(record.index).llt().info() != Eigen::Success) {
+    throw Error("a constraint with a singular information matrix", "a positive definite one");
+  }
+  record.constraint = kind;
 }
 
 void Graph::remove_vertex(int slot) {

@@ -44,6 +44,7 @@ class Graph {
     int pool = -1;  ///< -1: removed
     int index = 0;
     int line = 0;
+    ConstraintKind constraint = ConstraintKind::kNone;
   };
 
   Graph() = default;
@@ -129,6 +130,9 @@ class Graph {
         .edges[edge_records_[e.slot].index];
   }
   void remove_edge(EdgeId e);
+  /// Marks an edge as a constraint (constraint.h). Throws Error when its Ω does not suit the kind.
+  /// Not saved in files.
+  void set_constraint(EdgeId e, ConstraintKind kind);
 
   int edge_count() const { return edge_count_; }
   int edge_slots() const { return static_cast<int>(edge_records_.size()); }

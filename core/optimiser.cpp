@@ -56,6 +56,8 @@ std::string OptimiserResult::reason_text() const {
       return "the step raised the cost";
     case Reason::kNothingToDo:
       return "converged: every vertex is fixed";
+    case Reason::kStopped:
+      return "stopped by the caller";
   }
   return "";
 }
@@ -118,6 +120,9 @@ bool Optimiser::iterate() {
   now.cost = cost_.robust;
   now.chi2 = cost_.chi2;
   if (result_.statistics.size() < result_.statistics.capacity()) result_.statistics.push_back(now);
+  if (options_.on_iteration && !options_.on_iteration(result_) && more) {
+    return finish(Reason::kStopped);
+  }
   return more;
 }
 

@@ -20,12 +20,15 @@
 #include <locograph/core/linear_solver.h>
 #include <locograph/core/workspace.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace locograph {
 
 enum class Algorithm { kGaussNewton, kLevenbergMarquardt, kDogleg };
+
+struct OptimiserResult;
 
 struct OptimiserOptions {
   Algorithm algorithm = Algorithm::kLevenbergMarquardt;
@@ -49,6 +52,9 @@ struct OptimiserOptions {
   /// Steps that may be refused in a row before the iteration gives up.
   int max_refusals = 16;
   Deadline deadline;
+  /// Called after every iteration; false stops the run. The result so far holds the statistics of
+  /// the iteration; the workspace holds its state.
+  std::function<bool(const OptimiserResult&)> on_iteration;
 
   /// Throws Error naming the option that is out of range.
   void validate() const;
@@ -76,6 +82,7 @@ struct OptimiserResult {
     kNotFinite,    ///< the initial cost is not a number
     kDiverged,     ///< Gauss-Newton raised the cost
     kNothingToDo,  ///< no free vertex
+    kStopped,      ///< OptimiserOptions::on_iteration said so
   };
   Reason reason = Reason::kRunning;
   bool converged = false;

@@ -80,6 +80,8 @@ void Problem::begin(Graph& graph) {
   state_size_ = 0;
   edge_count_ = 0;
   residual_count_ = 0;
+  constraints_.clear();
+  constraint_rows_ = 0;
   pattern_.dimension.clear();
   pattern_.scalar_begin.assign(1, 0);
 }
@@ -173,7 +175,13 @@ void Problem::compile_edges(const std::vector<int>& edge_slots) {
   for (const int e : edge_slots) {
     const Graph::EdgeRecord& record = graph_->edge_record(e);
     edges_[record.pool].edges.push_back(record.index);
-    residual_count_ += graph_->edge_pools()[record.pool]->dimension(record.index);
+    const int dimension = graph_->edge_pools()[record.pool]->dimension(record.index);
+    residual_count_ += dimension;
+    if (record.constraint != ConstraintKind::kNone) {
+      constraints_.push_back(
+          {e, record.pool, record.index, constraint_rows_, dimension, record.constraint});
+      constraint_rows_ += dimension;
+    }
   }
   edge_count_ = static_cast<int>(edge_slots.size());
   for (CompiledEdges& compiled : edges_) std::sort(compiled.edges.begin(), compiled.edges.end());
@@ -200,6 +208,7 @@ void Problem::compile_edges(const std::vector<int>& edge_slots) {
     }
     scratch_bytes_ = std::max(scratch_bytes_, pool.scratch_bytes(compiled));
   }
+  compile_constraints();
   build_pattern();
   build_offsets();
 }
@@ -254,6 +263,23 @@ void Problem::divide_into_chunks() {
       sorted[next[chunk_of[last_block(pool, index) + 1]]++] = index;
     }
     compiled.edges.swap(sorted);
+  }
+}
+
+/// So far k is the edge's index in its pool; within a chunk edges are sorted by it.
+void Problem::compile_constraints() {
+  for (CompiledConstraint& c : constraints_) {
+    CompiledEdges& compiled = edges_[c.pool];
+    const auto edges = compiled.edges.begin();
+    for (int chunk = 0; chunk < chunks_; ++chunk) {
+      const auto end = edges + compiled.chunk_begin[chunk + 1];
+      const auto found = std::lower_bound(edges + compiled.chunk_begin[chunk], end, c.k);
+      if (found == end || *found != c.k) continue;
+      c.k = static_cast<int>(found - edges);
+      break;
+    }
+    compiled.constraint_row.resize(compiled.edges.size(), -1);
+    compiled.constraint_row[c.k] = c.row;
   }
 }
 

@@ -31,6 +31,14 @@
 
 namespace locograph {
 
+/// One constraint edge of a compiled problem.
+struct CompiledConstraint {
+  int edge = -1;           ///< slot in the graph
+  int pool = -1, k = -1;   ///< edge k of pool
+  int row = 0, count = 0;  ///< its rows among Workspace::constraint_rows()
+  ConstraintKind kind = ConstraintKind::kNone;
+};
+
 class Problem {
  public:
   /// A sum of one chunk, kept behind the matrix (or gradient), to be added to its place there.
@@ -63,6 +71,8 @@ class Problem {
   Graph& graph() const { return *graph_; }
   std::span<const std::vector<ActiveVertex>> active() const { return active_; }
   std::span<const CompiledEdges> edges() const { return edges_; }
+  std::span<const CompiledConstraint> constraints() const { return constraints_; }
+  int constraint_rows() const { return constraint_rows_; }
   std::size_t scratch_bytes() const { return scratch_bytes_; }
   int chunks() const { return chunks_; }
   const Reductions& hessian_reductions() const { return hessian_reductions_; }
@@ -74,6 +84,7 @@ class Problem {
   void compile_window(std::span<const int> free_vertex_slots, const std::span<const int>* held);
   void compile_edges(const std::vector<int>& edge_slots);
   void divide_into_chunks();
+  void compile_constraints();
   void build_pattern();
   void build_offsets();
 
@@ -94,6 +105,8 @@ class Problem {
   std::vector<double> work_;  ///< of the edges that end in each block row
   int chunks_ = 1;
   Reductions hessian_reductions_, gradient_reductions_;
+  std::vector<CompiledConstraint> constraints_;
+  int constraint_rows_ = 0;
   int state_size_ = 0;
   int edge_count_ = 0;
   int residual_count_ = 0;

@@ -34,6 +34,13 @@ class TypedEdgePool final : public EdgePool {
   }
 
   bool has_weights() const override { return kHasWeights<E>; }
+  bool one_sided() const override {
+    if constexpr (kHasWeights<E>) {
+      return E::kOneSided;
+    } else {
+      return false;
+    }
+  }
   Eigen::MatrixXd information(int index) const override {
     if constexpr (kHasWeights<E>) {
       return edges[index].weights.asDiagonal();
@@ -73,8 +80,10 @@ class TypedEdgePool final : public EdgePool {
       const E& edge = edges[compiled.edges[k]];
       detail::LocalMatrix<Error> e = detail::make_local<Error>(edge.dimension(), 1, *x.scratch);
       Evaluator(edge, slots(compiled, k), x).error(e);
+      const ConstraintRow* rows = constraint_rows(compiled, k, x);
+      if (rows != nullptr) constrain_error(rows, e);
       const double chi2 = weighted_square(edge, e);
-      total += {edge.kernel.weights(chi2).cost, chi2};
+      total += {robust_weights(edge, rows, chi2).cost, chi2};
     }
     return total;
   }
@@ -218,6 +227,27 @@ class TypedEdgePool final : public EdgePool {
             static_cast<std::size_t>(compiled.slot_begin[k + 1] - begin)};
   }
 
+  /// Null for an edge that is no constraint.
+  static const ConstraintRow* constraint_rows(const CompiledEdges& compiled, int k,
+                                              const Evaluation& x) {
+    if (compiled.constraint_row.empty() || compiled.constraint_row[k] < 0) return nullptr;
+    return x.constraint_rows + compiled.constraint_row[k];
+  }
+  static RobustKernel::Weights robust_weights(const E& edge, const ConstraintRow* rows,
+                                              double chi2) {
+    return rows == nullptr ? edge.kernel.weights(chi2) : RobustKernel::Weights{chi2, 1.0};
+  }
+  template <class Vector>
+  static void constrain_jacobians(const ConstraintRow* rows, const Evaluator& evaluator,
+                                  std::span<const CompiledEdges::Slot> own, const Vector& e,
+                                  double* const* data) {
+    evaluator.each_slot([&]<class V>(std::type_identity<V>, int s) {
+      if (data[s] == nullptr) return;
+      const int d = detail::vertex_of<V>(own[s]).dimension();
+      constrain_jacobian(rows, e, jacobian_map<V>(data[s], evaluator.dimension(), d));
+    });
+  }
+
   /// Weights in a file: `scalar w` when all are equal, `diagonal w…` otherwise.
   static void read_weights(E& edge, int dimension, FieldReader& in) {
     const std::string kind = in.word();
@@ -290,8 +320,10 @@ class TypedEdgePool final : public EdgePool {
 
     detail::LocalMatrix<Error> e = detail::make_local<Error>(n, 1, *x.scratch);
     evaluator.error(e);
+    const ConstraintRow* rows = constraint_rows(compiled, k, x);
+    if (rows != nullptr) constrain_error(rows, e);
     const double chi2 = weighted_square(edge, e);
-    const RobustKernel::Weights robust = edge.kernel.weights(chi2);
+    const RobustKernel::Weights robust = robust_weights(edge, rows, chi2);
     if constexpr (E::kDynamicArity) {
       double** data = x.scratch->array<double*>(own.size());
       evaluator.each_slot([&]<class V>(std::type_identity<V>, int s) {
@@ -301,6 +333,7 @@ class TypedEdgePool final : public EdgePool {
                       : x.scratch->array<double>(static_cast<std::size_t>(n) * d);
       });
       evaluator.jacobians(data);
+      if (rows != nullptr) constrain_jacobians(rows, evaluator, own, e, data);
       accumulate(compiled, k, evaluator, e, robust.weight, data, x, hessian, gradient);
     } else {
       fixed_jacobians(compiled, k, evaluator, e, robust.weight, x, hessian, gradient,
@@ -321,6 +354,8 @@ class TypedEdgePool final : public EdgePool {
         *x.scratch)...);
     double* data[] = {(own[I].tangent_offset < 0 ? nullptr : std::get<I>(storage).data())...};
     evaluator.jacobians(data);
+    const ConstraintRow* rows = constraint_rows(compiled, k, x);
+    if (rows != nullptr) constrain_jacobians(rows, evaluator, own, e, data);
     if constexpr (kHasWeights<E>) {
       accumulate_rows(compiled, k, evaluator, e, weight, data, x, hessian, gradient);
     } else {

@@ -13,6 +13,12 @@ void Workspace::allocate(const Problem& problem) {
   gradient_.resize(problem.gradient_reductions().size);
   step_.resize(n);
   damping_.assign(n, 0.0);
+  constraint_rows_.assign(problem.constraint_rows(), {});
+  for (const CompiledConstraint& c : problem.constraints()) {
+    for (int r = c.row; r < c.row + c.count; ++r) {
+      constraint_rows_[r].one_sided = c.kind == ConstraintKind::kInequality;
+    }
+  }
   const std::size_t pools = problem.active().size();
   derived_.resize(pools);
   derived_for_.resize(pools);

@@ -33,6 +33,8 @@ class Workspace {
   }
   std::vector<double>& step() { return step_; }
   std::vector<double>& damping() { return damping_; }
+  /// Of the problem's constraints(); as allocated: no shift, scale 1.
+  std::vector<ConstraintRow>& constraint_rows() { return constraint_rows_; }
 
   /// trial = state ⊞ step.
   void apply_step();
@@ -65,7 +67,7 @@ class Workspace {
   };
 
   Evaluation evaluation(const std::vector<double>& state, int chunk) {
-    return {state.data(), derived_, &scratch_[chunk]};
+    return {state.data(), derived_, &scratch_[chunk], constraint_rows_.data()};
   }
   template <class Task>
   void for_each(int count, Task&& task);
@@ -74,6 +76,7 @@ class Workspace {
   void reduce(const Problem::Reductions& reductions, std::vector<double>& values);
 
   const Problem* problem_ = nullptr;
+  std::vector<ConstraintRow> constraint_rows_;
   std::vector<double> state_, trial_, hessian_, gradient_, step_, damping_;
   std::vector<std::unique_ptr<DerivedStore>> derived_;
   std::vector<DerivedFor> derived_for_;

@@ -1,0 +1,86 @@
+#pragma once
+/// Minimises Σ ρ(eᵀΩe) subject to the edges marked as constraints: an augmented Lagrangian whose
+/// rounds run on one compiled structure.
+///
+///     graph.set_constraint(e, ConstraintKind::kEquality);       // see constraint.h
+///     ConstrainedResult result = optimise_constrained(graph, {}, *make_linear_solver("auto"));
+///     if (!result.converged) std::cerr << result.reason_text(graph);
+///
+/// A round minimises the cost with the constraints' shifted penalties by the inner algorithm, then
+/// moves the multipliers (shift ← shift + c, for inequalities max(0, shift + g)) and raises the
+/// penalty, by row, where the violation did not fall enough: Nocedal & Wright 2006, framework 17.3
+/// and algorithm 17.4; the shifts as in Toussaint 2014 (arXiv:1412.4329). Where Ω is not diagonal
+/// the penalty of an edge's rows is raised together. Rows of weight zero are no constraints.
+///
+/// Scale constraints by their Ω: the first penalty is Ω itself, and a value near the curvature of
+/// the cost needs the fewest rounds. Without constraints this is one run of the inner algorithm.
+
+#include <locograph/core/optimiser.h>
+
+#include <string>
+#include <vector>
+
+namespace locograph {
+
+struct ConstrainedOptions {
+  ConstrainedOptions() {
+    inner.gain = 1e-14;
+    inner.max_iterations = 200;
+  }
+  /// Of every round. Its deadline and callback hold for the whole run.
+  OptimiserOptions inner;
+  int max_rounds = 50;
+  /// Largest violation of a row at convergence, in the unit of its error; for inequalities also the
+  /// largest distance from the boundary, in that unit, of a row that still has a multiplier.
+  double tolerance = 1e-8;
+  double initial_penalty = 1.0;  ///< factor on Ω
+  double growth = 10.0;          ///< of a penalty that is raised
+  double max_penalty = 1e10;     ///< factor on Ω; reached without effect: infeasible
+  /// A round must bring a row's violation below this fraction of what it was.
+  double decrease = 0.25;
+
+  /// Throws Error naming the option that is out of range.
+  void validate() const;
+};
+
+/// Where a constraint edge stands.
+struct ConstraintState {
+  EdgeId edge;
+  double violation = 0.0;  ///< of its worst row, in that row's unit: |c|, max(0, g)
+  int row = 0;             ///< the worst one
+  /// λ of Σ eᵀΩe + λᵀc, by row; zero for types that hinge by themselves.
+  std::vector<double> multipliers;
+};
+
+struct ConstrainedResult {
+  enum class Reason {
+    kConverged,
+    /// A violation stays at the largest penalty: no point near satisfies the constraints, or the
+    /// tolerance is finer than rounding allows. `worst` names one.
+    kInfeasible,
+    kMaxRounds,    ///< the rounds are used up
+    kInnerFailed,  ///< `inner` says why: singular, not finite, deadline, stopped
+  };
+  Reason reason = Reason::kMaxRounds;
+  bool converged = false;
+  int rounds = 0;
+  int iterations = 0;                        ///< of all rounds
+  Cost cost;                                 ///< of the edges that are no constraints
+  std::vector<ConstraintState> constraints;  ///< in the order of Problem::constraints()
+  int worst = -1;                            ///< of the constraints, -1 when there is none
+  OptimiserResult inner;                     ///< of the last round
+
+  /// Names the worst constraint by its tag and vertices.
+  std::string reason_text(const Graph& graph) const;
+};
+
+/// Compiles, optimises and writes the result back to the graph.
+ConstrainedResult optimise_constrained(Graph& graph, const ConstrainedOptions& options,
+                                       LinearSolver& solver);
+
+/// The same on a compiled problem. The workspace holds the initial state (load_state()); `warm`
+/// keeps the multipliers and penalties of the last call, for a problem that changed little.
+ConstrainedResult optimise_constrained(Workspace& workspace, const ConstrainedOptions& options,
+                                       LinearSolver& solver, bool warm = false);
+
+}  // namespace locograph
