@@ -76,6 +76,7 @@ void Optimiser::start(Workspace& workspace, LinearSolver& solver) {
   radius_ = options_.initial_radius;
   const int n = workspace.problem().dimension();
   diagonal_.resize(n);
+  scaling_.assign(n, 0.0);
   newton_step_.resize(n);
   negative_gradient_.resize(n);
   solver.analyse(workspace.problem().pattern());
@@ -179,12 +180,13 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
     lambda_unit_ = options_.scale_by_diagonal ? 1.0 : map(diagonal_).maxCoeff();
     lambda_ = options_.initial_lambda * lambda_unit_;
   }
+  map(scaling_) = map(scaling_).cwiseMax(map(diagonal_));
   bool factorised = false;
   for (; now.refusals < options_.max_refusals; ++now.refusals) {
     now.lambda = lambda_;
     Vector damping = map(workspace_->damping());
     if (options_.scale_by_diagonal) {
-      damping = lambda_ * map(diagonal_).cwiseMax(1e-9).cwiseMin(1e32);
+      damping = lambda_ * map(scaling_).cwiseMax(1e-9).cwiseMin(1e32);
     } else {
       damping.setConstant(lambda_);
     }

@@ -45,7 +45,9 @@ struct OptimiserOptions {
   /// A refused step makes λ at least this fraction: the customary first value where the model is
   /// not to be trusted.
   double refused_lambda = 1e-5;
-  /// Damp by λ·diag(H) (Marquardt 1963) instead of λ·I; the two options above are then λ itself.
+  /// Damp by λ·D instead of λ·I, D the largest that each diagonal entry of H has been so far:
+  /// independent of the units of the variables (Marquardt 1963), and a direction that is flat just
+  /// now does not run away (Moré 1978, section 6). The two options above are then λ itself.
   bool scale_by_diagonal = false;
   /// First trust-region radius of the dogleg, in units of the tangent.
   double initial_radius = 1e4;
@@ -123,7 +125,7 @@ class Optimiser {
   OptimiserResult result_;
   Cost cost_;
   double lambda_ = 0.0, lambda_unit_ = 1.0, lambda_growth_ = 2.0, radius_ = 0.0;
-  std::vector<double> diagonal_, newton_step_, negative_gradient_;
+  std::vector<double> diagonal_, scaling_, newton_step_, negative_gradient_;
 };
 
 /// Compiles, optimises and writes the result back to the graph. Vertices that are fixed stay. The
