@@ -6,7 +6,10 @@
 /// dense           Cholesky of the whole matrix: a few dozen scalar rows
 /// banded          block band, natural order: trajectories, moving horizons
 /// block-cholesky  block-sparse, minimum-degree order on the block pattern: pose graphs
-/// auto            the cheapest of the three by estimated cost, decided in analyse()
+/// pcg             conjugate gradients, block-Jacobi preconditioner: what no factor fits
+/// schur           vertices marked for elimination first; schur-dense, schur-sparse and schur-pcg
+///                 name the solver of what is left, schur chooses it
+/// auto            the cheapest of the direct ones by estimated cost, decided in analyse()
 
 #include <locograph/core/linear_solver.h>
 
