@@ -4,6 +4,8 @@
 #include <locograph/solvers/dense_solver.h>
 #include <locograph/solvers/eigen_solver.h>
 #include <locograph/solvers/linear_solvers.h>
+#include <locograph/solvers/pcg_solver.h>
+#include <locograph/solvers/schur_solver.h>
 #if LOCOGRAPH_HAVE_CHOLMOD
 #include <locograph/solvers/cholmod_solver.h>
 #endif
@@ -24,6 +26,7 @@ class AutoSolver final : public LinearSolver {
     const double n = pattern.scalar_size();
     const double dense = n * n * n / 6.0;
     const double banded = BandedSolver::cost(pattern);
+    if (choose_schur(pattern)) return;
     if (dense <= 50e3 || (pattern.size() <= 2)) {
       chosen_ = std::make_unique<DenseSolver>();
     } else {
@@ -52,6 +55,23 @@ class AutoSolver final : public LinearSolver {
   int failed_row() const override { return chosen_ ? chosen_->failed_row() : -1; }
 
  private:
+  /// Vertices marked for elimination are eliminated when that costs little more than reading H, or
+  /// less than a factor of the whole.
+  bool choose_schur(const BlockPattern& pattern) {
+    if (pattern.kept >= pattern.size() || tied_eliminated_rows(pattern).first >= 0) return false;
+    auto schur = std::make_unique<SchurSolver>();
+    schur->use_threads(threads_);
+    schur->analyse(pattern);
+    if (schur->cost() > 50.0 * static_cast<double>(pattern.values())) {
+      BlockCholesky sparse;
+      sparse.analyse(pattern);
+      // Kernels of compile-time size run at twice the speed of a general factorisation.
+      if (schur->cost() > 2.0 * sparse.multiply_adds()) return false;
+    }
+    chosen_ = std::move(schur);
+    return true;
+  }
+
   BlockPattern pattern_;
   std::unique_ptr<LinearSolver> chosen_;
   ThreadPool* threads_ = nullptr;
@@ -65,7 +85,7 @@ std::vector<std::string> linear_solver_names() {
 #if LOCOGRAPH_HAVE_CHOLMOD
         "cholmod",
 #endif
-        "dense", "eigen"
+        "dense", "eigen", "pcg", "schur", "schur-dense", "schur-pcg", "schur-sparse"
   };
 }
 
@@ -78,6 +98,12 @@ std::unique_ptr<LinearSolver> make_linear_solver(const std::string& name) {
 #endif
   if (name == "eigen") return std::make_unique<EigenSolver>();
   if (name == "dense") return std::make_unique<DenseSolver>();
+  if (name == "pcg") return std::make_unique<PcgSolver>();
+  using Reduced = SchurSolver::Reduced;
+  if (name == "schur") return std::make_unique<SchurSolver>();
+  if (name == "schur-dense") return std::make_unique<SchurSolver>(Reduced::kDense);
+  if (name == "schur-sparse") return std::make_unique<SchurSolver>(Reduced::kSparse);
+  if (name == "schur-pcg") return std::make_unique<SchurSolver>(Reduced::kPcg);
   std::string all;
   for (const std::string& known : linear_solver_names()) all += (all.empty() ? "" : ", ") + known;
   throw Error("unknown linear solver '" + name + "'", "one of " + all);

@@ -6,7 +6,10 @@
 /// dense           Cholesky of the whole matrix: a few dozen scalar rows
 /// banded          block band, natural order: trajectories, moving horizons
 /// block-cholesky  block-sparse, supernodal, for everything else: pose graphs
-/// auto            the cheapest of the three by estimated cost, decided in analyse()
+/// schur           vertices marked for elimination first; schur-dense, schur-sparse and schur-pcg
+///                 name the solver of what is left, schur chooses it
+/// pcg             conjugate gradients, block-Jacobi preconditioner: what no factor fits
+/// auto            the cheapest of the direct ones by estimated cost, decided in analyse()
 /// eigen           Eigen::SimplicialLLT, to compare with
 /// cholmod         CHOLMOD, if it was there when this was built; GPL, never chosen by auto
 

@@ -6,6 +6,7 @@ TypeRegistry standard_types() {
   TypeRegistry types;
   add_slam2d_types(types);
   add_slam3d_types(types);
+  add_bundle_types(types);
   return types;
 }
 

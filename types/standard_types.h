@@ -10,5 +10,6 @@ namespace locograph {
 TypeRegistry standard_types();
 void add_slam2d_types(TypeRegistry& types);
 void add_slam3d_types(TypeRegistry& types);
+void add_bundle_types(TypeRegistry& types);
 
 }  // namespace locograph

@@ -54,6 +54,14 @@ std::vector<Case> cases() {
   return all;
 }
 
+/// Those that factorise. Conjugate gradients are as exact as asked, and see an indefinite matrix
+/// only where a diagonal block is: pcg_solver_test.cpp and schur_solver_test.cpp.
+std::vector<std::string> direct_solver_names() {
+  std::vector<std::string> names = linear_solver_names();
+  std::erase_if(names, [](const std::string& name) { return name.ends_with("pcg"); });
+  return names;
+}
+
 class EverySolver : public testing::TestWithParam<std::tuple<std::string, Case>> {
  protected:
   std::unique_ptr<LinearSolver> solver() const {
@@ -65,7 +73,7 @@ class EverySolver : public testing::TestWithParam<std::tuple<std::string, Case>>
   }
 };
 INSTANTIATE_TEST_SUITE_P(LinearSolvers, EverySolver,
-                         testing::Combine(testing::ValuesIn(linear_solver_names()),
+                         testing::Combine(testing::ValuesIn(direct_solver_names()),
                                           testing::ValuesIn(cases())),
                          [](const auto& info) {
                            std::string solver = std::get<0>(info.param);
@@ -165,7 +173,7 @@ TEST_P(EverySolver, NamesABlockOfZeros) {
 }
 
 class EverySolverName : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(LinearSolvers, EverySolverName, testing::ValuesIn(linear_solver_names()),
+INSTANTIATE_TEST_SUITE_P(LinearSolvers, EverySolverName, testing::ValuesIn(direct_solver_names()),
                          [](const auto& info) {
                            std::string name = info.param;
                            std::erase(name, '-');

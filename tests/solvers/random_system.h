@@ -65,6 +65,7 @@ inline BlockPattern make_pattern(Pairs pairs, const std::vector<int>& dimension)
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   BlockPattern pattern;
   pattern.dimension = dimension;
+  pattern.kept = n;
   pattern.scalar_begin.assign(1, 0);
   for (const int d : dimension) pattern.scalar_begin.push_back(pattern.scalar_begin.back() + d);
   pattern.column_begin.assign(n + 1, 0);

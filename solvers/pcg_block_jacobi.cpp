@@ -1,0 +1,100 @@
+#include <locograph/solvers/dense_kernels.h>
+#include <locograph/solvers/pcg_block_jacobi.h>
+#include <locograph/solvers/pcg_iteration.h>
+
+#include <algorithm>
+
+namespace locograph {
+namespace {
+
+constexpr int kTasks = 64;
+
+template <int N>
+void multiply(const double* __restrict a, [[maybe_unused]] int size, const double* __restrict x,
+              double* __restrict y) {
+  const int n = N > 0 ? N : size;
+  for (int i = 0; i < n; ++i) y[i] = 0.0;
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) y[i] += a[j * n + i] * x[j];
+  }
+}
+
+}  // namespace
+
+void BlockJacobi::analyse(const BlockPattern& pattern) {
+  pattern_ = &pattern;
+  const int n = pattern.size();
+  place_.assign(1, 0);
+  widest_ = 0;
+  for (const int d : pattern.dimension) {
+    place_.push_back(place_.back() + std::int64_t{d} * d);
+    widest_ = std::max(widest_, d);
+  }
+  blocks_.resize(place_.back());
+  const int tasks = std::max(1, std::min(kTasks, n / 16));
+  task_begin_.clear();
+  for (int t = 0; t <= tasks; ++t) {
+    task_begin_.push_back(static_cast<int>(std::int64_t{n} * t / tasks));
+  }
+  failed_.resize(tasks);
+  work_.resize(static_cast<std::size_t>(tasks) * widest_ * widest_);
+}
+
+void BlockJacobi::load(const double* values, const double* damping) {
+  const BlockPattern& p = *pattern_;
+  for (int c = 0; c < p.size(); ++c) {
+    const int n = p.dimension[c];
+    double* block = blocks_.data() + place_[c];
+    std::copy_n(values + p.value_offset[p.column_begin[c + 1] - 1], n * n, block);
+    for (int i = 0; i < n; ++i) block[i * n + i] += damping[p.scalar_begin[c] + i];
+  }
+}
+
+int BlockJacobi::invert_range(int begin, int end, double* work) {
+  for (int c = begin; c < end; ++c) {
+    const int n = pattern_->dimension[c];
+    double* block = blocks_.data() + place_[c];
+    std::copy_n(block, n * n, work);
+    if (cholesky_in_place(work, n, n, n) >= 0) return c;
+    std::fill_n(block, n * n, 0.0);
+    for (int j = 0; j < n; ++j) {
+      block[j * n + j] = 1.0;
+      solve_lower(work, n, n, block + j * n);
+      solve_lower_transposed(work, n, n, block + j * n);
+    }
+  }
+  return -1;
+}
+
+int BlockJacobi::invert(ThreadPool* threads) {
+  const int tasks = static_cast<int>(task_begin_.size()) - 1;
+  run_chunks(threads, tasks, [&](int t) {
+    failed_[t] = invert_range(task_begin_[t], task_begin_[t + 1],
+                              work_.data() + static_cast<std::ptrdiff_t>(t) * widest_ * widest_);
+  });
+  for (const int failed : failed_) {
+    if (failed >= 0) return failed;
+  }
+  return -1;
+}
+
+void BlockJacobi::apply(const double* r, double* z, ThreadPool* threads) const {
+  const BlockPattern& p = *pattern_;
+  run_chunks(threads, static_cast<int>(task_begin_.size()) - 1, [&](int t) {
+    for (int c = task_begin_[t]; c < task_begin_[t + 1]; ++c) {
+      const int n = p.dimension[c], at = p.scalar_begin[c];
+      const double* block = blocks_.data() + place_[c];
+      if (n == 3) {
+        multiply<3>(block, n, r + at, z + at);
+      } else if (n == 6) {
+        multiply<6>(block, n, r + at, z + at);
+      } else if (n == 9) {
+        multiply<9>(block, n, r + at, z + at);
+      } else {
+        multiply<0>(block, n, r + at, z + at);
+      }
+    }
+  });
+}
+
+}  // namespace locograph
