@@ -1,4 +1,5 @@
 #include <locograph/apps/check_command.h>
+#include <locograph/apps/graph_types.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_file.h>
 #include <locograph/common/deadline.h>
@@ -6,6 +7,7 @@
 #include <CLI/Validators.hpp>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace locograph {
 namespace {
@@ -13,6 +15,7 @@ namespace {
 struct CommandOptions {
   std::string input, map, obstacles;
   double clearance_m = 0.0;
+  std::vector<std::string> plugins;
   int threads = 1;
   bool json = false;
 };
@@ -63,7 +66,7 @@ void print_summary(const PlanFile& file, const CheckReport& report) {
 
 ExitCode check(const CommandOptions& options) {
   const Stopwatch total;
-  const PlanFile file = load_plan(options.input);
+  const PlanFile file = load_plan(options.input, options.plugins);
   const LoadedWorld world = load_world(world_of(file, options.map, options.obstacles));
   CheckOptions limits;
   limits.min_clearance_m = options.clearance_m;
@@ -102,6 +105,7 @@ Command add_check(CLI::App& app) {
   parser->add_option("--threads", o.threads, "Most threads to use (this version uses one)")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  add_plugin_option(*parser, o.plugins);
   parser->add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] { return check(*options); }};
 }

@@ -35,16 +35,16 @@ std::string root_element(const std::string& text) {
 
 }  // namespace
 
-Json describe_file(const std::filesystem::path& path) {
+Json describe_file(const std::filesystem::path& path, const TypeRegistry& types) {
   const std::string text = beginning(path);
   const std::string extension = path.extension().string();
-  if (extension == ".g2o") return describe_graph(path);
+  if (extension == ".g2o") return describe_graph(path, types);
   if (extension == ".urdf") return describe_robot(path);
   if (extension == ".bt" || extension == ".ot" || text.starts_with("# Octomap")) {
     return describe_map(path);
   }
   const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
-  if (first == std::string::npos || text[first] != '<') return describe_graph(path);
+  if (first == std::string::npos || text[first] != '<') return describe_graph(path, types);
   const std::string root = root_element(text);
   if (root == "obstacles") return describe_obstacles(path);
   if (root == "robot" && extension == ".srdf") {

@@ -1,5 +1,4 @@
 #include <locograph/apps/describe.h>
-#include <locograph/apps/graph_types.h>
 #include <locograph/core/connectivity.h>
 #include <locograph/core/graph_file.h>
 
@@ -53,9 +52,9 @@ Json edges_json(const Graph& graph) {
 
 }  // namespace
 
-Json describe_graph(const std::filesystem::path& path) {
+Json describe_graph(const std::filesystem::path& path, const TypeRegistry& types) {
   ReadReport report;
-  const Graph graph = read_graph(path, graph_types(), {.lenient = true}, &report);
+  const Graph graph = read_graph(path, types, {.lenient = true}, &report);
   if (graph.vertex_count() == 0 && !report.unknown.empty()) {
     throw Error(path.string(), 0,
                 "no line is a known vertex or edge; the first: " + report.unknown.front(), "");

@@ -1,17 +1,26 @@
 #pragma once
-/// The types that the commands know in a graph file.
+/// The types that the commands know in a graph file, plug-ins (--plugin) included.
 ///
-///     Graph graph = read_graph("plan.g2o", graph_types());
+///     std::vector<std::string> plugins;
+///     add_plugin_option(*parser, plugins);
+///     …
+///     Graph graph = read_graph("plan.g2o", graph_types(plugins));
+///
+/// A plug-in is a path, or a bare name that is looked for in `lib/locograph` beside the folder of
+/// the running program or beside one of those above it: build/lib/locograph for build/bin.
 
-#include <locograph/plugins/robot_types.h>
-#include <locograph/types/standard_types.h>
+#include <locograph/core/type_registry.h>
+
+#include <CLI/App.hpp>
+#include <string>
+#include <vector>
 
 namespace locograph {
 
-inline TypeRegistry graph_types() {
-  TypeRegistry types = standard_types();
-  add_robot_types(types);
-  return types;
-}
+/// Throws Error for a plug-in that cannot be found or loaded.
+TypeRegistry graph_types(const std::vector<std::string>& plugins = {});
+
+/// Adds `--plugin LIB.so`, which may be given many times. plugins must outlive the parsing.
+void add_plugin_option(CLI::App& parser, std::vector<std::string>& plugins);
 
 }  // namespace locograph

@@ -24,8 +24,9 @@ std::vector<std::string> robot_names() {
   return names;
 }
 
-std::vector<std::string> names_of(const std::string& what) {
-  if (what == "types") return graph_types().tags();
+std::vector<std::string> names_of(const std::string& what,
+                                  const std::vector<std::string>& plugins) {
+  if (what == "types") return graph_types(plugins).tags();
   if (what == "solvers") return linear_solver_names();
   if (what == "kernels") return RobustKernel::names();
   if (what == "robots") return robot_names();
@@ -36,14 +37,20 @@ std::vector<std::string> names_of(const std::string& what) {
 }  // namespace
 
 Command add_list(CLI::App& app) {
-  const auto what = std::make_shared<std::string>();
+  struct Options {
+    std::string what;
+    std::vector<std::string> plugins;
+  };
+  const auto options = std::make_shared<Options>();
   CLI::App* parser = app.add_subcommand("list", "What is registered, one name per line");
-  parser->add_option("WHAT", *what, "types, solvers, kernels, robots or scenarios")
+  parser->add_option("WHAT", options->what, "types, solvers, kernels, robots or scenarios")
       ->required()
       ->check(CLI::IsMember({"types", "solvers", "kernels", "robots", "scenarios"}));
-  return {parser, [what] {
+  add_plugin_option(*parser, options->plugins);
+  return {parser, [options] {
             std::string text;
-            for (const std::string& name : names_of(*what)) text += name + '\n';
+            for (const std::string& name : names_of(options->what, options->plugins))
+              text += name + '\n';
             print_text(text);
             return kDone;
           }};

@@ -53,7 +53,7 @@ Json cycle_json(const PlanFile& file, const CycleReport& cycle) {
 }
 
 void run(const LiveJob& job, LiveChannel& channel) {
-  PlanFile file = load_plan(job.plan);
+  PlanFile file = load_plan(job.plan, job.plugins);
   const LoadedWorld world = load_world(world_of(file, job.map, job.obstacles));
   const WorldDistance seen = seen_world(file, world);
   send(channel, {{"type", "start"},

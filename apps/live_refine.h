@@ -6,13 +6,15 @@
 #include <locograph/apps/live_server.h>
 
 #include <string>
+#include <vector>
 
 namespace locograph {
 
 struct LiveJob {
   std::string plan, map, obstacles;  ///< files; map and obstacles as `refine` takes them
   int horizon = 20;
-  double speed = 1.0;  ///< 2: twice as fast as the plan's time stamps say
+  double speed = 1.0;                ///< 2: twice as fast as the plan's time stamps say
+  std::vector<std::string> plugins;  ///< as graph_types()
 };
 
 /// Returns when the plan is at its end or the channel is closed. Bad input goes to the channel as

@@ -17,6 +17,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace locograph {
 namespace {
@@ -29,6 +30,7 @@ struct OptimizeOptions {
   std::string initial_guess = "none";
   OptimiserOptions optimiser;
   int threads = 1;
+  std::vector<std::string> plugins;
   bool lenient = false, json = false;
 
   std::string input_name() const { return input == "-" ? "stdin" : input; }
@@ -46,13 +48,14 @@ const std::map<std::string, Algorithm> kAlgorithms = {
 
 Graph load(const OptimizeOptions& options, ReadReport& report) {
   const ReadOptions read = {.lenient = options.lenient};
+  const TypeRegistry types = graph_types(options.plugins);
   Graph graph;
   if (options.input == "-") {
     const std::string text((std::istreambuf_iterator<char>(std::cin)),
                            std::istreambuf_iterator<char>());
-    graph = read_graph_text(text, options.input_name(), ".", graph_types(), read, &report);
+    graph = read_graph_text(text, options.input_name(), ".", types, read, &report);
   } else {
-    graph = read_graph(options.input, graph_types(), read, &report);
+    graph = read_graph(options.input, types, read, &report);
   }
   if (graph.vertex_count() == 0) {
     throw Error(options.input_name(), 0, "holds no vertex of a known type", "VERTEX_… lines");
@@ -246,6 +249,7 @@ Command add_optimize(CLI::App& app) {
   parser->add_option("--threads", o.threads, "Most threads to use; the result never depends on it")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
+  add_plugin_option(*parser, o.plugins);
   parser->add_flag(
       "--lenient", o.lenient,
       "Leave out unknown tags, project indefinite information, hold unconnected parts");

@@ -23,10 +23,10 @@ CollisionWorldOptions collision_options(const PlanFile& file) {
 
 }  // namespace
 
-PlanFile load_plan(const std::string& file) {
+PlanFile load_plan(const std::string& file, const std::vector<std::string>& plugins) {
   PlanFile result;
   result.name = file;
-  result.graph = read_graph(file, graph_types());
+  result.graph = read_graph(file, graph_types(plugins));
   try {
     result.plan = plan_of(result.graph);
   } catch (const Error& error) {

@@ -24,8 +24,8 @@ struct PlanFile {
   Plan plan;
 };
 
-/// Throws Error naming the file when it is unusable or holds no plan.
-PlanFile load_plan(const std::string& file);
+/// plugins: as graph_types(). Throws Error naming the file when it is unusable or holds no plan.
+PlanFile load_plan(const std::string& file, const std::vector<std::string>& plugins = {});
 
 /// Files that describe a world; empty: none.
 struct WorldFiles {

@@ -13,6 +13,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace locograph {
 
@@ -37,9 +38,11 @@ class PlotScript {
 };
 
 /// The diagram of a result: JSON of optimize, refine or check, a plan (.g2o) or a table (.csv).
-/// Throws Error when the file is none of these.
-PlotScript plot_result(const std::filesystem::path& result);
-PlotScript plot_plan(const std::filesystem::path& plan);
+/// Throws Error when the file is none of these. plugins: for a plan, as graph_types().
+PlotScript plot_result(const std::filesystem::path& result,
+                       const std::vector<std::string>& plugins = {});
+PlotScript plot_plan(const std::filesystem::path& plan,
+                     const std::vector<std::string>& plugins = {});
 PlotScript plot_table(const std::filesystem::path& table);
 
 }  // namespace locograph

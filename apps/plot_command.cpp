@@ -1,20 +1,23 @@
+#include <locograph/apps/graph_types.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/plot.h>
 #include <locograph/apps/plot_command.h>
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace locograph {
 namespace {
 
 struct CommandOptions {
   std::string input, output;
+  std::vector<std::string> plugins;
 };
 
 ExitCode plot(const CommandOptions& options) {
   check_writable(options.output);
-  plot_result(options.input).write(options.output);
+  plot_result(options.input, options.plugins).write(options.output);
   print_text("written: " + options.output + '\n');
   return kDone;
 }
@@ -30,6 +33,7 @@ Command add_plot(CLI::App& app) {
                    "JSON of optimize, refine or check, a plan (.g2o) or a table (.csv)")
       ->required();
   parser->add_option("-o,--output", o.output, "Diagram to write (.svg)")->required();
+  add_plugin_option(*parser, o.plugins);
   return {parser, [options] { return plot(*options); }};
 }
 

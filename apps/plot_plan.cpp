@@ -110,8 +110,8 @@ void add_base_path(PlotScript& plot, const Motion& motion) {
 
 }  // namespace
 
-PlotScript plot_plan(const std::filesystem::path& file) {
-  const PlanFile plan = load_plan(file.string());
+PlotScript plot_plan(const std::filesystem::path& file, const std::vector<std::string>& plugins) {
+  const PlanFile plan = load_plan(file.string(), plugins);
   const Robot& robot = *plan.plan.robot->robot;
   const Motion motion = motion_of(plan.graph, plan.plan);
   if (motion.configurations.size() < 2) {

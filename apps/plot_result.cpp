@@ -195,8 +195,9 @@ PlotScript constraints(const Json& result) {
 
 }  // namespace
 
-PlotScript plot_result(const std::filesystem::path& result) {
-  if (result.extension() == ".g2o") return plot_plan(result);
+PlotScript plot_result(const std::filesystem::path& result,
+                       const std::vector<std::string>& plugins) {
+  if (result.extension() == ".g2o") return plot_plan(result, plugins);
   if (result.extension() == ".csv") return plot_table(result);
   const std::string expected =
       "JSON that optimize, refine or check printed with --json, a plan (.g2o) or a table (.csv)";

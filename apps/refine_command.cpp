@@ -1,3 +1,4 @@
+#include <locograph/apps/graph_types.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_file.h>
 #include <locograph/apps/progress.h>
@@ -8,6 +9,7 @@
 #include <CLI/Validators.hpp>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace locograph {
 namespace {
@@ -16,6 +18,7 @@ struct CommandOptions {
   std::string input, output, map, obstacles;
   int horizon = 20;
   double deadline_ms = 0.0;
+  std::vector<std::string> plugins;
   int threads = 1;
   bool json = false;
 };
@@ -74,7 +77,7 @@ ExitCode refine_plan(const CommandOptions& options) {
   refine_options.planner.horizon = options.horizon;
   refine_options.planner.deadline_s = 1e-3 * options.deadline_ms;
   refine_options.planner.validate();
-  PlanFile file = load_plan(options.input);
+  PlanFile file = load_plan(options.input, options.plugins);
   const WorldFiles files = world_of(file, options.map, options.obstacles);
   const LoadedWorld world = load_world(files);
   const Stopwatch watch;
@@ -133,6 +136,7 @@ Command add_refine(CLI::App& app) {
   parser->add_option("--threads", o.threads, "Most threads to use (this version uses one)")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  add_plugin_option(*parser, o.plugins);
   parser->add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] { return refine_plan(*options); }};
 }

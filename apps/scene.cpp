@@ -61,7 +61,8 @@ Json pose_json(const Eigen::Isometry3d& pose) {
 Json make_scene(const std::string& file, const SceneOptions& options) {
   if (std::filesystem::path(file).extension() == ".urdf") return standing_scene(file, options);
   ReadReport report;
-  Graph graph = read_graph(file, graph_types(), {.lenient = options.lenient}, &report);
+  Graph graph =
+      read_graph(file, graph_types(options.plugins), {.lenient = options.lenient}, &report);
   if (!has_configurations(graph)) return pose_graph_scene(std::move(graph), file, options);
   PlanFile plan;
   plan.name = file;

@@ -15,18 +15,20 @@
 
 #include <Eigen/Geometry>
 #include <string>
+#include <vector>
 
 namespace locograph {
 
 struct SceneOptions {
-  std::string map, obstacles;  ///< instead of the plan's own world
-  bool check = true;           ///< judge the plan and show what is wrong with it
-  int executed = -1;           ///< show the plan as when the robot is here; -1: as a whole
-  int window = 20;             ///< configurations that are being refined then
-  bool optimize = false;       ///< pose graphs: show them before and after
-  bool lenient = false;        ///< as ReadOptions::lenient
-  std::string srdf;            ///< robots: instead of the file beside the URDF
-  std::string state;           ///< robots: group_state to stand in; "": home or another one
+  std::string map, obstacles;        ///< instead of the plan's own world
+  bool check = true;                 ///< judge the plan and show what is wrong with it
+  int executed = -1;                 ///< show the plan as when the robot is here; -1: as a whole
+  int window = 20;                   ///< configurations that are being refined then
+  bool optimize = false;             ///< pose graphs: show them before and after
+  std::vector<std::string> plugins;  ///< as graph_types()
+  bool lenient = false;              ///< as ReadOptions::lenient
+  std::string srdf;                  ///< robots: instead of the file beside the URDF
+  std::string state;                 ///< robots: group_state to stand in; "": home or another one
 };
 
 /// file: a graph (.g2o) or a robot (.urdf).

@@ -1,4 +1,5 @@
 #include <locograph/apps/child_process.h>
+#include <locograph/apps/graph_types.h>
 #include <locograph/apps/live_refine.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/page_picture.h>
@@ -26,8 +27,8 @@ ExitCode serve(const CommandOptions& options, Json scene) {
     throw Error(options.input, 0, "--serve has nothing to run", "a plan (.g2o)");
   }
   scene["live"] = "/live";
-  const LiveJob job = {options.input, options.scene.map, options.scene.obstacles,
-                       options.scene.window, options.speed};
+  const LiveJob job = {options.input,        options.scene.map, options.scene.obstacles,
+                       options.scene.window, options.speed,     options.scene.plugins};
   LiveServer server(options.port, scene_page(scene),
                     [job](LiveChannel& channel) { live_refine(job, channel); });
   if (options.json) {
@@ -129,6 +130,7 @@ Command add_view(CLI::App& app) {
       ->capture_default_str();
   parser->add_flag("--no-check", o.no_check, "Do not judge the plan");
   parser->add_flag("--optimize", o.scene.optimize, "Pose graphs: show before and after");
+  add_plugin_option(*parser, o.scene.plugins);
   parser->add_flag("--lenient", o.scene.lenient,
                    "Leave out unknown tags, project indefinite information");
   parser->add_option("--srdf", o.scene.srdf, "Robots: the SRDF, if not beside the URDF");

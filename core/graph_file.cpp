@@ -155,8 +155,15 @@ class GraphReader {
   int edge_pool_of(const TypeRegistry::MakeEdgePool& make) {
     const auto known = edge_pool_of_type_.find(&make);
     if (known != edge_pool_of_type_.end()) return known->second;
-    graph_.edge_pools_.push_back(make());
-    return edge_pool_of_type_[&make] = static_cast<int>(graph_.edge_pools_.size()) - 1;
+    std::unique_ptr<EdgePool> fresh = make();
+    // Two tags may stand for one type.
+    int number = 0;
+    for (const auto& pool : graph_.edge_pools_) {
+      if (pool->type() == fresh->type()) return edge_pool_of_type_[&make] = number;
+      ++number;
+    }
+    graph_.edge_pools_.push_back(std::move(fresh));
+    return edge_pool_of_type_[&make] = number;
   }
 
   void read_edge(const Line& line, FieldReader& in) {

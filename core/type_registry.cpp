@@ -23,6 +23,15 @@ void TypeRegistry::check_free(const std::string& tag) const {
   }
 }
 
+void TypeRegistry::check_new(const std::string& tag, std::type_index type,
+                             std::map<std::type_index, std::string>& tags) {
+  const auto [known, added] = tags.emplace(type, tag);
+  if (!added && known->second != tag) {
+    throw Error("the classes of " + tag + " and " + known->second + " have the same name",
+                "one tag for each class (aliases aside)");
+  }
+}
+
 void TypeRegistry::add_vertex(const std::string& tag, std::type_index type,
                               std::function<std::unique_ptr<VertexPool>()> make) {
   check_free(tag);
@@ -31,6 +40,11 @@ void TypeRegistry::add_vertex(const std::string& tag, std::type_index type,
 void TypeRegistry::add_edge(const std::string& tag, MakeEdgePool make) {
   check_free(tag);
   edges_.emplace(tag, std::move(make));
+}
+void TypeRegistry::add_edge_alias(const std::string& alias, const std::string& tag) {
+  const MakeEdgePool* known = edge_type(tag);
+  if (known == nullptr) throw Error("unknown edge type " + tag, "a type that was added before");
+  add_edge(alias, MakeEdgePool(*known));
 }
 void TypeRegistry::add_parameter(const std::string& tag, MakeParameter make) {
   check_free(tag);

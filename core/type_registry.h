@@ -7,8 +7,8 @@
 ///     types.add_parameter<PoseOffset>("PARAMS_SE3OFFSET");
 ///     Graph graph = read_graph("map.g2o", types);
 ///
-/// A value: made where it is needed and passed on; there is no global registry. A tag that is taken
-/// is an Error.
+/// A value: made where it is needed and passed on; there is no global registry. A tag or a type
+/// that is taken is an Error. Libraries loaded at run time add theirs by plugin_library.h.
 
 #include <locograph/core/typed_edge_pool.h>
 
@@ -24,7 +24,9 @@ class TypeRegistry {
  public:
   template <class V>
   void add_vertex() {
-    add_vertex(std::string(locograph_tag(static_cast<const V*>(nullptr))), typeid(V),
+    const std::string tag(locograph_tag(static_cast<const V*>(nullptr)));
+    check_new(tag, typeid(V), vertex_tags_);
+    add_vertex(tag, typeid(V),
                [] { return std::unique_ptr<VertexPool>(std::make_unique<TypedVertexPool<V>>()); });
   }
   /// A second tag for V; a vertex read under it is written under it.
@@ -35,8 +37,14 @@ class TypeRegistry {
   }
   template <class E>
   void add_edge() {
-    add_edge(std::string(locograph_tag(static_cast<const E*>(nullptr))),
-             [] { return std::unique_ptr<EdgePool>(std::make_unique<TypedEdgePool<E>>()); });
+    const std::string tag(locograph_tag(static_cast<const E*>(nullptr)));
+    check_new(tag, typeid(E), edge_tags_);
+    add_edge(tag, [] { return std::unique_ptr<EdgePool>(std::make_unique<TypedEdgePool<E>>()); });
+  }
+  /// A second tag for E, which was added before; an edge read under it is written under E's own.
+  template <class E>
+  void add_edge_alias(const std::string& tag) {
+    add_edge_alias(tag, std::string(locograph_tag(static_cast<const E*>(nullptr))));
   }
   template <class P>
   void add_parameter(const std::string& tag) {
@@ -60,12 +68,18 @@ class TypeRegistry {
   void add_vertex(const std::string& tag, std::type_index type,
                   std::function<std::unique_ptr<VertexPool>()> make);
   void add_edge(const std::string& tag, MakeEdgePool make);
+  void add_edge_alias(const std::string& alias, const std::string& tag);
   void add_parameter(const std::string& tag, MakeParameter make);
   void check_free(const std::string& tag) const;
+  /// Pools tell types apart by std::type_index, that is by name: two libraries may each have a
+  /// class of the same name, but not in one registry.
+  static void check_new(const std::string& tag, std::type_index type,
+                        std::map<std::type_index, std::string>& tags);
 
   std::map<std::string, VertexType> vertices_;
   std::map<std::string, MakeEdgePool> edges_;
   std::map<std::string, MakeParameter> parameters_;
+  std::map<std::type_index, std::string> vertex_tags_, edge_tags_;  ///< of the types themselves
 };
 
 }  // namespace locograph

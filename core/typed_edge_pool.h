@@ -2,6 +2,7 @@
 /// The edge pool of one concrete type: include it where a type is registered or added to a graph.
 
 #include <locograph/core/edge_evaluation.h>
+#include <locograph/core/edge_line.h>
 #include <locograph/core/information.h>
 
 namespace locograph {
@@ -166,48 +167,13 @@ class TypedEdgePool final : public EdgePool {
     } else {
       std::copy(vertices.begin(), vertices.end(), edge.vertices.begin());
     }
-    int dimension = kD;
-    if constexpr (E::kDynamicArity || kD == Eigen::Dynamic) {
-      dimension = in.integer();
-      if (dimension < 1 || (kD != Eigen::Dynamic && dimension != kD)) {
-        in.fail("error of size " + std::to_string(dimension),
-                kD == Eigen::Dynamic ? "a positive size" : "size " + std::to_string(kD));
-      }
-      // A digit and a blank for each number of Ω: do not reserve memory for what cannot follow.
-      if (!kHasWeights<E> && 1.0 * dimension * (dimension + 1) > 1.0 * in.characters_left() + 1.0) {
-        in.fail("too few fields for an error of size " + std::to_string(dimension),
-                "its information matrix");
-      }
-    }
-    if constexpr (requires { edge.resize(dimension); }) edge.resize(dimension);
-    read_fields(in, edge.fields());
-    if constexpr (kHasWeights<E>) {
-      read_weights(edge, dimension, in);
-    } else {
-      edge.information.resize(dimension, dimension);
-      for (int r = 0; r < dimension; ++r) {
-        for (int c = r; c < dimension; ++c) {
-          edge.information(r, c) = in.number();
-          edge.information(c, r) = edge.information(r, c);
-        }
-      }
-    }
+    detail::read_edge_line(edge, static_cast<int>(vertices.size()), in);
     edges.push_back(std::move(edge));
     return size() - 1;
   }
 
   void write(int index, FieldWriter& out) const override {
-    const E& edge = edges[index];
-    const int dimension = edge.dimension();
-    if constexpr (E::kDynamicArity || kD == Eigen::Dynamic) out.integer(dimension);
-    write_fields(out, const_cast<E&>(edge).fields());
-    if constexpr (kHasWeights<E>) {
-      write_weights(edge, out);
-    } else {
-      for (int r = 0; r < dimension; ++r) {
-        for (int c = r; c < dimension; ++c) out.number(edge.information(r, c));
-      }
-    }
+    detail::write_edge_line(edges[index], out);
   }
 
   void remove(int index) override {
@@ -246,24 +212,6 @@ class TypedEdgePool final : public EdgePool {
       const int d = detail::vertex_of<V>(own[s]).dimension();
       constrain_jacobian(rows, e, jacobian_map<V>(data[s], evaluator.dimension(), d));
     });
-  }
-
-  /// Weights in a file: `scalar w` when all are equal, `diagonal w…` otherwise.
-  static void read_weights(E& edge, int dimension, FieldReader& in) {
-    const std::string kind = in.word();
-    if (kind != "scalar" && kind != "diagonal") {
-      in.fail("weights begin with '" + kind + "'", "'scalar' or 'diagonal'");
-    }
-    edge.weights.resize(dimension);
-    for (int r = 0; r < dimension; ++r) {
-      edge.weights[r] = kind == "scalar" && r > 0 ? edge.weights[0] : in.number();
-      if (edge.weights[r] < 0.0) in.fail("a negative weight", "weights >= 0");
-    }
-  }
-  static void write_weights(const E& edge, FieldWriter& out) {
-    const bool scalar = (edge.weights.array() == edge.weights[0]).all();
-    out.word(scalar ? "scalar" : "diagonal");
-    for (int r = 0; r < (scalar ? 1 : edge.dimension()); ++r) out.number(edge.weights[r]);
   }
 
   template <class F>

@@ -39,6 +39,21 @@ cmake --build "$work/custom_edge"
 (cd "$work" && custom_edge/custom_edge out.g2o) || fail "custom_edge"
 grep -q '^RANGE_SE2_XY 0 1 ' "$work/out.g2o" || fail "the custom edge is not in the file"
 
+# A plug-in built out of the tree, with other flags than the command was, is loaded by it.
+for flags in "" "-march=native -O1 -fno-inline"; do
+  rm -rf "$work/plugin"
+  configure plugin "${nothing_else[@]}" "-DCMAKE_CXX_FLAGS=$flags"
+  cmake --build "$work/plugin"
+  (cd "$work" && prefix/bin/locograph optimize "$source/examples/plugin/beacons.g2o" \
+    --plugin plugin/range.so -o ranges.g2o) || fail "optimize with the plug-in '$flags'"
+  grep -Eq '^VERTEX_RANGE_BIAS 2 0\.2(5000|4999)' "$work/ranges.g2o" || fail "wrong bias"
+done
+# Installed beside the command, it is found by its name.
+mkdir -p "$work/prefix/lib/locograph"
+cp "$work/plugin/range.so" "$work/prefix/lib/locograph/"
+"$work/prefix/bin/locograph" list types --plugin range | grep -qx EDGE_BIASED_RANGE ||
+  fail "the plug-in is not found by its name"
+
 # A component whose libraries are missing is refused by name, one whose libraries are there works.
 configure make_map "${nothing_else[@]}" >"$work/log" 2>&1 && fail "world was found without octomap"
 grep -q 'component world needs: .*octomap' "$work/log" || fail "no clear message: $(cat "$work/log")"

@@ -35,12 +35,15 @@ class RandomLines {
   std::string vertex(const std::string& tag, int id) {
     const std::string head = tag + " " + std::to_string(id);
     const auto known = vertex_fields_.find(tag);
-    if (known != vertex_fields_.end()) return head + numbers(known->second, true);
+    if (known != vertex_fields_.end()) return with_shape(head, known->second);
     for (int fields = 1; fields < 64; ++fields) {
-      const std::string line = head + numbers(fields, true);
-      if (accepted(line)) {
-        vertex_fields_[tag] = fields;
-        return line;
+      for (int integers = 0; integers <= 2; ++integers) {
+        const VertexShape shape{fields, integers};
+        const std::string line = with_shape(head, shape);
+        if (accepted(line)) {
+          vertex_fields_[tag] = shape;
+          return line;
+        }
       }
     }
     throw std::runtime_error("no fields found for " + tag);
@@ -50,7 +53,7 @@ class RandomLines {
   /// last, that of the edge.
   std::vector<std::string> edge(const std::string& tag, int first_id) {
     const std::unique_ptr<EdgePool> pool = (*types_.edge_type(tag))();
-    const int arity = pool->arity() >= 0 ? pool->arity() : 4;
+    const int arity = pool->arity() >= 0 ? pool->arity() : kRunTimeArity;
     std::vector<std::string> lines;
     std::string head = tag, vertices;
     for (int i = 0; i < arity; ++i) {
@@ -75,7 +78,14 @@ class RandomLines {
   const TypeRegistry& types() const { return types_; }
 
  private:
+  static constexpr int kRunTimeArity = 4;
+
+  struct VertexShape {
+    int numbers = 0;
+    int integers = 0;  ///< that come last
+  };
   struct EdgeShape {
+    int count = 0;                ///< written where the arity is known at run time
     std::vector<int> parameters;  ///< numbers that come first
     int measurement = 0;
     int dimension = 0;
@@ -108,9 +118,14 @@ class RandomLines {
     }
     return all;
   }
+  std::string with_shape(const std::string& head, const VertexShape& shape) {
+    std::string line = head + numbers(shape.numbers, true);
+    for (int i = 0; i < shape.integers; ++i) line += " " + std::to_string(engine_() % 100);
+    return line;
+  }
   std::string with_shape(const std::string& head, const EdgeShape& shape, bool run_time) {
     std::string line = head;
-    if (run_time) line += " " + std::to_string(shape.dimension);
+    if (run_time) line += " " + std::to_string(shape.count);
     for (const int p : shape.parameters) line += " " + std::to_string(p);
     return line + numbers(shape.measurement, false) + information(shape.dimension);
   }
@@ -133,15 +148,18 @@ class RandomLines {
       for (int b = 0; b < parameter_count_; ++b) choices.push_back({a, b});
     }
     for (const std::vector<int>& parameters : choices) {
-      for (int dimension = 1; dimension <= 8; ++dimension) {
+      for (int dimension = 1; dimension <= 9; ++dimension) {
         for (int measurement = 0; measurement <= 16; ++measurement) {
-          const EdgeShape shape{parameters, measurement, dimension};
-          const std::string line = with_shape(head, shape, run_time);
-          if (!accepted(vertices + line)) continue;
-          const Graph graph = read_graph_text(parameters_ + vertices + line, "probe", {}, types_);
-          if (graph.edge_pools()[0]->dimension(0) != dimension) continue;
-          edge_shape_[tag] = shape;
-          return line;
+          // A file may count the rows of the error or, with one leading vertex, the others.
+          for (const int count : {dimension, kRunTimeArity - 1}) {
+            const EdgeShape shape{count, parameters, measurement, dimension};
+            const std::string line = with_shape(head, shape, run_time);
+            if (!accepted(vertices + line)) continue;
+            const Graph graph = read_graph_text(parameters_ + vertices + line, "probe", {}, types_);
+            if (graph.edge_pools()[0]->dimension(0) != dimension) continue;
+            edge_shape_[tag] = shape;
+            return line;
+          }
         }
       }
     }
@@ -152,7 +170,7 @@ class RandomLines {
   std::mt19937 engine_;
   std::string parameters_;
   int parameter_count_ = 0;
-  std::map<std::string, int> vertex_fields_;
+  std::map<std::string, VertexShape> vertex_fields_;
   std::map<std::string, EdgeShape> edge_shape_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 /// Planar edges: relative pose, point and bearing measurements, priors.
+/// Tags, order of fields and errors are those of the `.g2o` format.
 
 #include <locograph/core/edge.h>
 #include <locograph/types/slam2d/parameters.h>
@@ -37,6 +38,8 @@ struct EdgeSE2XY : Edge<2, VertexSE2, VertexXY> {
              Eigen::Ref<Eigen::Matrix<T, 2, 1>> e) const {
     e = a.inverse_rotate(p - a.translation()) - measurement.template cast<T>();
   }
+  void jacobians(const SE2<double>& a, const Eigen::Vector2d& p, JacobianRef<EdgeSE2XY, 0> ja,
+                 JacobianRef<EdgeSE2XY, 1> jp) const;
   Eigen::Vector2d predict_second(const SE2<double>& a) const { return a * measurement; }
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_SE2_XY", EdgeSE2XY)
@@ -53,6 +56,8 @@ struct EdgeBearingSE2XY : Edge<1, VertexSE2, VertexXY> {
     const Eigen::Matrix<T, 2, 1> d = a.inverse_rotate(p - a.translation());
     e[0] = wrap_angle(T(atan2(d[1], d[0]) - T(measurement)));
   }
+  void jacobians(const SE2<double>& a, const Eigen::Vector2d& p,
+                 JacobianRef<EdgeBearingSE2XY, 0> ja, JacobianRef<EdgeBearingSE2XY, 1> jp) const;
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_BEARING_SE2_XY", EdgeBearingSE2XY)
 
@@ -67,6 +72,7 @@ struct EdgePriorSE2 : Edge<3, VertexSE2> {
     e.template head<2>() = z.inverse_rotate(a.translation() - z.translation());
     e[2] = wrap_angle(T(a.angle() - z.angle()));
   }
+  void jacobians(const SE2<double>& a, JacobianRef<EdgePriorSE2, 0> ja) const;
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_PRIOR_SE2", EdgePriorSE2)
 
@@ -79,8 +85,24 @@ struct EdgePriorSE2XY : Edge<2, VertexSE2> {
   void error(const SE2<T>& a, Eigen::Ref<Eigen::Matrix<T, 2, 1>> e) const {
     e = a.translation() - measurement.template cast<T>();
   }
+  void jacobians(const SE2<double>&, JacobianRef<EdgePriorSE2XY, 0> ja) const {
+    ja << 1.0, 0.0, 0.0, 0.0, 1.0, 0.0;
+  }
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_PRIOR_SE2_XY", EdgePriorSE2XY)
+
+/// EDGE_PRIOR_XY: absolute position of a point. Error (2) [m]: p − z.
+struct EdgePriorXY : Edge<2, VertexXY> {
+  Eigen::Vector2d measurement = Eigen::Vector2d::Zero();
+  auto fields() { return std::tie(measurement); }
+
+  template <class T>
+  void error(const Eigen::Matrix<T, 2, 1>& p, Eigen::Ref<Eigen::Matrix<T, 2, 1>> e) const {
+    e = p - measurement.template cast<T>();
+  }
+  void jacobians(const Eigen::Vector2d&, JacobianRef<EdgePriorXY, 0> jp) const { jp.setIdentity(); }
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_PRIOR_XY", EdgePriorXY)
 
 /// EDGE_POINTXY: relative position of two points. Error (2) [m]: (q − p) − z.
 struct EdgePointXY : Edge<2, VertexXY, VertexXY> {
@@ -91,6 +113,11 @@ struct EdgePointXY : Edge<2, VertexXY, VertexXY> {
   void error(const Eigen::Matrix<T, 2, 1>& p, const Eigen::Matrix<T, 2, 1>& q,
              Eigen::Ref<Eigen::Matrix<T, 2, 1>> e) const {
     e = q - p - measurement.template cast<T>();
+  }
+  void jacobians(const Eigen::Vector2d&, const Eigen::Vector2d&, JacobianRef<EdgePointXY, 0> jp,
+                 JacobianRef<EdgePointXY, 1> jq) const {
+    jp = -Eigen::Matrix2d::Identity();
+    jq.setIdentity();
   }
   Eigen::Vector2d predict_second(const Eigen::Vector2d& p) const { return p + measurement; }
   Eigen::Vector2d predict_first(const Eigen::Vector2d& q) const { return q - measurement; }
@@ -119,7 +146,8 @@ struct EdgeSE2Offset : Edge<3, VertexSE2, VertexSE2> {
 LOCOGRAPH_REGISTER_EDGE("EDGE_SE2_OFFSET", EdgeSE2Offset)
 
 /// EDGE_SE2_XY_OFFSET: a point seen by a sensor mounted on a pose. Fields: number of the
-/// PARAMS_SE2OFFSET, measurement. Error (2) [m]: (A·o)⁻¹ p − z.
+/// PARAMS_SE2OFFSET, measurement. Error (2) [m]: (A·o)⁻¹ p − z. Not a tag of g2o's own: see
+/// EdgeSE2PointXYOffset.
 struct EdgeSE2XYOffset : Edge<2, VertexSE2, VertexXY> {
   int offset_number = 0;
   Eigen::Vector2d measurement = Eigen::Vector2d::Zero();
@@ -138,5 +166,27 @@ struct EdgeSE2XYOffset : Edge<2, VertexSE2, VertexXY> {
   Eigen::Vector2d predict_second(const SE2<double>& a) const { return a * offset * measurement; }
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_SE2_XY_OFFSET", EdgeSE2XYOffset)
+
+/// EDGE_SE2_POINTXY_OFFSET: the same fields, error (2) [m]: A⁻¹ p − z. The offset is named and kept
+/// but does not enter: g2o computes and simulates this edge so, and its files mean it so.
+struct EdgeSE2PointXYOffset : Edge<2, VertexSE2, VertexXY> {
+  int offset_number = 0;
+  EdgeSE2XY point;
+  auto fields() { return std::tie(offset_number, point.measurement); }
+  void bind(const Parameters& parameters) { parameters.get<OffsetSE2>(offset_number); }
+
+  template <class T>
+  void error(const SE2<T>& a, const Eigen::Matrix<T, 2, 1>& p,
+             Eigen::Ref<Eigen::Matrix<T, 2, 1>> e) const {
+    point.error<T>(a, p, e);
+  }
+  void jacobians(const SE2<double>& a, const Eigen::Vector2d& p,
+                 JacobianRef<EdgeSE2PointXYOffset, 0> ja,
+                 JacobianRef<EdgeSE2PointXYOffset, 1> jp) const {
+    point.jacobians(a, p, ja, jp);
+  }
+  Eigen::Vector2d predict_second(const SE2<double>& a) const { return point.predict_second(a); }
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_SE2_POINTXY_OFFSET", EdgeSE2PointXYOffset)
 
 }  // namespace locograph

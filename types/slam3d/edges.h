@@ -1,5 +1,6 @@
 #pragma once
-/// Spatial edges: relative pose, point and camera measurements, priors.
+/// Spatial edges: relative pose, point and camera measurements. Tags, order of fields and errors
+/// are those of the `.g2o` format.
 
 #include <locograph/core/edge.h>
 #include <locograph/types/slam3d/parameters.h>
@@ -31,24 +32,6 @@ struct EdgeSE3 : Edge<6, VertexSE3, VertexSE3> {
   SE3<double> predict_first(const SE3<double>& b) const { return b * measurement.inverse(); }
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_SE3:QUAT", EdgeSE3)
-
-/// EDGE_SE3_PRIOR: absolute pose of a sensor. Fields: number of the PARAMS_SE3OFFSET, measurement.
-/// Error (6): pose_error of Z⁻¹ (A·o).
-struct EdgeSE3Prior : Edge<6, VertexSE3> {
-  int offset_number = 0;
-  SE3<double> measurement;
-  SE3<double> offset;  ///< looked up by bind()
-  auto fields() { return std::tie(offset_number, measurement); }
-  void bind(const Parameters& parameters) {
-    offset = parameters.get<OffsetSE3>(offset_number)->offset;
-  }
-
-  template <class T>
-  void error(const SE3<T>& a, Eigen::Ref<Eigen::Matrix<T, 6, 1>> e) const {
-    pose_error<T>(measurement.template cast<T>().inverse() * (a * offset.template cast<T>()), e);
-  }
-};
-LOCOGRAPH_REGISTER_EDGE("EDGE_SE3_PRIOR", EdgeSE3Prior)
 
 /// EDGE_SE3_TRACKXYZ: a point seen by a sensor. Fields: number of the PARAMS_SE3OFFSET,
 /// measurement. Error (3) [m]: (A·o)⁻¹ p − z.
@@ -93,7 +76,41 @@ struct EdgeSE3Offset : Edge<6, VertexSE3, VertexSE3> {
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_SE3_OFFSET", EdgeSE3Offset)
 
-/// EDGE_POINT_XYZ: relative position of two points. Error (3) [m]: (q − p) − z.
+/// EDGE_SE3_LOTSOF_XYZ: any number n of points seen from a pose, their errors correlated. In a file
+/// `TAG pose points… || n x y z… Ω`. Error (3n) [m]: A⁻¹ p − z of each.
+struct EdgeSE3LotsOfXYZ : DynamicEdge<Eigen::Dynamic, VertexPointXYZ, VertexSE3> {
+  static constexpr int kRowsPerVertex = 3;
+  Eigen::VectorXd measurement;  ///< x y z of each point, in the pose
+  auto fields() { return std::tie(measurement); }
+  void resize(int dimension) {
+    measurement.setZero(dimension);
+    information.setIdentity(dimension, dimension);
+  }
+
+  void error(const SE3<double>& a, std::span<const Eigen::Vector3d> points,
+             Eigen::Ref<Eigen::VectorXd> e) const;
+  void jacobians(const SE3<double>& a, std::span<const Eigen::Vector3d> points,
+                 std::span<JacobianMap> j) const;
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_SE3_LOTSOF_XYZ", EdgeSE3LotsOfXYZ)
+
+/// EDGE_SE3_CALIB: relative pose of a sensor whose mount C is estimated, a vertex shared by all
+/// edges of that sensor. Error (6): pose_error of Z⁻¹ ((A·C)⁻¹ (B·C)).
+struct EdgeSE3Calib : Edge<6, VertexSE3, VertexSE3, VertexSE3> {
+  SE3<double> measurement;
+  auto fields() { return std::tie(measurement); }
+
+  template <class T>
+  void error(const SE3<T>& a, const SE3<T>& b, const SE3<T>& mount,
+             Eigen::Ref<Eigen::Matrix<T, 6, 1>> e) const {
+    pose_error<T>(measurement.template cast<T>().inverse() * ((a * mount).inverse() * (b * mount)),
+                  e);
+  }
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_SE3_CALIB", EdgeSE3Calib)
+
+/// EDGE_POINTXYZ, also read as EDGE_POINT_XYZ: relative position of two points. Error (3) [m]: (q −
+/// p) − z.
 struct EdgePointXYZ : Edge<3, VertexPointXYZ, VertexPointXYZ> {
   Eigen::Vector3d measurement = Eigen::Vector3d::Zero();
   auto fields() { return std::tie(measurement); }
@@ -103,22 +120,15 @@ struct EdgePointXYZ : Edge<3, VertexPointXYZ, VertexPointXYZ> {
              Eigen::Ref<Eigen::Matrix<T, 3, 1>> e) const {
     e = q - p - measurement.template cast<T>();
   }
+  void jacobians(const Eigen::Vector3d&, const Eigen::Vector3d&, JacobianRef<EdgePointXYZ, 0> jp,
+                 JacobianRef<EdgePointXYZ, 1> jq) const {
+    jp = -Eigen::Matrix3d::Identity();
+    jq.setIdentity();
+  }
   Eigen::Vector3d predict_second(const Eigen::Vector3d& p) const { return p + measurement; }
   Eigen::Vector3d predict_first(const Eigen::Vector3d& q) const { return q - measurement; }
 };
-LOCOGRAPH_REGISTER_EDGE("EDGE_POINT_XYZ", EdgePointXYZ)
-
-/// EDGE_POINT_XYZ_PRIOR: absolute position of a point. Error (3) [m]: p − z.
-struct EdgePointXYZPrior : Edge<3, VertexPointXYZ> {
-  Eigen::Vector3d measurement = Eigen::Vector3d::Zero();
-  auto fields() { return std::tie(measurement); }
-
-  template <class T>
-  void error(const Eigen::Matrix<T, 3, 1>& p, Eigen::Ref<Eigen::Matrix<T, 3, 1>> e) const {
-    e = p - measurement.template cast<T>();
-  }
-};
-LOCOGRAPH_REGISTER_EDGE("EDGE_POINT_XYZ_PRIOR", EdgePointXYZPrior)
+LOCOGRAPH_REGISTER_EDGE("EDGE_POINTXYZ", EdgePointXYZ)
 
 /// EDGE_PROJECT_DEPTH: a point in a depth camera. Fields: number of the PARAMS_CAMERACALIB,
 /// measurement (u, v [px], depth [m]). Error (3): predicted − measured.

@@ -1,6 +1,7 @@
 #pragma once
 /// PARAMS_SE3OFFSET: the pose of a sensor in the frame of the vertex that carries it; and
-/// PARAMS_CAMERACALIB: the same with a pinhole camera behind it (fx fy cx cy [px]).
+/// PARAMS_CAMERACALIB: the same with a pinhole camera behind it (fx fy cx cy [px]);
+/// PARAMS_STEREOCAMERACALIB: with a second camera, a baseline [m] to its right.
 
 #include <locograph/core/parameters.h>
 #include <locograph/types/slam3d/se3.h>
@@ -14,7 +15,7 @@ struct OffsetSE3 : Parameter {
   void write(FieldWriter& out) const override { offset.write(out); }
 };
 
-struct CameraCalibration final : OffsetSE3 {
+struct CameraCalibration : OffsetSE3 {
   double fx = 1.0, fy = 1.0, cx = 0.0, cy = 0.0;
   std::string_view tag() const override { return "PARAMS_CAMERACALIB"; }
   void read(FieldReader& in) override {
@@ -25,6 +26,20 @@ struct CameraCalibration final : OffsetSE3 {
   void write(FieldWriter& out) const override {
     offset.write(out);
     for (const double value : {fx, fy, cx, cy}) out.number(value);
+  }
+};
+
+/// Serves wherever a CameraCalibration does.
+struct StereoCameraCalibration final : CameraCalibration {
+  double baseline_m = 0.075;
+  std::string_view tag() const override { return "PARAMS_STEREOCAMERACALIB"; }
+  void read(FieldReader& in) override {
+    CameraCalibration::read(in);
+    baseline_m = in.number();
+  }
+  void write(FieldWriter& out) const override {
+    CameraCalibration::write(out);
+    out.number(baseline_m);
   }
 };
 

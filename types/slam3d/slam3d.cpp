@@ -33,20 +33,47 @@ void EdgeSE3PointXYZ::jacobians(const SE3<double>& a, const Eigen::Vector3d& p,
   jp = sensor_from_a * a.rotation().conjugate().toRotationMatrix();
 }
 
+void EdgeSE3LotsOfXYZ::error(const SE3<double>& a, std::span<const Eigen::Vector3d> points,
+                             Eigen::Ref<Eigen::VectorXd> e) const {
+  const Eigen::Quaterniond back = a.rotation().conjugate();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Index row = kRowsPerVertex * static_cast<Eigen::Index>(i);
+    e.segment<3>(row) = back * (points[i] - a.translation()) - measurement.segment<3>(row);
+  }
+}
+
+void EdgeSE3LotsOfXYZ::jacobians(const SE3<double>& a, std::span<const Eigen::Vector3d> points,
+                                 std::span<JacobianMap> j) const {
+  const Eigen::Matrix3d back = a.rotation().conjugate().toRotationMatrix();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Index row = kRowsPerVertex * static_cast<Eigen::Index>(i);
+    j[0].block<3, 3>(row, 0) = -Eigen::Matrix3d::Identity();
+    j[0].block<3, 3>(row, 3) = skew(back * (points[i] - a.translation()));
+    j[1 + i].setZero();
+    j[1 + i].middleRows<3>(row) = back;
+  }
+}
+
 void add_slam3d_types(TypeRegistry& types) {
   types.add_parameter<OffsetSE3>("PARAMS_SE3OFFSET");
   types.add_parameter<CameraCalibration>("PARAMS_CAMERACALIB");
+  types.add_parameter<StereoCameraCalibration>("PARAMS_STEREOCAMERACALIB");
   types.add_vertex<VertexSE3>();
   types.add_vertex<VertexPointXYZ>();
   types.add_vertex_alias<VertexPointXYZ>("VERTEX_POINT_XYZ");
+  types.add_vertex_alias<VertexPointXYZ>("VERTEX_XYZ");
   types.add_edge<EdgeSE3>();
-  types.add_edge<EdgeSE3Prior>();
   types.add_edge<EdgeSE3PointXYZ>();
+  types.add_edge<EdgeSE3LotsOfXYZ>();
   types.add_edge<EdgeSE3Offset>();
+  types.add_edge<EdgeSE3Calib>();
   types.add_edge<EdgePointXYZ>();
-  types.add_edge<EdgePointXYZPrior>();
+  types.add_edge_alias<EdgePointXYZ>("EDGE_POINT_XYZ");
   types.add_edge<EdgeProjectDepth>();
   types.add_edge<EdgeProjectDisparity>();
+  add_slam3d_prior_types(types);
+  add_slam3d_plane_and_line_types(types);
+  add_slam3d_expmap_types(types);
 }
 
 }  // namespace locograph

@@ -1,6 +1,6 @@
 #pragma once
 /// Spatial vertices: VERTEX_SE3:QUAT (x y z qx qy qz qw) and VERTEX_TRACKXYZ, also written
-/// VERTEX_POINT_XYZ (x y z), in metres.
+/// VERTEX_POINT_XYZ or VERTEX_XYZ (x y z), in metres.
 
 #include <locograph/core/vertex.h>
 #include <locograph/types/slam3d/se3.h>

@@ -1,0 +1,45 @@
+#include <locograph/apps/graph_types.h>
+#include <locograph/core/plugin_library.h>
+#include <locograph/plugins/robot_types.h>
+#include <locograph/types/standard_types.h>
+
+#include <CLI/Option.hpp>
+#include <filesystem>
+#include <system_error>
+
+namespace locograph {
+namespace {
+
+std::vector<std::filesystem::path> plugin_folders() {
+  std::error_code failed;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", failed);
+  std::vector<std::filesystem::path> folders;
+  for (std::filesystem::path folder = program.parent_path();
+       !failed && folder != folder.parent_path(); folder = folder.parent_path()) {
+    if (std::filesystem::is_directory(folder / "lib/locograph", failed)) {
+      folders.push_back(folder / "lib/locograph");
+    }
+  }
+  return folders;
+}
+
+}  // namespace
+
+TypeRegistry graph_types(const std::vector<std::string>& plugins) {
+  TypeRegistry types = standard_types();
+  add_robot_types(types);
+  for (const std::string& name : plugins) {
+    load_plugin(find_plugin(name, plugin_folders()), types);
+  }
+  return types;
+}
+
+void add_plugin_option(CLI::App& parser, std::vector<std::string>& plugins) {
+  parser
+      .add_option("--plugin", plugins,
+                  "Library (.so) with more types; a bare name is looked for in lib/locograph")
+      ->type_name("LIB.so")
+      ->allow_extra_args(false);
+}
+
+}  // namespace locograph

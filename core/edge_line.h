@@ -1,0 +1,109 @@
+#pragma once
+/// An edge's line in a file, behind its tag and vertices: size of the error where that is known at
+/// run time only, fields, then Ω.
+///
+///     EdgeRange edge;
+///     detail::read_edge_line(edge, 2, in);      // after the ids of its two vertices
+///
+/// Ω is the upper triangle row by row; weights are `scalar w` when all are equal, `diagonal w…`
+/// otherwise. Included by typed_edge_pool.h only.
+
+#include <locograph/core/edge_evaluation.h>
+
+#include <string>
+
+namespace locograph::detail {
+
+/// Whether the size of the error stands in the file.
+template <class E>
+inline constexpr bool kSizeInFile = E::kDynamicArity || E::kDimension == Eigen::Dynamic;
+
+/// The size of the error, before anything is reserved for it: never much more than the line is
+/// long, however absurd the number in the file.
+template <class E>
+int read_error_size([[maybe_unused]] int vertices, FieldReader& in) {
+  int size = in.integer();
+  if constexpr (requires { E::kRowsPerVertex; }) {
+    const int many = vertices - fixed_slot_count<E>();
+    if (size != many) {
+      in.fail("measurements of " + std::to_string(size) + " vertices",
+              "as many as the edge names, " + std::to_string(many));
+    }
+    size *= E::kRowsPerVertex;
+  }
+  if (size < 1 || (E::kDimension != Eigen::Dynamic && size != E::kDimension)) {
+    in.fail("error of size " + std::to_string(size), E::kDimension == Eigen::Dynamic
+                                                         ? "a positive size"
+                                                         : "size " + std::to_string(E::kDimension));
+  }
+  // A digit and a blank for each number of Ω. Equal weights are written as one number: of them
+  // nothing but a bound can be asked.
+  constexpr int kMostRowsOfEqualWeight = 1 << 16;
+  const double left = static_cast<double>(in.characters_left()) + 1.0;
+  const bool too_many = kHasWeights<E> ? size > kMostRowsOfEqualWeight && size > left
+                                       : 1.0 * size * (size + 1) > left;
+  if (E::kDimension == Eigen::Dynamic && too_many) {
+    in.fail("too few fields for an error of size " + std::to_string(size),
+            kHasWeights<E> ? "its weights" : "its information matrix");
+  }
+  return size;
+}
+
+template <class E>
+void read_weights(E& edge, int size, FieldReader& in) {
+  const std::string kind = in.word();
+  if (kind != "scalar" && kind != "diagonal") {
+    in.fail("weights begin with '" + kind + "'", "'scalar' or 'diagonal'");
+  }
+  edge.weights.resize(size);
+  for (int r = 0; r < size; ++r) {
+    edge.weights[r] = kind == "scalar" && r > 0 ? edge.weights[0] : in.number();
+    if (edge.weights[r] < 0.0) in.fail("a negative weight", "weights >= 0");
+  }
+}
+
+template <class E>
+void write_weights(const E& edge, FieldWriter& out) {
+  const bool scalar = (edge.weights.array() == edge.weights[0]).all();
+  out.word(scalar ? "scalar" : "diagonal");
+  for (int r = 0; r < (scalar ? 1 : edge.dimension()); ++r) out.number(edge.weights[r]);
+}
+
+template <class E>
+void read_edge_line(E& edge, int vertices, FieldReader& in) {
+  int size = E::kDimension;
+  if constexpr (kSizeInFile<E>) size = read_error_size<E>(vertices, in);
+  if constexpr (requires { edge.resize(size); }) edge.resize(size);
+  read_fields(in, edge.fields());
+  if constexpr (kHasWeights<E>) {
+    read_weights(edge, size, in);
+  } else {
+    edge.information.resize(size, size);
+    for (int r = 0; r < size; ++r) {
+      for (int c = r; c < size; ++c) {
+        edge.information(r, c) = in.number();
+        edge.information(c, r) = edge.information(r, c);
+      }
+    }
+  }
+}
+
+template <class E>
+void write_edge_line(const E& edge, FieldWriter& out) {
+  const int size = edge.dimension();
+  if constexpr (requires { E::kRowsPerVertex; }) {
+    out.integer(size / E::kRowsPerVertex);
+  } else if constexpr (kSizeInFile<E>) {
+    out.integer(size);
+  }
+  write_fields(out, const_cast<E&>(edge).fields());
+  if constexpr (kHasWeights<E>) {
+    write_weights(edge, out);
+  } else {
+    for (int r = 0; r < size; ++r) {
+      for (int c = r; c < size; ++c) out.number(edge.information(r, c));
+    }
+  }
+}
+
+}  // namespace locograph::detail

@@ -1,0 +1,33 @@
+#!/bin/bash
+# Code blocks of doc/custom_types.md are code of the examples, which are built and run by other tests:
+# each block stands, line by line, in one of their files.
+#
+#   documented_code_test.sh SOURCE_FOLDER
+
+set -euo pipefail
+source=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+awk -v folder="$work" '
+  /^```(cpp|cmake)$/ { inside = 1; file = folder "/" ++count; next }
+  /^```$/ { inside = 0; next }
+  inside { print > file }
+' "$source/doc/custom_types.md"
+
+blocks=0
+for block in "$work"/*; do
+  blocks=$((blocks + 1))
+  found=
+  for example in "$source"/examples/{custom_edge,plugin}/{*.cpp,CMakeLists.txt}; do
+    text=$(<"$example")
+    [[ $text == *"$(<"$block")"* ]] && found=yes
+  done
+  if [ -z "$found" ]; then
+    echo "FAILED: no example holds this code of doc/custom_types.md:"
+    cat "$block"
+    exit 1
+  fi
+done
+[ "$blocks" -ge 10 ] || { echo "FAILED: only $blocks code blocks found"; exit 1; }
+echo "$blocks code blocks found in the examples"

@@ -1,0 +1,17 @@
+#include <locograph/types/slam2d/lines.h>
+#include <locograph/types/standard_types.h>
+
+namespace locograph {
+
+void add_slam2d_line_types(TypeRegistry& types) {
+  types.add_vertex<VertexLine2D>();
+  types.add_vertex<VertexSegment2D>();
+  types.add_edge<EdgeSE2Line2D>();
+  types.add_edge<EdgeLine2D>();
+  types.add_edge<EdgeLine2DPointXY>();
+  types.add_edge<EdgeSE2Segment2D>();
+  types.add_edge<EdgeSE2Segment2DLine>();
+  types.add_edge<EdgeSE2Segment2DPointLine>();
+}
+
+}  // namespace locograph
