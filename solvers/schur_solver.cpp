@@ -70,7 +70,7 @@ void SchurSolver::choose() {
     auto sparse = std::make_unique<BlockCholesky>();
     sparse->use_threads(threads_);
     sparse->analyse(structure_.reduced());
-    reduced_cost = sparse->cost();
+    reduced_cost = sparse->multiply_adds();
     chosen_ = Reduced::kSparse;
     solver_ = std::move(sparse);
     if (wanted_ == Reduced::kAutomatic && pcg < 0.2 * std::min(reduced_cost, dense)) {
