@@ -4,6 +4,7 @@
 #include <locograph/apps/output.h>
 #include <locograph/apps/progress.h>
 #include <locograph/common/deadline.h>
+#include <locograph/core/graduated_non_convexity.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/core/initial_guess.h>
 #include <locograph/core/optimiser.h>
@@ -31,7 +32,7 @@ struct OptimizeOptions {
   OptimiserOptions optimiser;
   int threads = 1;
   std::vector<std::string> plugins;
-  bool lenient = false, json = false;
+  bool graduated = false, lenient = false, json = false;
 
   std::string input_name() const { return input == "-" ? "stdin" : input; }
 };
@@ -82,7 +83,7 @@ void guess(Graph& graph, const OptimizeOptions& options, LinearSolver& solver) {
 }
 
 OptimiserResult run(Graph& graph, const OptimizeOptions& options, LinearSolver& solver,
-                    int& dimension, Times& times) {
+                    int& dimension, int& rejected, Times& times) {
   Stopwatch watch;
   ThreadPool threads(options.threads);
   Problem problem;
@@ -92,10 +93,23 @@ OptimiserResult run(Graph& graph, const OptimizeOptions& options, LinearSolver& 
   workspace.use_threads(&threads);
   workspace.load_state();
   solver.use_threads(&threads);
+  dimension = problem.dimension();
+  if (options.graduated) {
+    times.compile = watch.lap();
+    GraduationOptions graduation;
+    graduation.optimiser = options.optimiser;
+    GraduationResult result =
+        optimise_graduated(workspace, graduation, solver, odometry_edges(graph));
+    workspace.store_state();
+    solver.use_threads(nullptr);
+    times.optimize = watch.seconds();
+    rejected = result.rejected;
+    result.optimiser.iterations = result.iterations;
+    return result.optimiser;
+  }
   Optimiser optimiser(options.optimiser);
   optimiser.start(workspace, solver);
   times.compile = watch.lap();
-  dimension = problem.dimension();
   Progress progress;
   while (optimiser.iterate()) {
     progress.show([&] {
@@ -155,6 +169,9 @@ void print_summary(const OptimizeOptions& options, const Json& result) {
   text += ", " + counted(result["iterations"], "iteration", "iterations") + ", " +
           short_number(result["time"]["total"]) + " s (" + result["algorithm"].get<std::string>() +
           ", " + result["linear_solver"].get<std::string>() + ")\n";
+  if (result.contains("rejected_edges")) {
+    text += counted(result["rejected_edges"], "edge", "edges") + " rejected as wrong\n";
+  }
   text += std::string(result["converged"] ? "" : "not converged: ") +
           result["reason"].get<std::string>() + '\n';
   if (result.contains("output")) {
@@ -177,8 +194,8 @@ ExitCode optimize(const OptimizeOptions& options) {
   if (kernel.kind != RobustKernel::Kind::kNone) graph.set_kernel(kernel);
   const Gauge gauge = hold_gauge(graph, options.input_name(), options.lenient);
   guess(graph, options, *solver);
-  int dimension = 0;
-  const OptimiserResult result = run(graph, options, *solver, dimension, times);
+  int dimension = 0, rejected = 0;
+  const OptimiserResult result = run(graph, options, *solver, dimension, rejected, times);
   gauge.release(graph);
   times.total = total.seconds();
 
@@ -207,6 +224,7 @@ ExitCode optimize(const OptimizeOptions& options) {
         {"total", times.total}}},
       {"iterations_detail", iterations_json(result)},
   };
+  if (options.graduated) json["rejected_edges"] = rejected;
   if (!options.output.empty() && std::isfinite(result.final.robust)) {
     write_graph(graph, options.output);
     json["output"] = options.output;
@@ -235,11 +253,16 @@ Command add_optimize(CLI::App& app) {
       ->capture_default_str();
   parser
       ->add_option("--kernel", o.kernel,
-                   "Robust kernel of every edge, NAME[:WIDTH] (see: locograph list kernels)")
+                   "Robust kernel of every edge, NAME[:WIDTH][:second-order] or barron:WIDTH:ALPHA "
+                   "(see: locograph list kernels)")
       ->capture_default_str();
   parser->add_option("--initial-guess", o.initial_guess, "none, odometry, spanning-tree or chordal")
       ->check(CLI::IsMember({"none", "odometry", "spanning-tree", "chordal"}))
       ->capture_default_str();
+  parser->add_flag(
+      "--gnc", o.graduated,
+      "Find wrong loop closures by graduated non-convexity and leave them out; odometry "
+      "(edges between consecutive ids) is trusted");
   parser->add_option("--iterations", o.optimiser.max_iterations, "Most iterations to make")
       ->capture_default_str();
   parser

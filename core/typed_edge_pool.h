@@ -259,6 +259,11 @@ class TypedEdgePool final : public EdgePool {
     }
   }
 
+  /// What a robust kernel makes of Ω: first·(Ω + second·Ωe(Ωe)ᵀ).
+  struct Weight {
+    double first, second;
+  };
+
   Cost linearise_one(const CompiledEdges& compiled, int k, const Evaluation& x, double* hessian,
                      double* gradient) const {
     const E& edge = edges[compiled.edges[k]];
@@ -272,6 +277,8 @@ class TypedEdgePool final : public EdgePool {
     if (rows != nullptr) constrain_error(rows, e);
     const double chi2 = weighted_square(edge, e);
     const RobustKernel::Weights robust = robust_weights(edge, rows, chi2);
+    const Weight weight = {robust.weight,
+                           rows == nullptr ? edge.kernel.correction(chi2, robust) : 0.0};
     if constexpr (E::kDynamicArity) {
       double** data = x.scratch->array<double*>(own.size());
       evaluator.each_slot([&]<class V>(std::type_identity<V>, int s) {
@@ -282,9 +289,9 @@ class TypedEdgePool final : public EdgePool {
       });
       evaluator.jacobians(data);
       if (rows != nullptr) constrain_jacobians(rows, evaluator, own, e, data);
-      accumulate(compiled, k, evaluator, e, robust.weight, data, x, hessian, gradient);
+      accumulate(compiled, k, evaluator, e, weight, data, x, hessian, gradient);
     } else {
-      fixed_jacobians(compiled, k, evaluator, e, robust.weight, x, hessian, gradient,
+      fixed_jacobians(compiled, k, evaluator, e, weight, x, hessian, gradient,
                       typename Evaluator::FixedSequence());
     }
     return {robust.cost, chi2};
@@ -293,7 +300,7 @@ class TypedEdgePool final : public EdgePool {
   /// Jacobians of a fixed arity live on the stack where their size is known.
   template <class Vector, int... I>
   void fixed_jacobians(const CompiledEdges& compiled, int k, const Evaluator& evaluator,
-                       const Vector& e, double weight, const Evaluation& x, double* hessian,
+                       const Vector& e, const Weight& weight, const Evaluation& x, double* hessian,
                        double* gradient, std::integer_sequence<int, I...>) const {
     const std::span<const CompiledEdges::Slot> own = slots(compiled, k);
     std::tuple<detail::LocalMatrix<JacobianMatrix<E, detail::FixedVertex<E, I>::kDimension>>...>
@@ -305,7 +312,7 @@ class TypedEdgePool final : public EdgePool {
     const ConstraintRow* rows = constraint_rows(compiled, k, x);
     if (rows != nullptr) constrain_jacobians(rows, evaluator, own, e, data);
     if constexpr (kHasWeights<E>) {
-      accumulate_rows(compiled, k, evaluator, e, weight, data, x, hessian, gradient);
+      accumulate_rows(compiled, k, evaluator, e, weight.first, data, x, hessian, gradient);
     } else {
       accumulate(compiled, k, evaluator, e, weight, data, x, hessian, gradient);
     }
@@ -376,12 +383,13 @@ class TypedEdgePool final : public EdgePool {
     return Eigen::Map<JacobianMatrix<E, V::kDimension>>(data, n, d);
   }
 
-  /// H_ij += J_iᵀ (wΩ) J_j for i ≤ j, g_i += J_iᵀ (wΩ) e, at the precomputed offsets.
+  /// H_ij += J_iᵀ W J_j for i ≤ j, g_i += J_iᵀ (wΩ) e, at the precomputed offsets; W is Ω as the
+  /// kernel weights it.
   template <class Vector>
   void accumulate(const CompiledEdges& compiled, int k, const Evaluator& evaluator, const Vector& e,
-                  double weight, double* const* data, const Evaluation& x, double* hessian,
+                  const Weight& weight, double* const* data, const Evaluation& x, double* hessian,
                   double* gradient) const {
-    if (weight == 0.0) return;
+    if (weight.first == 0.0) return;
     const E& edge = edges[compiled.edges[k]];
     const std::span<const CompiledEdges::Slot> own = slots(compiled, k);
     const int count = static_cast<int>(own.size());
@@ -398,12 +406,13 @@ class TypedEdgePool final : public EdgePool {
           detail::make_local<Weighted>(di, edge.dimension(), *x.scratch);
       if constexpr (A::kDimension == Eigen::Dynamic || kD == Eigen::Dynamic) {
         weighted.noalias() = ji.transpose() * edge.information;
-        weighted *= weight;
+        weighted *= weight.first;
       } else {
-        weighted.noalias() = ji.transpose().lazyProduct(edge.information * weight);
+        weighted.noalias() = ji.transpose().lazyProduct(edge.information * weight.first);
       }
       Eigen::Map<Eigen::Matrix<double, A::kDimension, 1>> g(gradient + own[i].gradient_offset, di);
       g.noalias() += weighted * e;
+      if (weight.second != 0.0) bend<A>(weighted, edge, e, weight.second, *x.scratch);
       evaluator.each_slot([&]<class B>(std::type_identity<B>, int j) {
         if (j < i || data[j] == nullptr) return;
         const CompiledEdges::Block where = row[j - i];
@@ -421,6 +430,19 @@ class TypedEdgePool final : public EdgePool {
       });
       x.scratch->rewind(mark);
     });
+  }
+
+  /// weighted = JᵀΩ becomes Jᵀ(Ω + β Ωe(Ωe)ᵀ).
+  template <class V, class Weighted, class Vector>
+  static void bend(Weighted& weighted, const E& edge, const Vector& e, double beta,
+                   Scratch& scratch) {
+    using Along = Eigen::Matrix<double, V::kDimension, 1>;
+    detail::LocalMatrix<Along> along =
+        detail::make_local<Along>(static_cast<int>(weighted.rows()), 1, scratch);
+    along.noalias() = weighted * e;
+    for (int c = 0; c < weighted.cols(); ++c) {
+      weighted.col(c) += beta * edge.information.col(c).dot(e) * along;
+    }
   }
 
   template <class Left, class Right, class Block>

@@ -161,6 +161,17 @@ TEST(Optimize, ARobustKernelLowersTheCostOfAnOutlier) {
   EXPECT_GT(outcome.json()["final_chi2"].get<double>(), 100.0);
 }
 
+TEST(Optimize, LeavesWrongLoopClosuresOutWhenAskedTo) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle + std::string("EDGE_SE2 0 2 50 0 0 100 0 0 100 0 100\n"));
+  const Outcome outcome = runner.run("optimize a.g2o --gnc --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["rejected_edges"], 1);
+  // What the triangle costs alone, and the price of one edge left out: χ²(0.99) of 3 dimensions.
+  EXPECT_NEAR(outcome.json()["final_cost"].get<double>(), 1.0 / 3.0 + 11.3449, 1e-3);
+  EXPECT_FALSE(runner.run("optimize a.g2o --json").json().contains("rejected_edges"));
+}
+
 TEST(Optimize, SaysNoWhenTheIterationsRunOutAndStillWritesWhatItHas) {
   const CommandRunner runner;
   runner.write("a.g2o", kTriangle);

@@ -51,7 +51,11 @@ inline DenseSystem one_by_one(const Problem& problem, const std::vector<double>&
       pool.error(edges, k, x, e.data());
       const Eigen::MatrixXd information = pool.information(edges.edges[k]);
       const double chi2 = e.dot(information * e);
-      const RobustKernel::Weights robust = pool.kernel(edges.edges[k]).weights(chi2);
+      const RobustKernel& kernel = pool.kernel(edges.edges[k]);
+      const RobustKernel::Weights robust = kernel.weights(chi2);
+      const double beta = pool.has_weights() ? 0.0 : kernel.correction(chi2, robust);
+      const Eigen::VectorXd along = information * e;
+      const Eigen::MatrixXd bent = information + beta * along * along.transpose();
       system.cost += {robust.cost, chi2};
       const int begin = edges.slot_begin[k], count = edges.slot_begin[k + 1] - begin;
       for (int i = 0; i < count; ++i) {
@@ -65,7 +69,7 @@ inline DenseSystem one_by_one(const Problem& problem, const std::vector<double>&
           if (at_j < 0) continue;
           const Eigen::MatrixXd jj = pool.jacobian(edges, k, j, x, numeric);
           system.hessian.block(at_i, at_j, ji.cols(), jj.cols()) +=
-              robust.weight * ji.transpose() * information * jj;
+              robust.weight * ji.transpose() * bent * jj;
         }
       }
     }

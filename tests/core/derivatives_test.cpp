@@ -47,7 +47,7 @@ Graph planar_graph(unsigned seed) {
   for (int i = 0; i < 6; ++i) {
     points.push_back(graph.add_vertex(20 + i, VertexXY(number.vector(2))));
   }
-  const char* kernels[] = {"none", "huber:0.5", "cauchy:1", "tukey:3", "dcs:2"};
+  const char* kernels[] = {"none", "huber:0.5", "cauchy:1:second-order", "tukey:3", "dcs:2"};
   int next = 0;
   const auto dress = [&](auto& edge, int dimension) {
     edge.information = number.information(dimension);
@@ -94,7 +94,7 @@ Graph arms_graph(unsigned seed) {
     graph.add_edge(reach, arms[i], points[(i + 2) % 6]);
     ToyMeet<D> meet;
     meet.information = number.information(2);
-    meet.kernel = RobustKernel::parse("cauchy:2");
+    meet.kernel = RobustKernel::parse("cauchy:2:second-order");
     graph.add_edge(meet, arms[(i + 1) % 6], arms[i]);
     ToyCarry<D> carry;
     carry.information = number.information(2);
