@@ -48,21 +48,13 @@ void BlockCholesky::backward(int s, double* x) const {
 }
 
 void BlockCholesky::solve(const double* right_hand_side, double* x) const {
-  const int tasks = s_.tasks(), top = s_.task_begin.back();
-  const auto run = [&](auto&& task) {
-    if (threads_) {
-      threads_->run(tasks, task);
-    } else {
-      for (int t = 0; t < tasks; ++t) task(t);
-    }
-  };
-  run([&](int t) {
-    for (int s = s_.task_begin[t]; s < s_.task_begin[t + 1]; ++s) forward(s, right_hand_side);
+  const int items = s_.items();
+  runner_.run(s_.upwards, threads_, [&](int item, const ItemRunner::Crew&) {
+    for (int s = s_.item_begin[item]; s < s_.item_begin[item + 1]; ++s) forward(s, right_hand_side);
   });
-  for (int s = top; s < s_.count(); ++s) forward(s, right_hand_side);
-  for (int s = s_.count() - 1; s >= top; --s) backward(s, x);
-  run([&](int t) {
-    for (int s = s_.task_begin[t + 1] - 1; s >= s_.task_begin[t]; --s) backward(s, x);
+  runner_.run(s_.downwards, threads_, [&](int reversed, const ItemRunner::Crew&) {
+    const int item = items - 1 - reversed;
+    for (int s = s_.item_begin[item + 1] - 1; s >= s_.item_begin[item]; --s) backward(s, x);
   });
 }
 

@@ -125,6 +125,20 @@ TEST_P(EverySolver, GivesTheSameBitsEveryTime) {
   EXPECT_EQ(std::memcmp(first.data(), again.data(), first.size() * sizeof(double)), 0);
 }
 
+TEST_P(EverySolver, GivesTheSameBitsOnTwoThreads) {
+  const RandomSystem a = system();
+  std::vector<double> alone(a.right_hand_side.size()), together(alone.size());
+  const std::unique_ptr<LinearSolver> s = solver();
+  s->analyse(a.pattern);
+  ASSERT_TRUE(s->factorise(a.values.data(), a.damping.data()));
+  s->solve(a.right_hand_side.data(), alone.data());
+  ThreadPool threads(2);
+  s->use_threads(&threads);
+  ASSERT_TRUE(s->factorise(a.values.data(), a.damping.data()));
+  s->solve(a.right_hand_side.data(), together.data());
+  EXPECT_EQ(std::memcmp(alone.data(), together.data(), alone.size() * sizeof(double)), 0);
+}
+
 TEST_P(EverySolver, NamesTheBlockThatIsNotPositiveDefiniteAndRecovers) {
   const std::unique_ptr<LinearSolver> s = solver();
   const RandomSystem good = system();
