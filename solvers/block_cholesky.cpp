@@ -1,9 +1,11 @@
 #include <locograph/solvers/block_cholesky.h>
+#include <locograph/solvers/cost_model.h>
 #include <locograph/solvers/dense_kernels.h>
 #include <locograph/solvers/simd.h>
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 
 namespace locograph {
 namespace {
@@ -59,24 +61,32 @@ struct LowerTiles {
 }  // namespace
 
 void BlockCholesky::analyse(const BlockPattern& pattern) {
-  if (pattern == pattern_) return;
-  pattern_ = pattern;
+  analyse_if_below(pattern, std::numeric_limits<double>::infinity());
+}
+
+bool BlockCholesky::analyse_if_below(const BlockPattern& pattern, double limit) {
+  if (pattern == pattern_) return seconds_ < limit;
   const BlockGraph graph = block_graph(pattern);
   EliminationTree tree = elimination_tree(graph, pattern.dimension, minimum_degree_order(graph));
-  seconds_ = factorisation_seconds(tree, pattern.dimension);
-  nested_ = false;
-  // Nested dissection takes microseconds for each block row and may save a third of each of about
-  // ten factorisations.
-  if (nested_dissection_available() && 3.0 * seconds_ > 4e-6 * pattern.size()) {
+  double seconds = factorisation_seconds(tree, pattern.dimension);
+  bool nested = false;
+  // Nested dissection saves up to a quarter of each of about ten factorisations of a pose graph.
+  constexpr double kSaved = 0.25, kFactorisations = 10.0;
+  if (nested_dissection_available() && (1.0 - kSaved) * seconds < limit &&
+      kSaved * kFactorisations * seconds > dissection_seconds(pattern.size())) {
     EliminationTree other =
         elimination_tree(graph, pattern.dimension, nested_dissection_order(graph));
-    const double seconds = factorisation_seconds(other, pattern.dimension);
-    if (seconds < seconds_) {
+    const double its = factorisation_seconds(other, pattern.dimension);
+    if (its < seconds) {
       tree = std::move(other);
-      seconds_ = seconds;
-      nested_ = true;
+      seconds = its;
+      nested = true;
     }
   }
+  if (!(seconds < limit)) return false;
+  pattern_ = pattern;
+  seconds_ = seconds;
+  nested_ = nested;
   s_ = supernodes(graph, tree, pattern.dimension);
   place_entries();
   factor_.reserve(s_.panel_begin.back());
@@ -84,6 +94,7 @@ void BlockCholesky::analyse(const BlockPattern& pattern) {
   vectors_.reserve(s_.vector_begin.back());
   failed_.assign(s_.items(), -1);
   runner_.prepare(s_.items(), threads_ ? threads_->size() : 1);
+  return true;
 }
 
 void BlockCholesky::use_threads(ThreadPool* threads) {

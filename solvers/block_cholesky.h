@@ -27,6 +27,9 @@ class BlockCholesky final : public LinearSolver {
   std::string name() const override { return "block-cholesky"; }
   void use_threads(ThreadPool* threads) override;
   void analyse(const BlockPattern& pattern) override;
+  /// Like analyse(), if the factorisation is estimated to take less than `seconds`; false if not,
+  /// and the solver is as it was when the pattern is new.
+  bool analyse_if_below(const BlockPattern& pattern, double seconds);
   bool factorise(const double* values, const double* damping) override;
   void solve(const double* right_hand_side, double* x) const override;
   int failed_row() const override { return failed_row_; }

@@ -24,7 +24,8 @@ void BlockCholesky::forward(int s, const double* right_hand_side) const {
       add(own + run.to, from + run.from, run.length);
     }
   }
-  solve_panel(factor_.data() + s_.panel_begin[s], s_.leading[s], s_.width[s], own);
+  solve_panel(factor_.data() + s_.panel_begin[s], s_.leading[s], s_.leading[s], s_.width[s], own,
+              true);
 }
 
 /// The rows under the pivots come from the parent, which is solved by now.
@@ -38,7 +39,8 @@ void BlockCholesky::backward(int s, double* x) const {
       std::copy_n(from + run.to, run.length, to + run.from);
     }
   }
-  solve_panel_transposed(factor_.data() + s_.panel_begin[s], s_.leading[s], s_.width[s], own);
+  solve_panel_transposed(factor_.data() + s_.panel_begin[s], s_.leading[s], s_.leading[s],
+                         s_.width[s], own, true);
   const double* next = own;
   for (int c = s_.first[s]; c < s_.first[s + 1]; ++c) {
     const int old = s_.old_of_new[c];

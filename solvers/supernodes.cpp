@@ -1,3 +1,4 @@
+#include <locograph/solvers/cost_model.h>
 #include <locograph/solvers/simd.h>
 #include <locograph/solvers/supernodes.h>
 
@@ -368,13 +369,6 @@ void connect_items(Supernodes& s) {
 }
 
 }  // namespace
-
-double front_seconds(int width, int below) {
-  const double w = padded(width), m = padded(below);
-  const double multiply_adds = w * w * w / 6.0 + 0.5 * w * w * m + 0.5 * w * m * (m + kLanes);
-  const double moved = m * m + width * (w + m);
-  return 40e-9 + 8e-9 * width + multiply_adds / 26e9 + 0.12e-9 * moved;
-}
 
 double factorisation_seconds(const EliminationTree& tree, const std::vector<int>& dimension) {
   Partition p = without_fill(tree, dimension);

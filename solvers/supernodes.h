@@ -59,8 +59,6 @@ struct Supernodes {
   int items() const { return upwards.size(); }
 };
 
-/// Estimated seconds of a front on one thread of a current desktop processor.
-double front_seconds(int width, int below);
 /// Estimated seconds of a factorisation, from the heights alone.
 double factorisation_seconds(const EliminationTree& tree, const std::vector<int>& dimension);
 
