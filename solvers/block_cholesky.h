@@ -32,6 +32,10 @@ class BlockCholesky final : public LinearSolver {
   bool analyse_if_below(const BlockPattern& pattern, double seconds);
   bool factorise(const double* values, const double* damping) override;
   void solve(const double* right_hand_side, double* x) const override;
+  /// Blocks inside the pattern of the factor come from the recursion of Takahashi, Fagan & Chin
+  /// (1973), front by front from the root; others from one solution for each scalar column.
+  bool inverse_blocks(const BlockPattern& pattern, std::span<const std::pair<int, int>> blocks,
+                      double* out) const override;
   int failed_row() const override { return failed_row_; }
 
   /// After analyse(): the symbolic factorisation, the estimated seconds of one factorisation, its

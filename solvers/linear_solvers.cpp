@@ -50,6 +50,10 @@ class AutoSolver final : public LinearSolver {
   void solve(const double* right_hand_side, double* x) const override {
     chosen_->solve(right_hand_side, x);
   }
+  bool inverse_blocks(const BlockPattern& pattern, std::span<const std::pair<int, int>> blocks,
+                      double* out) const override {
+    return chosen_->inverse_blocks(pattern, blocks, out);
+  }
   int failed_row() const override { return chosen_ ? chosen_->failed_row() : -1; }
 
  private:
