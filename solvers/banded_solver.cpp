@@ -1,5 +1,7 @@
 #include <locograph/solvers/banded_solver.h>
+#include <locograph/solvers/cost_model.h>
 #include <locograph/solvers/dense_kernels.h>
+#include <locograph/solvers/panel_solve.h>
 
 #include <algorithm>
 
@@ -20,12 +22,12 @@ std::vector<int> BandedSolver::panel_ends(const BlockPattern& pattern) {
   return last;
 }
 
-double BandedSolver::cost(const BlockPattern& pattern) {
+double BandedSolver::seconds(const BlockPattern& pattern) {
   const std::vector<int> last = panel_ends(pattern);
   double total = 0.0;
   for (int c = 0; c < pattern.size(); ++c) {
-    const double height = pattern.scalar_begin[last[c] + 1] - pattern.scalar_begin[c];
-    total += 0.5 * height * height * pattern.dimension[c];
+    const int below = pattern.scalar_begin[last[c] + 1] - pattern.scalar_begin[c + 1];
+    total += panel_seconds(pattern.dimension[c], below);
   }
   return total;
 }
@@ -70,8 +72,8 @@ bool BandedSolver::factorise(const double* values, const double* damping) {
     }
     for (int t = c + 1; t <= last_[c]; ++t) {
       const int row = pattern_.scalar_begin[t] - pattern_.scalar_begin[c];
-      subtract_product(panels_.data() + panel_begin_[t], height_[t], panel + row, height,
-                       panel + row, height, height - row, pattern_.dimension[t], n);
+      subtract_lower_product(panels_.data() + panel_begin_[t], height_[t], panel + row, height,
+                             height - row, pattern_.dimension[t], n);
     }
   }
   return true;
@@ -80,23 +82,12 @@ bool BandedSolver::factorise(const double* values, const double* damping) {
 void BandedSolver::solve(const double* right_hand_side, double* x) const {
   if (x != right_hand_side) std::copy_n(right_hand_side, pattern_.scalar_size(), x);
   for (int c = 0; c < pattern_.size(); ++c) {
-    const int n = pattern_.dimension[c], height = height_[c];
-    const double* panel = panels_.data() + panel_begin_[c];
-    double* own = x + pattern_.scalar_begin[c];
-    for (int j = 0; j < n; ++j) {
-      const double value = own[j] /= panel[j * height + j];
-      for (int i = j + 1; i < height; ++i) own[i] -= panel[j * height + i] * value;
-    }
+    solve_panel(panels_.data() + panel_begin_[c], height_[c], height_[c], pattern_.dimension[c],
+                x + pattern_.scalar_begin[c]);
   }
   for (int c = pattern_.size() - 1; c >= 0; --c) {
-    const int n = pattern_.dimension[c], height = height_[c];
-    const double* panel = panels_.data() + panel_begin_[c];
-    double* own = x + pattern_.scalar_begin[c];
-    for (int j = n - 1; j >= 0; --j) {
-      double sum = own[j];
-      for (int i = j + 1; i < height; ++i) sum -= panel[j * height + i] * own[i];
-      own[j] = sum / panel[j * height + j];
-    }
+    solve_panel_transposed(panels_.data() + panel_begin_[c], height_[c], height_[c],
+                           pattern_.dimension[c], x + pattern_.scalar_begin[c]);
   }
 }
 

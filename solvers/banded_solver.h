@@ -19,8 +19,8 @@ class BandedSolver final : public LinearSolver {
   void solve(const double* right_hand_side, double* x) const override;
   int failed_row() const override { return failed_row_; }
 
-  /// Multiply-adds of one factorisation of this pattern in natural order.
-  static double cost(const BlockPattern& pattern);
+  /// Estimated seconds of one factorisation of this pattern.
+  static double seconds(const BlockPattern& pattern);
 
  private:
   /// Last block row of each panel, fill included.

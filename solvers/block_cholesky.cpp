@@ -1,15 +1,18 @@
 #include <locograph/solvers/block_cholesky.h>
+#include <locograph/solvers/cost_model.h>
 #include <locograph/solvers/dense_kernels.h>
 #include <locograph/solvers/simd.h>
 
 #include <algorithm>
-#include <cstring>
+#include <atomic>
+#include <limits>
 
 namespace locograph {
 namespace {
 
 /// Fronts below this are not worth the microseconds that threads need to meet.
 constexpr double kShareFront = 30e-6;
+constexpr std::int64_t kAhead = 8;
 constexpr int kColumnChunk = 16;   // columns of a child that one task adds
 constexpr int kPanelColumns = 64;  // columns of a shared front factored before threads meet
 constexpr int kRowChunk = 96;      // rows of a shared panel that one task divides
@@ -55,42 +58,48 @@ struct LowerTiles {
   }
 };
 
-template <class Task>
-void run(ThreadPool* threads, int count, Task&& task) {
-  if (threads) {
-    threads->run(count, task);
-  } else {
-    for (int i = 0; i < count; ++i) task(i);
-  }
-}
-
 }  // namespace
 
 void BlockCholesky::analyse(const BlockPattern& pattern) {
-  if (pattern == pattern_) return;
-  pattern_ = pattern;
+  analyse_if_below(pattern, std::numeric_limits<double>::infinity());
+}
+
+bool BlockCholesky::analyse_if_below(const BlockPattern& pattern, double limit) {
+  if (pattern == pattern_) return seconds_ < limit;
   const BlockGraph graph = block_graph(pattern);
   EliminationTree tree = elimination_tree(graph, pattern.dimension, minimum_degree_order(graph));
-  seconds_ = factorisation_seconds(tree, pattern.dimension);
-  nested_ = false;
-  // Nested dissection takes microseconds for each block row and may save a third of each of about
-  // ten factorisations.
-  if (nested_dissection_available() && 3.0 * seconds_ > 4e-6 * pattern.size()) {
+  double seconds = factorisation_seconds(tree, pattern.dimension);
+  bool nested = false;
+  // Nested dissection saves up to a quarter of each of about ten factorisations of a pose graph.
+  constexpr double kSaved = 0.25, kFactorisations = 10.0;
+  if (nested_dissection_available() && (1.0 - kSaved) * seconds < limit &&
+      kSaved * kFactorisations * seconds > dissection_seconds(pattern.size())) {
     EliminationTree other =
         elimination_tree(graph, pattern.dimension, nested_dissection_order(graph));
-    const double seconds = factorisation_seconds(other, pattern.dimension);
-    if (seconds < seconds_) {
+    const double its = factorisation_seconds(other, pattern.dimension);
+    if (its < seconds) {
       tree = std::move(other);
-      seconds_ = seconds;
-      nested_ = true;
+      seconds = its;
+      nested = true;
     }
   }
+  if (!(seconds < limit)) return false;
+  pattern_ = pattern;
+  seconds_ = seconds;
+  nested_ = nested;
   s_ = supernodes(graph, tree, pattern.dimension);
   place_entries();
   factor_.reserve(s_.panel_begin.back());
   updates_.reserve(s_.update_size);
   vectors_.reserve(s_.vector_begin.back());
-  failed_.assign(s_.tasks() + 1, -1);
+  failed_.assign(s_.items(), -1);
+  runner_.prepare(s_.items(), threads_ ? threads_->size() : 1);
+  return true;
+}
+
+void BlockCholesky::use_threads(ThreadPool* threads) {
+  threads_ = threads;
+  if (threads) runner_.prepare(s_.items(), threads->size());
 }
 
 void BlockCholesky::place_entries() {
@@ -138,8 +147,15 @@ void BlockCholesky::place_entries() {
 
 void BlockCholesky::assemble_entries(int s, const double* values, const double* damping) {
   double* factor = factor_.data();
+  const std::int64_t most = static_cast<std::int64_t>(entries_.size()) - 1;
   for (std::int64_t k = entry_begin_[s]; k < entry_begin_[s + 1]; ++k) {
     const Entry& e = entries_[k];
+    // Blocks of H lie anywhere: ask for one some blocks ahead.
+    const double* ahead = values + entries_[std::min(k + kAhead, most)].from;
+    __builtin_prefetch(ahead);
+    if (e.rows > 3) {
+      for (int line = 8; line < 40; line += 8) __builtin_prefetch(ahead + line);
+    }
     const double* from = values + e.from;
     double* to = factor + e.to;
     const long leading = e.leading;
@@ -183,42 +199,49 @@ void BlockCholesky::add_child(int child, bool pivots, int begin, int end) {
   const std::int64_t last = s_.run_end[child];
   for (std::int64_t a = pivots ? s_.run_begin[child] : middle; a < (pivots ? middle : last); ++a) {
     const Supernodes::Run across = runs[a];
-    const int stop = std::min(across.length, end - across.from);
-    for (int j = std::max(0, begin - across.from); j < stop; ++j) {
-      const double* source = from + (across.from + j) * from_leading;
-      double* target = to + (across.to - skipped + j) * to_leading - skipped;
-      add(target + across.to + j, source + across.from + j, across.length - j);
-      for (std::int64_t b = a + 1; b < last; ++b) {
-        add(target + runs[b].to, source + runs[b].from, runs[b].length);
-      }
+    const int j = std::max(0, begin - across.from);
+    const int columns = std::min(across.length, end - across.from) - j;
+    if (columns <= 0) continue;
+    const double* source = from + (across.from + j) * from_leading;
+    double* target = to + (across.to - skipped + j) * to_leading - skipped;
+    // On and below the diagonal, in steps; the little above it means nothing on either side.
+    for (int step = 0; step < columns; step += kLanes) {
+      const int row = j + step;
+      add(target + step * to_leading + across.to + row, to_leading,
+          source + step * from_leading + across.from + row, from_leading, across.length - row,
+          std::min(kLanes, columns - step));
+    }
+    for (std::int64_t b = a + 1; b < last; ++b) {
+      add(target + runs[b].to, to_leading, source + runs[b].from, from_leading, runs[b].length,
+          columns);
     }
   }
 }
 
-void BlockCholesky::factorise_front(int s, const double* values, const double* damping,
-                                    int* failed) {
+int BlockCholesky::factorise_front(int s, const double* values, const double* damping) {
   const int width = s_.width[s], below = s_.below[s], leading = s_.leading[s];
   double* panel = factor_.data() + s_.panel_begin[s];
-  std::memset(panel, 0, sizeof(double) * leading * width);
+  clear(panel, std::int64_t{leading} * width);
   assemble_entries(s, values, damping);
   const int* begin = s_.child.data() + s_.child_begin[s];
   const int* end = s_.child.data() + s_.child_begin[s + 1];
   for (const int* c = begin; c != end; ++c) add_child(*c, true, 0, s_.below[*c]);
-  *failed = cholesky_in_place(panel, leading, leading, width);
-  if (*failed >= 0 || below == 0) return;
+  const int failed = cholesky_in_place(panel, leading, leading, width);
+  if (failed >= 0 || below == 0) return failed;
   const double* under = panel + padded(width);
   negative_product(updates_.data() + s_.update_begin[s], padded(below), under, leading, under,
                    leading, padded(below), below, width, true);
   for (const int* c = begin; c != end; ++c) add_child(*c, false, 0, s_.below[*c]);
+  return -1;
 }
 
 bool BlockCholesky::worth_sharing(int s) const {
-  return s >= s_.task_begin.back() && s_.seconds[s] > kShareFront;
+  return s >= s_.top && s_.seconds[s] > kShareFront;
 }
 
 /// The same front, its work divided among the threads. How it is divided depends on its size only.
-void BlockCholesky::factorise_front_together(int s, const double* values, const double* damping,
-                                             int* failed) {
+int BlockCholesky::factorise_front_together(int s, const double* values, const double* damping,
+                                            const ItemRunner::Crew& crew) {
   const int width = s_.width[s], below = s_.below[s], leading = s_.leading[s];
   const long ld = leading;
   double* panel = factor_.data() + s_.panel_begin[s];
@@ -226,13 +249,14 @@ void BlockCholesky::factorise_front_together(int s, const double* values, const 
   const auto add_children = [&](bool pivots) {
     for (int k = s_.child_begin[s]; k < s_.child_begin[s + 1]; ++k) {
       const int child = s_.child[k];
-      run(threads_, chunks(s_.below[child], kColumnChunk),
-          [&](int i) { add_child(child, pivots, i * kColumnChunk, (i + 1) * kColumnChunk); });
+      crew.share(chunks(s_.below[child], kColumnChunk), [&](int i) {
+        add_child(child, pivots, i * kColumnChunk, (i + 1) * kColumnChunk);
+      });
     }
   };
-  run(threads_, chunks(width, kColumnChunk), [&](int i) {
+  crew.share(chunks(width, kColumnChunk), [&](int i) {
     const int begin = i * kColumnChunk, end = std::min(width, begin + kColumnChunk);
-    std::memset(panel + begin * ld, 0, sizeof(double) * ld * (end - begin));
+    clear(panel + begin * ld, ld * (end - begin));
   });
   assemble_entries(s, values, damping);
   add_children(true);
@@ -240,66 +264,50 @@ void BlockCholesky::factorise_front_together(int s, const double* values, const 
     const int end = std::min(width, first + kPanelColumns);
     const int next = end == width ? padded(width) : end;
     double* square = panel + first * ld + first;
-    *failed = cholesky_in_place(square, leading, next - first, end - first);
-    if (*failed >= 0) {
-      *failed += first;
-      return;
-    }
+    const int failed = cholesky_in_place(square, leading, next - first, end - first);
+    if (failed >= 0) return first + failed;
     double* rest = panel + first * ld + next;
-    run(threads_, chunks(leading - next, kRowChunk), [&](int i) {
+    crew.share(chunks(leading - next, kRowChunk), [&](int i) {
       const int row = i * kRowChunk;
       divide_rows(rest + row, leading, std::min(kRowChunk, leading - next - row), square, leading,
                   end - first);
     });
     if (end == width) break;
     const LowerTiles tiles{leading - end, width - end};
-    run(threads_, tiles.count(), [&](int i) {
+    crew.share(tiles.count(), [&](int i) {
       tiles.compute(i, panel + end * ld + end, leading, rest, leading, end - first, false);
     });
   }
-  if (below == 0) return;
+  if (below == 0) return -1;
   const LowerTiles tiles{padded(below), below};
-  run(threads_, tiles.count(), [&](int i) {
+  crew.share(tiles.count(), [&](int i) {
     tiles.compute(i, updates_.data() + s_.update_begin[s], padded(below), panel + padded(width),
                   leading, width, true);
   });
   add_children(false);
+  return -1;
 }
 
 bool BlockCholesky::factorise(const double* values, const double* damping) {
-  const auto factorise_range = [&](int task, int begin, int end) {
-    failed_[task] = -1;
-    for (int s = begin; s < end; ++s) {
-      int failed = -1;
-      if (worth_sharing(s)) {
-        factorise_front_together(s, values, damping, &failed);
-      } else {
-        factorise_front(s, values, damping, &failed);
-      }
+  // The lowest item that fails is the same whoever runs what: all below it are run in any case.
+  std::atomic<int> lowest = s_.items();
+  runner_.run(s_.upwards, threads_, [&](int item, const ItemRunner::Crew& crew) {
+    if (item > lowest.load(std::memory_order_relaxed)) return;
+    for (int s = s_.item_begin[item]; s < s_.item_begin[item + 1]; ++s) {
+      const int failed = worth_sharing(s) ? factorise_front_together(s, values, damping, crew)
+                                          : factorise_front(s, values, damping);
       if (failed < 0) continue;
       const int row = s_.scalar_begin[s_.first[s]] + failed;
-      failed_[task] =
-          static_cast<int>(std::upper_bound(s_.scalar_begin.begin(), s_.scalar_begin.end(), row) -
-                           s_.scalar_begin.begin()) -
-          1;
+      const auto after = std::upper_bound(s_.scalar_begin.begin(), s_.scalar_begin.end(), row);
+      failed_[item] = static_cast<int>(after - s_.scalar_begin.begin()) - 1;
+      for (int known = lowest.load(); item < known && !lowest.compare_exchange_weak(known, item);) {
+      }
       return;
     }
-  };
-  failed_row_ = -1;
-  const int tasks = s_.tasks(), top = s_.task_begin.back();
-  run(threads_, tasks, [&](int t) { factorise_range(t, s_.task_begin[t], s_.task_begin[t + 1]); });
-  // The lowest of all columns that failed, whichever task came first.
-  failed_[tasks] = -1;
-  int failed = -1;
-  for (int t = 0; t < tasks; ++t) {
-    if (failed_[t] >= 0 && (failed < 0 || failed_[t] < failed)) failed = failed_[t];
-  }
-  if (failed < 0) {
-    factorise_range(tasks, top, s_.count());
-    failed = failed_[tasks];
-  }
-  if (failed >= 0) failed_row_ = s_.old_of_new[failed];
-  return failed < 0;
+  });
+  const bool good = lowest.load() == s_.items();
+  failed_row_ = good ? -1 : s_.old_of_new[failed_[lowest.load()]];
+  return good;
 }
 
 double BlockCholesky::multiply_adds() const {

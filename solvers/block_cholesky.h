@@ -10,8 +10,8 @@
 /// to be faster. A front gathers its columns of H and the update matrices of its children, factors
 /// its pivot columns and leaves an update matrix to its parent (Duff & Reid 1983; Liu 1992);
 /// everything in it is dense and runs in kernels whose tiles are register-sized. Subtrees run side
-/// by side; above them, threads share the work inside a front. Every number is computed by one
-/// thread in an order of operations that is fixed by the pattern.
+/// by side; a thread that has no front helps with the front of another. Every number is computed by
+/// one thread in an order of operations that is fixed by the pattern.
 
 #include <locograph/core/linear_solver.h>
 #include <locograph/solvers/aligned_memory.h>
@@ -25,10 +25,17 @@ namespace locograph {
 class BlockCholesky final : public LinearSolver {
  public:
   std::string name() const override { return "block-cholesky"; }
-  void use_threads(ThreadPool* threads) override { threads_ = threads; }
+  void use_threads(ThreadPool* threads) override;
   void analyse(const BlockPattern& pattern) override;
+  /// Like analyse(), if the factorisation is estimated to take less than `seconds`; false if not,
+  /// and the solver is as it was when the pattern is new.
+  bool analyse_if_below(const BlockPattern& pattern, double seconds);
   bool factorise(const double* values, const double* damping) override;
   void solve(const double* right_hand_side, double* x) const override;
+  /// Blocks inside the pattern of the factor come from the recursion of Takahashi, Fagan & Chin
+  /// (1973), front by front from the root; others from one solution for each scalar column.
+  bool inverse_blocks(const BlockPattern& pattern, std::span<const std::pair<int, int>> blocks,
+                      double* out) const override;
   int failed_row() const override { return failed_row_; }
 
   /// After analyse(): the symbolic factorisation, the estimated seconds of one factorisation, its
@@ -53,9 +60,10 @@ class BlockCholesky final : public LinearSolver {
   void place_entries();
   void assemble_entries(int supernode, const double* values, const double* damping);
   void add_child(int child, bool pivots, int begin, int end);
-  void factorise_front(int supernode, const double* values, const double* damping, int* failed);
-  void factorise_front_together(int supernode, const double* values, const double* damping,
-                                int* failed);
+  /// Both return the scalar column that failed, or -1.
+  int factorise_front(int supernode, const double* values, const double* damping);
+  int factorise_front_together(int supernode, const double* values, const double* damping,
+                               const ItemRunner::Crew& crew);
   bool worth_sharing(int supernode) const;
   void forward(int supernode, const double* right_hand_side) const;
   void backward(int supernode, double* x) const;
@@ -66,7 +74,8 @@ class BlockCholesky final : public LinearSolver {
   std::vector<std::int64_t> entry_begin_;  ///< by supernode
   AlignedMemory factor_, updates_;
   mutable AlignedMemory vectors_;
-  std::vector<int> failed_;  ///< by task, and one for the top: block column, or -1
+  std::vector<int> failed_;  ///< block column that failed, of an item that did
+  mutable ItemRunner runner_;
   ThreadPool* threads_ = nullptr;
   double seconds_ = 0.0;
   bool nested_ = false;

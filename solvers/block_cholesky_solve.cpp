@@ -24,7 +24,8 @@ void BlockCholesky::forward(int s, const double* right_hand_side) const {
       add(own + run.to, from + run.from, run.length);
     }
   }
-  solve_panel(factor_.data() + s_.panel_begin[s], s_.leading[s], s_.width[s], own);
+  solve_panel(factor_.data() + s_.panel_begin[s], s_.leading[s], s_.leading[s], s_.width[s], own,
+              true);
 }
 
 /// The rows under the pivots come from the parent, which is solved by now.
@@ -38,7 +39,8 @@ void BlockCholesky::backward(int s, double* x) const {
       std::copy_n(from + run.to, run.length, to + run.from);
     }
   }
-  solve_panel_transposed(factor_.data() + s_.panel_begin[s], s_.leading[s], s_.width[s], own);
+  solve_panel_transposed(factor_.data() + s_.panel_begin[s], s_.leading[s], s_.leading[s],
+                         s_.width[s], own, true);
   const double* next = own;
   for (int c = s_.first[s]; c < s_.first[s + 1]; ++c) {
     const int old = s_.old_of_new[c];
@@ -48,21 +50,13 @@ void BlockCholesky::backward(int s, double* x) const {
 }
 
 void BlockCholesky::solve(const double* right_hand_side, double* x) const {
-  const int tasks = s_.tasks(), top = s_.task_begin.back();
-  const auto run = [&](auto&& task) {
-    if (threads_) {
-      threads_->run(tasks, task);
-    } else {
-      for (int t = 0; t < tasks; ++t) task(t);
-    }
-  };
-  run([&](int t) {
-    for (int s = s_.task_begin[t]; s < s_.task_begin[t + 1]; ++s) forward(s, right_hand_side);
+  const int items = s_.items();
+  runner_.run(s_.upwards, threads_, [&](int item, const ItemRunner::Crew&) {
+    for (int s = s_.item_begin[item]; s < s_.item_begin[item + 1]; ++s) forward(s, right_hand_side);
   });
-  for (int s = top; s < s_.count(); ++s) forward(s, right_hand_side);
-  for (int s = s_.count() - 1; s >= top; --s) backward(s, x);
-  run([&](int t) {
-    for (int s = s_.task_begin[t + 1] - 1; s >= s_.task_begin[t]; --s) backward(s, x);
+  runner_.run(s_.downwards, threads_, [&](int reversed, const ItemRunner::Crew&) {
+    const int item = items - 1 - reversed;
+    for (int s = s_.item_begin[item + 1] - 1; s >= s_.item_begin[item]; --s) backward(s, x);
   });
 }
 

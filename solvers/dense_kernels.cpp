@@ -156,6 +156,7 @@ int factor_square(const Strip& s, int last, double* inverse) {
   Vector t[1][N];
   load_tile<1, N, kPartial>(t, s.c, s.ldc, last);
   accumulate<1, N, kPartial>(t, s.a, s.lda, s.b, s.ldb, s.k, last);
+  // What a column subtracts from the next is scaled by 1/pivot: no root waits for another.
   int failed = -1;
 #pragma GCC unroll 8
   for (int j = 0; j < N; ++j) {
@@ -164,12 +165,14 @@ int factor_square(const Strip& s, int last, double* inverse) {
       failed = j;
       break;
     }
-    const double scale = 1.0 / std::sqrt(pivot);
-    inverse[j] = scale;
-    t[0][j] *= scale;
+    const double reciprocal = 1.0 / pivot;
 #pragma GCC unroll 8
-    for (int n = j + 1; n < N; ++n) t[0][n] -= t[0][j] * t[0][j][n];
+    for (int n = j + 1; n < N; ++n) t[0][n] -= t[0][j] * (t[0][j][n] * reciprocal);
+    inverse[j] = reciprocal;
   }
+  for (int j = 0; j < N; ++j) inverse[j] = std::sqrt(inverse[j]);
+#pragma GCC unroll 8
+  for (int j = 0; j < N; ++j) t[0][j] *= inverse[j];
   store_tile<1, N, kPartial>(t, s.c, s.ldc, last);
   return failed;
 }

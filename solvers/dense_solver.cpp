@@ -1,9 +1,15 @@
+#include <locograph/solvers/cost_model.h>
 #include <locograph/solvers/dense_kernels.h>
 #include <locograph/solvers/dense_solver.h>
+#include <locograph/solvers/panel_solve.h>
 
 #include <algorithm>
 
 namespace locograph {
+
+double DenseSolver::seconds(const BlockPattern& pattern) {
+  return panel_seconds(pattern.scalar_size(), 0);
+}
 
 void DenseSolver::analyse(const BlockPattern& pattern) {
   pattern_ = pattern;
@@ -36,8 +42,8 @@ bool DenseSolver::factorise(const double* values, const double* damping) {
 void DenseSolver::solve(const double* right_hand_side, double* x) const {
   const int n = pattern_.scalar_size();
   if (x != right_hand_side) std::copy(right_hand_side, right_hand_side + n, x);
-  solve_lower(factor_.data(), n, n, x);
-  solve_lower_transposed(factor_.data(), n, n, x);
+  solve_panel(factor_.data(), n, n, n, x);
+  solve_panel_transposed(factor_.data(), n, n, n, x);
 }
 
 }  // namespace locograph

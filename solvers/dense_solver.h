@@ -15,6 +15,9 @@ class DenseSolver final : public LinearSolver {
   void solve(const double* right_hand_side, double* x) const override;
   int failed_row() const override { return failed_row_; }
 
+  /// Estimated seconds of one factorisation of this pattern.
+  static double seconds(const BlockPattern& pattern);
+
  private:
   BlockPattern pattern_;
   Eigen::MatrixXd factor_;

@@ -1,6 +1,7 @@
 #include <locograph/common/error.h>
 #include <locograph/solvers/banded_solver.h>
 #include <locograph/solvers/block_cholesky.h>
+#include <locograph/solvers/cost_model.h>
 #include <locograph/solvers/dense_solver.h>
 #include <locograph/solvers/eigen_solver.h>
 #include <locograph/solvers/linear_solvers.h>
@@ -15,6 +16,20 @@
 namespace locograph {
 namespace {
 
+/// The solver with the least estimated time. Sparse orders are only computed where they can pay.
+std::unique_ptr<LinearSolver> cheapest(const BlockPattern& pattern) {
+  const double dense = DenseSolver::seconds(pattern), banded = BandedSolver::seconds(pattern);
+  const double simple = std::min(dense, banded);
+  // Estimates are not better than this, and the others need no order.
+  constexpr double kMargin = 0.8, kFactorisations = 10.0;
+  if (kFactorisations * simple > ordering_seconds(pattern.size(), pattern.blocks())) {
+    auto sparse = std::make_unique<BlockCholesky>();
+    if (sparse->analyse_if_below(pattern, kMargin * simple)) return sparse;
+  }
+  if (dense <= banded) return std::make_unique<DenseSolver>();
+  return std::make_unique<BandedSolver>();
+}
+
 /// Chooses when it sees the pattern, and again when the pattern changes.
 class AutoSolver final : public LinearSolver {
  public:
@@ -23,22 +38,8 @@ class AutoSolver final : public LinearSolver {
   void analyse(const BlockPattern& pattern) override {
     if (chosen_ && pattern == pattern_) return;
     pattern_ = pattern;
-    const double n = pattern.scalar_size();
-    const double dense = n * n * n / 6.0;
-    const double banded = BandedSolver::cost(pattern);
     if (choose_schur(pattern)) return;
-    if (dense <= 50e3 || (pattern.size() <= 2)) {
-      chosen_ = std::make_unique<DenseSolver>();
-    } else {
-      auto sparse = std::make_unique<BlockCholesky>();
-      sparse->analyse(pattern);
-      // Panels run at several times the speed of small blocks: a band may cost twice the flops.
-      if (banded <= 2.0 * sparse->multiply_adds()) {
-        chosen_ = std::make_unique<BandedSolver>();
-      } else {
-        chosen_ = std::move(sparse);
-      }
-    }
+    chosen_ = cheapest(pattern);
     chosen_->use_threads(threads_);
     chosen_->analyse(pattern);
   }
@@ -51,6 +52,10 @@ class AutoSolver final : public LinearSolver {
   }
   void solve(const double* right_hand_side, double* x) const override {
     chosen_->solve(right_hand_side, x);
+  }
+  bool inverse_blocks(const BlockPattern& pattern, std::span<const std::pair<int, int>> blocks,
+                      double* out) const override {
+    return chosen_->inverse_blocks(pattern, blocks, out);
   }
   int failed_row() const override { return chosen_ ? chosen_->failed_row() : -1; }
 

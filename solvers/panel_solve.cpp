@@ -8,28 +8,41 @@ namespace locograph {
 namespace {
 
 template <int N>
-void forward_strip(const double* panel, long ld, long rows, double* x) {
+void forward_strip(const double* panel, long ld, long first, long rows, double* x) {
   double value[N];
   for (int j = 0; j < N; ++j) {
     double v = x[j];
     for (int k = 0; k < j; ++k) v -= panel[k * ld + j] * value[k];
     x[j] = value[j] = v / panel[j * ld + j];
   }
-  for (long i = kLanes; i < rows; i += kLanes) {
+  long i = first;
+  for (; i + kLanes <= rows; i += kLanes) {
     Vector v = load(x + i);
 #pragma GCC unroll 8
     for (int j = 0; j < N; ++j) v -= load(panel + j * ld + i) * value[j];
     store(x + i, v);
   }
+  if (const int rest = static_cast<int>(rows - i); rest > 0) {
+    Vector v = load_partial(x + i, rest);
+#pragma GCC unroll 8
+    for (int j = 0; j < N; ++j) v -= load_partial(panel + j * ld + i, rest) * value[j];
+    store_partial(x + i, v, rest);
+  }
 }
 
 template <int N>
-void backward_strip(const double* panel, long ld, long rows, double* x) {
+void backward_strip(const double* panel, long ld, long first, long rows, double* x) {
   Vector total[N] = {};
-  for (long i = kLanes; i < rows; i += kLanes) {
+  long i = first;
+  for (; i + kLanes <= rows; i += kLanes) {
     const Vector v = load(x + i);
 #pragma GCC unroll 8
     for (int j = 0; j < N; ++j) total[j] += load(panel + j * ld + i) * v;
+  }
+  if (const int rest = static_cast<int>(rows - i); rest > 0) {
+    const Vector v = load_partial(x + i, rest);
+#pragma GCC unroll 8
+    for (int j = 0; j < N; ++j) total[j] += load_partial(panel + j * ld + i, rest) * v;
   }
   for (int j = N - 1; j >= 0; --j) {
     double v = x[j] - sum(total[j]);
@@ -38,7 +51,7 @@ void backward_strip(const double* panel, long ld, long rows, double* x) {
   }
 }
 
-using Strip = void (*)(const double* panel, long ld, long rows, double* x);
+using Strip = void (*)(const double* panel, long ld, long first, long rows, double* x);
 
 template <bool kBackward, int... N>
 constexpr auto strips(std::integer_sequence<int, N...>) {
@@ -52,17 +65,23 @@ constexpr auto kBackward = strips<true>(std::make_integer_sequence<int, kLanes>(
 
 }  // namespace
 
-void solve_panel(const double* panel, int leading_dimension, int columns, double* x) {
+void solve_panel(const double* panel, int leading_dimension, int rows, int columns, double* x,
+                 bool is_padded) {
   const long ld = leading_dimension;
   for (int j = 0; j < columns; j += kLanes) {
-    kForward.by_width[std::min(kLanes, columns - j) - 1](panel + j * ld + j, ld, ld - j, x + j);
+    const int width = std::min(kLanes, columns - j);
+    kForward.by_width[width - 1](panel + j * ld + j, ld, is_padded ? kLanes : width, rows - j,
+                                 x + j);
   }
 }
 
-void solve_panel_transposed(const double* panel, int leading_dimension, int columns, double* x) {
+void solve_panel_transposed(const double* panel, int leading_dimension, int rows, int columns,
+                            double* x, bool is_padded) {
   const long ld = leading_dimension;
-  for (int j = (columns - 1) / kLanes * kLanes; j >= 0; j -= kLanes) {
-    kBackward.by_width[std::min(kLanes, columns - j) - 1](panel + j * ld + j, ld, ld - j, x + j);
+  for (int j = padded(columns) - kLanes; j >= 0; j -= kLanes) {
+    const int width = std::min(kLanes, columns - j);
+    kBackward.by_width[width - 1](panel + j * ld + j, ld, is_padded ? kLanes : width, rows - j,
+                                  x + j);
   }
 }
 

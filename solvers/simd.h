@@ -53,13 +53,36 @@ LOCOGRAPH_INLINE void store_partial(double* to, const Vector& v, int lanes) {
 #endif
 }
 
-/// to += from, to −= from · factor.
+/// to += from.
 LOCOGRAPH_INLINE void add(double* to, const double* from, int count) {
   int i = 0;
   for (; i + kLanes <= count; i += kLanes) store(to + i, load(to + i) + load(from + i));
   if (const int rest = count - i; rest != 0) {
     store_partial(to + i, load_partial(to + i, rest) + load_partial(from + i, rest), rest);
   }
+}
+/// The same for a block of rows × columns.
+LOCOGRAPH_INLINE void add(double* to, long to_leading, const double* from, long from_leading,
+                          int rows, int columns) {
+  int i = 0;
+  for (; i + kLanes <= rows; i += kLanes) {
+    for (int j = 0; j < columns; ++j) {
+      double* target = to + j * to_leading + i;
+      store(target, load(target) + load(from + j * from_leading + i));
+    }
+  }
+  if (const int rest = rows - i; rest != 0) {
+    for (int j = 0; j < columns; ++j) {
+      double* target = to + j * to_leading + i;
+      store_partial(target,
+                    load_partial(target, rest) + load_partial(from + j * from_leading + i, rest),
+                    rest);
+    }
+  }
+}
+/// count: a multiple of the lanes.
+LOCOGRAPH_INLINE void clear(double* to, long count) {
+  for (long i = 0; i < count; i += kLanes) store(to + i, Vector{});
 }
 
 LOCOGRAPH_INLINE double sum(const Vector& v) {

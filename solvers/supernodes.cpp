@@ -1,3 +1,4 @@
+#include <locograph/solvers/cost_model.h>
 #include <locograph/solvers/simd.h>
 #include <locograph/solvers/supernodes.h>
 
@@ -82,17 +83,19 @@ void merge_by_time(Partition& p) {
   std::erase_if(p.members, [&](int s) { return p.into[s] != s; });
 }
 
-/// Supernodes of the partition, by postorder, in an order in which tasks are contiguous.
+/// Supernodes of the partition, by postorder, in an order in which items are contiguous.
 struct Schedule {
   std::vector<int> order;  ///< positions in the postorder
-  std::vector<int> task_begin;
+  std::vector<int> item_begin;
+  int top = 0;
 };
 
-/// Subtrees of about a sixteenth of the work each become tasks: enough of them for a few threads
-/// to finish together. What is above is worked on front by front.
+/// Subtrees of about a sixteenth of the work each become items: enough of them for a few threads
+/// to finish together. Above them every front is an item, or a path of small fronts.
 Schedule schedule(const std::vector<int>& parent, const std::vector<double>& seconds) {
   constexpr double kShare = 1.0 / 16.0;
   constexpr double kWorthDividing = 50e-6;  // starting and joining threads takes a few microseconds
+  constexpr double kWorthItem = 5e-6;
   const int n = static_cast<int>(parent.size());
   std::vector<double> subtree = seconds;
   std::vector<int> size(n, 1);
@@ -103,40 +106,52 @@ Schedule schedule(const std::vector<int>& parent, const std::vector<double>& sec
     subtree[parent[s]] += subtree[s];
     size[parent[s]] += size[s];
   }
-  const double most = total < kWorthDividing ? total : kShare * total;
+  const double most = total < kWorthDividing ? 2.0 * total : kShare * total;
   const auto is_top = [&](int s) { return subtree[s] > most; };
-  // Whole subtrees, in postorder, are gathered until a task has its share.
-  struct Task {
+  // Whole subtrees, in postorder, are gathered until an item has its share.
+  struct Item {
     double seconds;
     int begin, end;  // of roots
   };
-  std::vector<int> roots;
+  std::vector<int> roots, top_children(n, 0);
   for (int s = 0; s < n; ++s) {
-    if (!is_top(s) && (parent[s] == -1 || is_top(parent[s]))) roots.push_back(s);
-  }
-  std::vector<Task> tasks;
-  for (int r = 0; r < static_cast<int>(roots.size()); ++r) {
-    if (tasks.empty() || tasks.back().seconds + subtree[roots[r]] > most) {
-      tasks.push_back({0.0, r, r});
+    if (is_top(s)) {
+      if (parent[s] != -1) ++top_children[parent[s]];
+    } else if (parent[s] == -1 || is_top(parent[s])) {
+      roots.push_back(s);
     }
-    tasks.back().seconds += subtree[roots[r]];
-    tasks.back().end = r + 1;
   }
-  // The longest first, so that threads end together.
-  std::stable_sort(tasks.begin(), tasks.end(),
-                   [](const Task& a, const Task& b) { return a.seconds > b.seconds; });
+  std::vector<Item> items;
+  for (int r = 0; r < static_cast<int>(roots.size()); ++r) {
+    if (items.empty() || items.back().seconds + subtree[roots[r]] > most) {
+      items.push_back({0.0, r, r});
+    }
+    items.back().seconds += subtree[roots[r]];
+    items.back().end = r + 1;
+  }
   Schedule result;
   result.order.reserve(n);
-  for (const Task& task : tasks) {
-    result.task_begin.push_back(static_cast<int>(result.order.size()));
-    for (int r = task.begin; r < task.end; ++r) {
+  result.item_begin.push_back(0);
+  for (const Item& item : items) {
+    for (int r = item.begin; r < item.end; ++r) {
       for (int s = roots[r] - size[roots[r]] + 1; s <= roots[r]; ++s) result.order.push_back(s);
     }
+    result.item_begin.push_back(static_cast<int>(result.order.size()));
   }
-  result.task_begin.push_back(static_cast<int>(result.order.size()));
-  for (int s = 0; s < n; ++s) {
-    if (is_top(s)) result.order.push_back(s);
+  result.top = static_cast<int>(result.order.size());
+  double gathered = 0.0;
+  for (int s = 0, below = -1; s < n; ++s) {
+    if (!is_top(s)) continue;
+    const bool on_path = below != -1 && parent[below] == s && top_children[s] == 1;
+    if (below != -1 && !(on_path && gathered + seconds[s] < kWorthItem)) {
+      result.item_begin.push_back(static_cast<int>(result.order.size()));
+      gathered = 0.0;
+    }
+    result.order.push_back(s);
+    gathered += seconds[s];
+    below = s;
   }
+  if (result.item_begin.back() != n) result.item_begin.push_back(n);
   return result;
 }
 
@@ -163,7 +178,8 @@ void number(const Partition& p, const EliminationTree& tree, const std::vector<i
     seconds[i] = front_seconds(p.width[s], p.height[s] - p.width[s]);
   }
   const Schedule plan = schedule(ordered_parent, seconds);
-  out.task_begin = plan.task_begin;
+  out.item_begin = plan.item_begin;
+  out.top = plan.top;
   std::vector<int> final_of(count);
   for (int i = 0; i < count; ++i) final_of[plan.order[i]] = i;
   out.parent.resize(count);
@@ -293,53 +309,66 @@ void lay_out(Supernodes& s) {
   }
 }
 
-/// Places of the update matrices. They live from their front to that of their parent: children of
-/// a front lie on top of one stack while its own goes on the other, so two stacks hold a task, one
-/// for each parity of the depth. What a task hands to the top stays apart.
+/// Places of the update matrices. They live from their front to that of their parent: in a subtree,
+/// children of a front lie on top of one stack while its own goes on the other, so two stacks hold
+/// an item, one for each parity of the depth. What others wait for stays apart.
 void place_updates(Supernodes& s) {
-  const int count = s.count(), top = s.task_begin.back();
+  const int count = s.count();
   std::vector<int> depth(count, 0);
   for (int i = count - 1; i >= 0; --i) depth[i] = s.parent[i] == -1 ? 0 : depth[s.parent[i]] + 1;
   const auto size = [&](int i) { return std::int64_t{s.below[i]} * padded(s.below[i]); };
+  const auto on_stack = [&](int i) { return s.parent[i] != -1 && s.parent[i] < s.top; };
   s.update_begin.assign(count, 0);
   s.update_size = 0;
-  const auto place_range = [&](int begin, int end) {
+  for (int item = 0; s.item_begin[item] < s.top; ++item) {
+    const int begin = s.item_begin[item], end = s.item_begin[item + 1];
     std::int64_t cursor[2] = {0, 0}, peak[2] = {0, 0};
-    const auto handed_over = [&](int i) { return i < top && s.parent[i] >= top; };
     for (int i = begin; i < end; ++i) {
       const int mine = depth[i] & 1;
-      if (!handed_over(i)) {
+      if (on_stack(i)) {
         s.update_begin[i] = cursor[mine];
         cursor[mine] += size(i);
         peak[mine] = std::max(peak[mine], cursor[mine]);
       }
       for (int k = s.child_begin[i]; k < s.child_begin[i + 1]; ++k) {
-        if (s.child[k] >= begin) cursor[1 - mine] -= size(s.child[k]);
+        cursor[1 - mine] -= size(s.child[k]);
       }
     }
     const std::int64_t base[2] = {s.update_size, s.update_size + peak[0]};
     s.update_size += peak[0] + peak[1];
     for (int i = begin; i < end; ++i) {
-      if (handed_over(i)) {
-        s.update_begin[i] = s.update_size;
-        s.update_size += size(i);
-      } else {
-        s.update_begin[i] += base[depth[i] & 1];
-      }
+      if (on_stack(i)) s.update_begin[i] += base[depth[i] & 1];
     }
-  };
-  for (int t = 0; t < s.tasks(); ++t) place_range(s.task_begin[t], s.task_begin[t + 1]);
-  place_range(top, count);
+  }
+  for (int i = 0; i < count; ++i) {
+    if (on_stack(i)) continue;
+    s.update_begin[i] = s.update_size;
+    s.update_size += size(i);
+  }
+}
+
+void connect_items(Supernodes& s) {
+  const int items = static_cast<int>(s.item_begin.size()) - 1;
+  std::vector<int> item_of(s.count());
+  std::vector<double> seconds(items, 0.0);
+  for (int item = 0; item < items; ++item) {
+    for (int i = s.item_begin[item]; i < s.item_begin[item + 1]; ++i) {
+      item_of[i] = item;
+      seconds[item] += s.seconds[i];
+    }
+  }
+  std::vector<std::pair<int, int>> up, down;
+  for (int i = 0; i < s.count(); ++i) {
+    if (s.parent[i] == -1 || item_of[i] == item_of[s.parent[i]]) continue;
+    up.emplace_back(item_of[i], item_of[s.parent[i]]);
+    down.emplace_back(items - 1 - up.back().second, items - 1 - up.back().first);
+  }
+  s.upwards = ItemGraph(up, seconds);
+  std::reverse(seconds.begin(), seconds.end());
+  s.downwards = ItemGraph(down, seconds);
 }
 
 }  // namespace
-
-double front_seconds(int width, int below) {
-  const double w = padded(width), m = padded(below);
-  const double multiply_adds = w * w * w / 6.0 + 0.5 * w * w * m + 0.5 * w * m * (m + kLanes);
-  const double moved = m * m + width * (w + m);
-  return 40e-9 + 8e-9 * width + multiply_adds / 26e9 + 0.12e-9 * moved;
-}
 
 double factorisation_seconds(const EliminationTree& tree, const std::vector<int>& dimension) {
   Partition p = without_fill(tree, dimension);
@@ -359,6 +388,7 @@ Supernodes supernodes(const BlockGraph& graph, const EliminationTree& tree,
   list_rows(graph, s);
   lay_out(s);
   place_updates(s);
+  connect_items(s);
   return s;
 }
 

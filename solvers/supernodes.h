@@ -10,11 +10,12 @@
 /// a panel of the factor, the rest is the update matrix that it hands to its parent (Duff & Reid
 /// 1983; Liu 1992). Which columns are joined is decided by an estimate of the time of a front.
 ///
-/// Order: every task is a contiguous range of supernodes without dependencies on other tasks; what
-/// comes after the tasks is the top of the tree. Children precede parents everywhere. Nothing here
-/// depends on the number of threads.
+/// Order: contiguous ranges of supernodes are items of work. The first items are whole subtrees and
+/// wait for nothing; the others are the top of the tree, front by front or a short path of them.
+/// Children precede parents everywhere. Nothing here depends on the number of threads.
 
 #include <locograph/solvers/elimination_tree.h>
+#include <locograph/solvers/item_graph.h>
 
 #include <cstdint>
 #include <vector>
@@ -49,14 +50,15 @@ struct Supernodes {
   std::int64_t update_size = 0;            ///< working memory, in numbers
   std::vector<double> seconds;             ///< estimated, of each front
 
-  std::vector<int> task_begin;  ///< first supernode of each task; the last entry begins the top
+  std::vector<int> item_begin;  ///< first supernode of each item; items + 1 entries
+  int top = 0;                  ///< first supernode that is in no subtree item
+  ItemGraph upwards;            ///< children before parents
+  ItemGraph downwards;          ///< parents before children; its item i is the i-th from the end
 
   int count() const { return static_cast<int>(parent.size()); }
-  int tasks() const { return static_cast<int>(task_begin.size()) - 1; }
+  int items() const { return upwards.size(); }
 };
 
-/// Estimated seconds of a front on one thread of a current desktop processor.
-double front_seconds(int width, int below);
 /// Estimated seconds of a factorisation, from the heights alone.
 double factorisation_seconds(const EliminationTree& tree, const std::vector<int>& dimension);
 

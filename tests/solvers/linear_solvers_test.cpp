@@ -133,6 +133,53 @@ TEST_P(EverySolver, GivesTheSameBitsEveryTime) {
   EXPECT_EQ(std::memcmp(first.data(), again.data(), first.size() * sizeof(double)), 0);
 }
 
+TEST_P(EverySolver, GivesTheSameBitsOnTwoThreads) {
+  const RandomSystem a = system();
+  std::vector<double> alone(a.right_hand_side.size()), together(alone.size());
+  const std::unique_ptr<LinearSolver> s = solver();
+  s->analyse(a.pattern);
+  ASSERT_TRUE(s->factorise(a.values.data(), a.damping.data()));
+  s->solve(a.right_hand_side.data(), alone.data());
+  ThreadPool threads(2);
+  s->use_threads(&threads);
+  ASSERT_TRUE(s->factorise(a.values.data(), a.damping.data()));
+  s->solve(a.right_hand_side.data(), together.data());
+  EXPECT_EQ(std::memcmp(alone.data(), together.data(), alone.size() * sizeof(double)), 0);
+}
+
+TEST_P(EverySolver, GivesBlocksOfTheInverse) {
+  const std::unique_ptr<LinearSolver> s = solver();
+  const RandomSystem a = system();
+  s->analyse(a.pattern);
+  ASSERT_TRUE(s->factorise(a.values.data(), a.damping.data()));
+  // Blocks of H in both triangles, and others that may lie outside the factor.
+  std::vector<std::pair<int, int>> blocks;
+  const int n = a.pattern.size();
+  for (int c = 0; c < n; ++c) {
+    blocks.emplace_back((7 * c + 3) % n, c);
+    for (int k = a.pattern.column_begin[c]; k < a.pattern.column_begin[c + 1]; ++k) {
+      blocks.emplace_back(a.pattern.row[k], c);
+      blocks.emplace_back(c, a.pattern.row[k]);
+    }
+  }
+  std::size_t size = 0;
+  for (const auto& [r, c] : blocks) size += a.pattern.dimension[r] * a.pattern.dimension[c];
+  std::vector<double> out(size);
+  ASSERT_TRUE(s->inverse_blocks(a.pattern, blocks, out.data()));
+  const Eigen::MatrixXd expected = a.matrix.inverse();
+  const double* next = out.data();
+  for (const auto& [r, c] : blocks) {
+    const int rows = a.pattern.dimension[r], columns = a.pattern.dimension[c];
+    const Eigen::Map<const Eigen::MatrixXd> block(next, rows, columns);
+    ASSERT_LE((block -
+               expected.block(a.pattern.scalar_begin[r], a.pattern.scalar_begin[c], rows, columns))
+                  .norm(),
+              1e-12 * expected.norm())
+        << r << ", " << c;
+    next += rows * columns;
+  }
+}
+
 TEST_P(EverySolver, NamesTheBlockThatIsNotPositiveDefiniteAndRecovers) {
   const std::unique_ptr<LinearSolver> s = solver();
   const RandomSystem good = system();

@@ -1,0 +1,165 @@
+/// Analysis, factorisation and solution of the normal equations of pose graphs at their initial
+/// values: our block Cholesky on one and two threads, CHOLMOD (simplicial and supernodal) and
+/// Eigen, in the same run.
+///
+///     factorisation_benchmark [--runs N] [--peers no] [FILE.g2o…]   # default: the shared data
+///
+/// Prints one JSON object: medians in milliseconds, and ratios to ours on one thread. The peers'
+/// factorisation includes copying the values into their matrix, as ours does.
+
+#include <locograph/common/deadline.h>
+#include <locograph/core/graph_file.h>
+#include <locograph/core/workspace.h>
+#include <locograph/solvers/block_cholesky.h>
+#include <locograph/solvers/eigen_solver.h>
+#include <locograph/types/standard_types.h>
+#if LOCOGRAPH_HAVE_CHOLMOD
+#include <locograph/solvers/cholmod_solver.h>
+#endif
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+namespace locograph {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct System {
+  Graph graph;
+  Problem problem;
+  Workspace workspace;
+  std::vector<double> damping;
+
+  explicit System(const std::filesystem::path& file)
+      : graph(read_graph(file, standard_types(), {.lenient = true})) {
+    graph.set_fixed(0, true);
+    problem.compile(graph);
+    workspace.allocate(problem);
+    workspace.load_state();
+    workspace.evaluate(workspace.state());
+    workspace.linearise();
+    std::vector<double> diagonal(problem.dimension());
+    workspace.diagonal(diagonal);
+    damping.assign(problem.dimension(), 1e-5 * *std::max_element(diagonal.begin(), diagonal.end()));
+  }
+};
+
+/// Median milliseconds of `runs` calls, repeated until each measurement takes a millisecond.
+double median(int runs, const std::function<void()>& work) {
+  const Stopwatch first;
+  work();
+  const int repeats = 1 + static_cast<int>(1e-3 / std::max(first.seconds(), 1e-7));
+  std::vector<double> times;
+  for (int i = 0; i < runs; ++i) {
+    const Stopwatch watch;
+    for (int r = 0; r < repeats; ++r) work();
+    times.push_back(1e3 * watch.seconds() / repeats);
+  }
+  std::nth_element(times.begin(), times.begin() + runs / 2, times.end());
+  return times[runs / 2];
+}
+
+using Make = std::function<std::unique_ptr<LinearSolver>()>;
+
+Json measure(System& system, int runs, const Make& make, ThreadPool* threads = nullptr) {
+  const BlockPattern& pattern = system.problem.pattern();
+  std::unique_ptr<LinearSolver> solver = make();
+  solver->use_threads(threads);
+  solver->analyse(pattern);
+  Json json;
+  json["analyse"] = median(std::min(runs, 5), [&] { make()->analyse(pattern); });
+  json["factorise"] = median(runs, [&] {
+    if (!solver->factorise(system.workspace.hessian().data(), system.damping.data())) {
+      throw Error("a factorisation failed", "a positive definite matrix");
+    }
+  });
+  json["solve"] = median(runs, [&] {
+    solver->solve(system.workspace.gradient().data(), system.workspace.step().data());
+  });
+  return json;
+}
+
+Json compare(const std::filesystem::path& file, int runs, bool peers) {
+  System system(file);
+  const auto ours = [] { return std::make_unique<BlockCholesky>(); };
+  BlockCholesky solver;
+  solver.analyse(system.problem.pattern());
+  ThreadPool threads(2);
+  Json json;
+  json["file"] = file.filename().string();
+  json["blocks"] = system.problem.pattern().size();
+  json["dimension"] = system.problem.dimension();
+  json["order"] = solver.order();
+  json["supernodes"] = solver.structure().count();
+  json["factor_size"] = solver.factor_size();
+  json["multiply_adds"] = solver.multiply_adds();
+  json["estimated_ms"] = 1e3 * solver.seconds();
+  Json one = measure(system, runs, ours), two = measure(system, runs, ours, &threads);
+  json["gigaflops"] = 2e-6 * solver.multiply_adds() / one["factorise"].get<double>();
+  json["ours"] = one;
+  json["ours_two_threads"] = two;
+  const auto ratio = [&](const char* phase, const Json& other) {
+    return other[phase].get<double>() / one[phase].get<double>();
+  };
+  json["one_over_two_threads"] = 1.0 / ratio("factorise", two);
+  if (!peers) return json;
+  const auto add = [&](const char* name, const Make& make) {
+    json[name] = measure(system, std::max(1, runs / 3), make);
+    for (const char* phase : {"analyse", "factorise", "solve"}) {
+      json[std::string(name) + "_over_ours"][phase] = ratio(phase, json[name]);
+    }
+  };
+#if LOCOGRAPH_HAVE_CHOLMOD
+  using Mode = CholmodSolver::Mode;
+  add("cholmod_simplicial", [] { return std::make_unique<CholmodSolver>(Mode::simplicial); });
+  add("cholmod_supernodal", [] { return std::make_unique<CholmodSolver>(Mode::supernodal); });
+#endif
+  add("eigen", [] { return std::make_unique<EigenSolver>(); });
+  return json;
+}
+
+}  // namespace
+}  // namespace locograph
+
+int main(int argc, char** argv) {
+  int runs = 15;
+  bool peers = true;
+  std::vector<std::filesystem::path> files;
+  try {
+    for (int i = 1; i < argc; ++i) {
+      const std::string argument = argv[i];
+      if (argument == "--runs" && i + 1 < argc) {
+        runs = std::atoi(argv[++i]);
+        if (runs < 1) throw locograph::Error("option --runs", "a number of 1 or more");
+      } else if (argument == "--peers" && i + 1 < argc) {
+        peers = std::string(argv[++i]) != "no";
+      } else {
+        files.emplace_back(argument);
+      }
+    }
+    const std::filesystem::path folder =
+        std::filesystem::path(LOCOGRAPH_SHARED_DATA) / "pose_graphs";
+    if (files.empty() && std::filesystem::exists(folder)) {
+      for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        if (entry.path().extension() == ".g2o") files.push_back(entry.path());
+      }
+      std::sort(files.begin(), files.end());
+    }
+    if (files.empty()) throw locograph::Error("no graph files", "FILE.g2o arguments");
+    locograph::Json all = {{"unit", "ms"}, {"runs", runs}};
+    all["graphs"] = locograph::Json::array();
+    for (const std::filesystem::path& file : files) {
+      std::cerr << file.filename().string() << "\n";
+      all["graphs"].push_back(locograph::compare(file, runs, peers));
+    }
+    std::cout << all.dump(1) << "\n";
+  } catch (const locograph::Error& error) {
+    std::cerr << "factorisation_benchmark: " << error.what() << "\n";
+    return 2;
+  }
+  return 0;
+}
