@@ -267,6 +267,8 @@ Json compare(const std::string& name, const BundleProblem& bundle, const Setting
                {"cameras", bundle.cameras.size()},
                {"points", bundle.points.size()},
                {"observations", bundle.observations.size()},
+               {"residuals", 2 * bundle.observations.size()},
+               {"unknowns", 9 * bundle.cameras.size() + 3 * bundle.points.size()},
                {"lowest_cost", lowest}};
   Json results = Json::array();
   std::map<std::string, double> best_near, best_total;
