@@ -9,10 +9,13 @@
 #include <locograph/core/initial_guess.h>
 #include <locograph/core/optimiser.h>
 #include <locograph/solvers/linear_solvers.h>
+#include <locograph/types/bundle/bal_file.h>
 #include <locograph/types/chordal_guess.h>
 
 #include <CLI/Validators.hpp>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <iterator>
 #include <map>
@@ -33,6 +36,7 @@ struct OptimizeOptions {
   int threads = 1;
   std::vector<std::string> plugins;
   bool graduated = false, lenient = false, json = false;
+  bool bal = false;  ///< the input is a file of bundle adjustment in the large
 
   std::string input_name() const { return input == "-" ? "stdin" : input; }
 };
@@ -47,7 +51,22 @@ const std::map<std::string, Algorithm> kAlgorithms = {
     {"dogleg", Algorithm::kDogleg},
 };
 
+/// By its extension, or by its first line.
+bool is_bal_file(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (extension == ".g2o") return false;
+  if (extension == ".bal") return true;
+  // What begins in a pipe cannot be read twice.
+  if (!std::filesystem::is_regular_file(path)) return false;
+  std::ifstream in(path);
+  std::string begin(200, '\0');
+  in.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  begin.resize(static_cast<std::size_t>(in.gcount()));
+  return looks_like_bal(begin);
+}
+
 Graph load(const OptimizeOptions& options, ReadReport& report) {
+  if (options.bal) return read_bal(options.input);
   const ReadOptions read = {.lenient = options.lenient};
   const TypeRegistry types = graph_types(options.plugins);
   Graph graph;
@@ -192,7 +211,13 @@ ExitCode optimize(const OptimizeOptions& options) {
   Graph graph = load(options, report);
   times.load = total.seconds();
   if (kernel.kind != RobustKernel::Kind::kNone) graph.set_kernel(kernel);
-  const Gauge gauge = hold_gauge(graph, options.input_name(), options.lenient);
+  Gauge gauge;
+  if (options.bal) {
+    gauge.text = "free, held by damping";
+  } else {
+    gauge = hold_gauge(graph, options.input_name(), options.lenient);
+    mark_points_for_elimination(graph);
+  }
   guess(graph, options, *solver);
   int dimension = 0, rejected = 0;
   const OptimiserResult result = run(graph, options, *solver, dimension, rejected, times);
@@ -243,7 +268,11 @@ Command add_optimize(CLI::App& app) {
   const auto options = std::make_shared<OptimizeOptions>();
   OptimizeOptions& o = *options;
   CLI::App* parser = app.add_subcommand("optimize", "Optimise a graph file");
-  parser->add_option("IN", o.input, "Graph file (.g2o), - reads standard input")->required();
+  parser
+      ->add_option("IN", o.input,
+                   "Graph file (.g2o) or bundle adjustment in the large (.txt, .bal); - reads "
+                   "standard input")
+      ->required();
   parser->add_option("-o,--output", o.output, "Where to write the optimised graph");
   parser->add_option("--algorithm", o.algorithm, "lm, gn or dogleg")
       ->check(CLI::IsMember({"lm", "gn", "dogleg"}))
@@ -279,6 +308,12 @@ Command add_optimize(CLI::App& app) {
   parser->add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] {
             options->optimiser.algorithm = kAlgorithms.at(options->algorithm);
+            options->bal = options->input != "-" && is_bal_file(options->input);
+            if (options->bal) {
+              // Rotations, pixels and distortions have no common unit.
+              options->optimiser.scale_by_diagonal = true;
+              options->optimiser.initial_lambda = 1e-4;
+            }
             return optimize(*options);
           }};
 }

@@ -78,17 +78,30 @@ struct Kernels {
     return true;
   }
 
-  /// target (m × n) −= left right ᵀ
+  /// Rows First … K − 1 of target (K × K) −= left rightᵀ, a power of two of them at a time.
+  template <int First>
+  static void subtract_rows(double* __restrict target, const double* __restrict left,
+                            const double* __restrict right) {
+    constexpr int kLeft = K - First, kWidth = kLeft >= 8 ? 8 : kLeft >= 4 ? 4 : kLeft >= 2 ? 2 : 1;
+    // A typedef: GCC drops the attribute from an alias declaration when its size is dependent.
+    typedef double Rows __attribute__((vector_size(kWidth * sizeof(double))));
+    Rows factors[D];
+    for (int k = 0; k < D; ++k) std::memcpy(&factors[k], left + k * K + First, sizeof(Rows));
+    for (int c = 0; c < K; ++c) {
+      Rows rows;
+      std::memcpy(&rows, target + c * K + First, sizeof rows);
+      for (int k = 0; k < D; ++k) rows -= factors[k] * right[k * K + c];
+      std::memcpy(target + c * K + First, &rows, sizeof rows);
+    }
+    if constexpr (First + kWidth < K) subtract_rows<First + kWidth>(target, left, right);
+  }
+
+  /// target (m × n) −= left rightᵀ
   static void subtract_product(double* __restrict target, const double* __restrict left,
                                const double* __restrict right, [[maybe_unused]] int m,
                                [[maybe_unused]] int n, [[maybe_unused]] int inner) {
     if constexpr (K > 0 && D > 0) {
-      for (int c = 0; c < K; ++c) {
-        for (int k = 0; k < D; ++k) {
-          const double factor = right[k * K + c];
-          for (int r = 0; r < K; ++r) target[c * K + r] -= left[k * K + r] * factor;
-        }
-      }
+      subtract_rows<0>(target, left, right);
     } else {
       if (m * n * inner > 4096) {
         locograph::subtract_product(target, m, left, m, right, n, m, n, inner);

@@ -15,7 +15,7 @@
 ///
 /// schur-dense    dense Cholesky of S: all cameras see common points
 /// schur-sparse   block-sparse Cholesky of S: streets, cities, long trajectories
-/// schur-pcg      conjugate gradients on S: as good as its PcgOptions say
+/// schur-pcg      conjugate gradients on S: inexact, as good as its PcgOptions say
 /// schur          the cheapest of the three by estimated cost, decided in analyse()
 ///
 /// analyse() throws Error when two eliminated vertices share an edge. Without eliminated rows the
@@ -35,7 +35,10 @@ class SchurSolver final : public LinearSolver {
  public:
   enum class Reduced { kAutomatic, kDense, kSparse, kPcg };
 
-  explicit SchurSolver(Reduced reduced = Reduced::kAutomatic, const PcgOptions& pcg = {});
+  /// Conjugate gradients are meant for inexact steps: a hundredth of the residual is left, which
+  /// costs Levenberg-Marquardt a few more iterations and saves most of the products.
+  explicit SchurSolver(Reduced reduced = Reduced::kAutomatic,
+                       const PcgOptions& pcg = {.relative_tolerance = 1e-2, .max_iterations = 300});
   SchurSolver(const SchurSolver&) = delete;
   SchurSolver& operator=(const SchurSolver&) = delete;
 
