@@ -57,6 +57,62 @@ TEST(DenseKernels, ProductIsSubtracted) {
   EXPECT_LE((c - expected).norm(), 1e-14 * expected.norm());
 }
 
+TEST(DenseKernels, ProductsAreRightInEverySizeOfTile) {
+  for (const int m : {1, 2, 3, 7, 8, 9, 16, 23, 24, 25, 48, 50, 490}) {
+    for (const int n : {1, 2, 3, 4, 5, 6, 7, 8, 9, 31}) {
+      for (const int k : {0, 1, 6, 130}) {
+        const Eigen::MatrixXd a = random_matrix(m, k, 8), b = random_matrix(n, k, 9);
+        const Eigen::MatrixXd before = random_matrix(m, n, 10);
+        Eigen::MatrixXd c = before;
+        subtract_product(c.data(), m, a.data(), m, b.data(), n, m, n, k);
+        EXPECT_LE((c - (before - a * b.transpose())).norm(), 1e-13 * (1 + k) * before.norm());
+        c.setConstant(std::nan(""));
+        negative_product(c.data(), m, a.data(), m, b.data(), n, m, n, k, false);
+        EXPECT_LE((c + a * b.transpose()).norm(), 1e-13 * (1 + k) * before.norm());
+        if (n > m) continue;
+        const Eigen::MatrixXd square = a * a.topRows(n).transpose();
+        c = before;
+        subtract_lower_product(c.data(), m, a.data(), m, m, n, k);
+        Eigen::MatrixXd difference = c - (before - square);
+        EXPECT_LE(difference.triangularView<Eigen::Lower>().toDenseMatrix().norm(),
+                  1e-13 * (1 + k) * before.norm());
+        c.setConstant(std::nan(""));
+        negative_product(c.data(), m, a.data(), m, a.data(), m, m, n, k, true);
+        for (int j = 0; j < n; ++j) {
+          EXPECT_LE((c.col(j) + square.col(j)).tail(m - j).norm(), 1e-13 * (1 + k) * before.norm());
+        }
+      }
+    }
+  }
+}
+
+TEST(DenseKernels, BitsDoNotDependOnHowAProductIsCut) {
+  const Eigen::MatrixXd a = random_matrix(100, 200, 11), b = random_matrix(40, 200, 12);
+  const Eigen::MatrixXd before = random_matrix(100, 40, 13);
+  Eigen::MatrixXd whole = before, cut = before;
+  subtract_product(whole.data(), 100, a.data(), 100, b.data(), 40, 100, 40, 200);
+  for (const auto& [row, rows] : {std::pair(0, 13), {13, 40}, {53, 47}}) {
+    for (const auto& [column, columns] : {std::pair(0, 5), {5, 35}}) {
+      subtract_product(cut.data() + column * 100 + row, 100, a.data() + row, 100, b.data() + column,
+                       40, rows, columns, 200);
+    }
+  }
+  EXPECT_EQ(whole, cut);
+}
+
+TEST(DenseKernels, RowsAreDividedByATriangle) {
+  for (const int n : {1, 3, 6, 8, 13, 64, 70, 150}) {
+    for (const int rows : {1, 8, 21, 60}) {
+      Eigen::MatrixXd l = random_matrix(n, n, 14).triangularView<Eigen::Lower>();
+      l.diagonal().array() += 10.0 + n;
+      const Eigen::MatrixXd b = random_matrix(rows, n, 15);
+      Eigen::MatrixXd x = b;
+      divide_rows(x.data(), rows, rows, l.data(), n, n);
+      EXPECT_LE((x * l.transpose() - b).norm(), 1e-13 * b.norm()) << n << " × " << rows;
+    }
+  }
+}
+
 TEST(DenseKernels, TriangularSystemsAreSolvedBothWays) {
   for (const int n : {1, 2, 6, 31}) {
     Eigen::MatrixXd l = random_matrix(n, n, 6).triangularView<Eigen::Lower>();
