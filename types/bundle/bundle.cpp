@@ -109,7 +109,6 @@ void add_bundle_types(TypeRegistry& types) {
   types.add_vertex<VertexCameraBAL>();
   types.add_vertex<VertexCam>();
   types.add_vertex<VertexInverseDepth>();
-  types.add_vertex_alias<VertexPointXYZ>("VERTEX_XYZ");
   types.add_edge<EdgeProjectBAL>();
   types.add_edge<EdgeProjectPinhole>();
   types.add_edge<EdgeProjectStereo>();
