@@ -1,3 +1,4 @@
+#include <locograph/apps/diagnosis_json.h>
 #include <locograph/apps/gauge.h>
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/optimize_command.h>
@@ -9,6 +10,9 @@
 #include <locograph/core/initial_guess.h>
 #include <locograph/core/optimiser.h>
 #include <locograph/solvers/linear_solvers.h>
+#ifdef LOCOGRAPH_WITH_CERES_BACKEND
+#include <locograph/solvers/ceres_backend.h>
+#endif
 #include <locograph/types/bundle/bal_file.h>
 #include <locograph/types/chordal_guess.h>
 
@@ -35,7 +39,7 @@ struct OptimizeOptions {
   OptimiserOptions optimiser;
   int threads = 1;
   std::vector<std::string> plugins;
-  bool graduated = false, lenient = false, json = false;
+  bool graduated = false, lenient = false, json = false, diagnose = false;
   bool bal = false;  ///< the input is a file of bundle adjustment in the large
 
   std::string input_name() const { return input == "-" ? "stdin" : input; }
@@ -143,6 +147,30 @@ OptimiserResult run(Graph& graph, const OptimizeOptions& options, LinearSolver& 
   return optimiser.result();
 }
 
+/// The whole graph by Ceres.
+OptimiserResult run_ceres([[maybe_unused]] Graph& graph,
+                          [[maybe_unused]] const OptimizeOptions& options,
+                          [[maybe_unused]] int& dimension, [[maybe_unused]] Times& times) {
+#ifdef LOCOGRAPH_WITH_CERES_BACKEND
+  const Stopwatch watch;
+  const OptimiserResult result = optimise_with_ceres(graph, options.optimiser, options.threads);
+  times.optimize = watch.seconds();
+  for (int v = 0; v < graph.vertex_slots(); ++v) {
+    if (graph.vertex_alive(v) && !graph.vertex_record(v).fixed) dimension += graph.dimension(v);
+  }
+  return result;
+#else
+  throw Error("this locograph was built without Ceres", "another --linear-solver");
+#endif
+}
+
+/// Whether the numbers ask for an explanation.
+bool calls_for_diagnosis(const OptimiserResult& result) {
+  using Reason = OptimiserResult::Reason;
+  return result.reason == Reason::kNotFinite || result.reason == Reason::kSingular ||
+         (result.singular_vertex >= 0 && !result.converged);
+}
+
 Json iterations_json(const OptimiserResult& result) {
   Json all = Json::array();
   for (const IterationStatistics& now : result.statistics) {
@@ -193,6 +221,7 @@ void print_summary(const OptimizeOptions& options, const Json& result) {
   }
   text += std::string(result["converged"] ? "" : "not converged: ") +
           result["reason"].get<std::string>() + '\n';
+  if (result.contains("diagnosis_text")) text += result["diagnosis_text"].get<std::string>();
   if (result.contains("output")) {
     text += "written: " + result["output"].get<std::string>() + '\n';
   }
@@ -202,7 +231,10 @@ void print_summary(const OptimizeOptions& options, const Json& result) {
 ExitCode optimize(const OptimizeOptions& options) {
   if (!options.output.empty()) check_writable(options.output);
   options.optimiser.validate();
-  const std::unique_ptr<LinearSolver> solver = make_linear_solver(options.linear_solver);
+  const bool ceres = options.linear_solver == "ceres";
+  if (ceres && options.graduated) throw Error("Ceres does not graduate", "--gnc without ceres");
+  const std::unique_ptr<LinearSolver> solver =
+      make_linear_solver(ceres ? "auto" : options.linear_solver);
   const RobustKernel kernel = RobustKernel::parse(options.kernel);
 
   Times times;
@@ -220,7 +252,16 @@ ExitCode optimize(const OptimizeOptions& options) {
   }
   guess(graph, options, *solver);
   int dimension = 0, rejected = 0;
-  const OptimiserResult result = run(graph, options, *solver, dimension, rejected, times);
+  const OptimiserResult result =
+      ceres ? run_ceres(graph, options, dimension, times)
+            : run(graph, options, *solver, dimension, rejected, times);
+  Json diagnosis;
+  std::string diagnosis_text;
+  if (options.diagnose || calls_for_diagnosis(result)) {
+    const Diagnosis found = diagnose(graph);
+    diagnosis = diagnosis_json(found, graph);
+    diagnosis_text = found.text(graph);
+  }
   gauge.release(graph);
   times.total = total.seconds();
 
@@ -240,7 +281,7 @@ ExitCode optimize(const OptimizeOptions& options) {
       {"converged", result.converged},
       {"reason", reason(result, graph)},
       {"algorithm", options.algorithm},
-      {"linear_solver", solver->name()},
+      {"linear_solver", ceres ? "ceres" : solver->name()},
       {"threads", options.threads},
       {"time",
        {{"load", times.load},
@@ -250,6 +291,10 @@ ExitCode optimize(const OptimizeOptions& options) {
       {"iterations_detail", iterations_json(result)},
   };
   if (options.graduated) json["rejected_edges"] = rejected;
+  if (!diagnosis.is_null()) {
+    json["diagnosis"] = diagnosis;
+    json["diagnosis_text"] = diagnosis_text;
+  }
   if (!options.output.empty() && std::isfinite(result.final.robust)) {
     write_graph(graph, options.output);
     json["output"] = options.output;
@@ -278,7 +323,8 @@ Command add_optimize(CLI::App& app) {
       ->check(CLI::IsMember({"lm", "gn", "dogleg"}))
       ->capture_default_str();
   parser
-      ->add_option("--linear-solver", o.linear_solver, "NAME (see: locograph list solvers) or auto")
+      ->add_option("--linear-solver", o.linear_solver,
+                   "NAME (see: locograph list solvers), auto, or ceres: the whole graph by Ceres")
       ->capture_default_str();
   parser
       ->add_option("--kernel", o.kernel,
@@ -305,6 +351,9 @@ Command add_optimize(CLI::App& app) {
   parser->add_flag(
       "--lenient", o.lenient,
       "Leave out unknown tags, project indefinite information, hold unconnected parts");
+  parser->add_flag("--diagnose", o.diagnose,
+                   "Tell what the measurements leave free and which matrices are not positive; "
+                   "done unasked when the system is singular");
   parser->add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] {
             options->optimiser.algorithm = kAlgorithms.at(options->algorithm);

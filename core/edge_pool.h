@@ -88,7 +88,7 @@ class EdgePool {
   virtual int dimension(int index) const = 0;
   virtual std::span<const int> vertices(int index) const = 0;
   virtual std::span<int> vertices(int index) = 0;
-  /// The pool that a vertex in a given slot must belong to; the type's tag when there is none yet.
+  /// The type of vertex in a given slot, and an empty pool of it; void and null where any will do.
   virtual std::type_index slot_type(int slot) const = 0;
   virtual std::unique_ptr<VertexPool> make_slot_pool(int slot) const = 0;
   virtual bool has_weights() const = 0;  ///< Ω is diagonal
@@ -118,6 +118,8 @@ class EdgePool {
   virtual void bind(int index, const Parameters& parameters) = 0;
   /// Reads measurement and information; `vertices` are already known. Returns the new index.
   virtual int read(std::span<const int> vertices, FieldReader& in) = 0;
+  /// Throws Error when an edge that was read does not fit its vertices.
+  virtual void check(int /*index*/, const Graph& /*graph*/) const {}
   virtual void write(int index, FieldWriter& out) const = 0;
   /// Removes by moving the last edge into the gap.
   virtual void remove(int index) = 0;

@@ -150,6 +150,27 @@ void Graph::remove_edge(EdgeId e) {
   --edge_count_;
 }
 
+EdgeId Graph::add_dense_prior(DensePrior prior) {
+  check_edge(prior.vertices, prior.information, static_cast<int>(prior.offset.size()));
+  int number = 0;
+  while (number < static_cast<int>(edge_pools_.size()) &&
+         edge_pools_[number]->type() != typeid(DensePrior)) {
+    ++number;
+  }
+  if (number == static_cast<int>(edge_pools_.size())) {
+    edge_pools_.push_back(std::make_unique<DensePriorPool>());
+  }
+  DensePriorPool& pool = static_cast<DensePriorPool&>(*edge_pools_[number]);
+  pool.edges.push_back(std::move(prior));
+  try {
+    pool.check(pool.size() - 1, *this);
+  } catch (const Error&) {
+    pool.edges.pop_back();
+    throw;
+  }
+  return {add_edge_record(number, pool.size() - 1, 0)};
+}
+
 void Graph::set_constraint(EdgeId e, ConstraintKind kind) {
   EdgeRecord& record = edge_records_[e.slot];
   const EdgePool& pool = *edge_pools_[record.pool];

@@ -11,6 +11,7 @@
 /// and VertexId hold: slots never move while the vertex lives. Removing keeps pools contiguous.
 /// Not thread-safe while edited; const access is.
 
+#include <locograph/core/dense_prior.h>
 #include <locograph/core/edge_pool.h>
 #include <locograph/core/parameters.h>
 #include <locograph/core/typed_edge_pool.h>
@@ -123,6 +124,12 @@ class Graph {
     edge.vertices = {leading.slot...};
     for (const VertexId<typename E::Many>& v : many) edge.vertices.push_back(v.slot);
     return add_typed_edge(std::move(edge));
+  }
+  /// Throws Error when its sizes do not fit the vertices, and like add_edge().
+  EdgeId add_dense_prior(DensePrior prior);
+  const DensePrior& dense_prior(EdgeId e) const {
+    return static_cast<const DensePriorPool&>(*edge_pools_[edge_records_[e.slot].pool])
+        .edges[edge_records_[e.slot].index];
   }
   template <class E>
   E& edge(EdgeId e) {

@@ -184,6 +184,7 @@ class GraphReader {
     const int index = pool.read(slots_, in);
     in.expect_end();
     pool.bind(index, graph_.parameters_);
+    pool.check(index, graph_);
     check_information(pool, index, line.number);
     graph_.add_edge_record(number, index, line.number);
   }
@@ -195,13 +196,17 @@ class GraphReader {
       if (!report_.vertices_from_edges) {
         in.fail("unknown vertex " + std::to_string(id), "an id declared by a VERTEX line");
       }
+      if (pool.slot_type(slot) == typeid(void)) {
+        in.fail("vertex " + std::to_string(id) + " is of no known type", "a VERTEX line for it");
+      }
       const int pool_number = pool_of(pool.slot_type(slot), pool.make_slot_pool(slot));
       const int index = graph_.vertex_pools_[pool_number]->add_default();
       vertex = graph_.add_vertex_record(id, pool_number, index);
       graph_.vertex_records_[vertex].line = line.number;
     }
     const Graph::VertexRecord& record = graph_.vertex_records_[vertex];
-    if (graph_.vertex_pools_[record.pool]->type() != pool.slot_type(slot)) {
+    if (pool.slot_type(slot) != typeid(void) &&
+        graph_.vertex_pools_[record.pool]->type() != pool.slot_type(slot)) {
       in.fail("vertex " + std::to_string(id) + " is a " + graph_.vertex_tag(vertex),
               "a " + pool.make_slot_pool(slot)->tag());
     }

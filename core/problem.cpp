@@ -137,6 +137,21 @@ void Problem::compile(Graph& graph, std::span<const int> free_vertex_slots,
   compile_window(free_vertex_slots, &held);
 }
 
+void Problem::compile_on(Graph& graph, std::span<const int> edge_slots) {
+  begin(graph);
+  for (const bool eliminated : {false, true}) {
+    for (const int e : edge_slots) {
+      for (const int v : graph.edge_vertices(e)) {
+        const Graph::VertexRecord& vertex = graph.vertex_record(v);
+        if (vertex.eliminate != eliminated || place_[v].state_offset >= 0) continue;
+        add_vertex(v, vertex.fixed ? -1 : static_cast<int>(free_.size()));
+      }
+    }
+    if (!eliminated) pattern_.kept = static_cast<int>(free_.size());
+  }
+  compile_edges({edge_slots.begin(), edge_slots.end()});
+}
+
 void Problem::compile_window(std::span<const int> free_vertex_slots,
                              const std::span<const int>* held) {
   for (const bool eliminated : {false, true}) {

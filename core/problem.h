@@ -59,6 +59,9 @@ class Problem {
   /// of a horizon is not tied to what lies behind it.
   void compile(Graph& graph, std::span<const int> free_vertex_slots, std::span<const int> held);
 
+  /// These edges alone, with the vertices on them; free are those that the graph does not hold.
+  void compile_on(Graph& graph, std::span<const int> edge_slots);
+
   const BlockPattern& pattern() const { return pattern_; }
   int dimension() const { return pattern_.scalar_size(); }
   int state_size() const { return state_size_; }

@@ -46,6 +46,12 @@ class TypeRegistry {
   void add_edge_alias(const std::string& tag) {
     add_edge_alias(tag, std::string(locograph_tag(static_cast<const E*>(nullptr))));
   }
+  /// An edge type that brings its own pool (dense_prior.h).
+  template <class Pool>
+  void add_edge_pool() {
+    add_edge(std::string(Pool::kTag),
+             [] { return std::unique_ptr<EdgePool>(std::make_unique<Pool>()); });
+  }
   template <class P>
   void add_parameter(const std::string& tag) {
     add_parameter(tag, [] { return std::unique_ptr<Parameter>(std::make_unique<P>()); });

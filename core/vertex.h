@@ -20,6 +20,10 @@
 ///
 /// What was made for one vertex must serve every other of the type with a state of the same size.
 ///
+/// Optional: static void ominus(const double* a, const double* b, double* d), the difference a ⊟ b:
+/// b ⊞ d = a. What needs differences (marginalisation) solves b ⊞ d = a numerically without it.
+/// A type whose ⊞ adds, wrapped angles included, says so: static constexpr bool kFlat = true.
+///
 /// A type with a size known at run time only uses Eigen::Dynamic and hides dimension() and
 /// state_size(). Optional: read(FieldReader&) and write(FieldWriter&) const for its line in a file;
 /// without them the state's numbers are the fields.

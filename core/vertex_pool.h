@@ -4,7 +4,9 @@
 /// The solver never calls a vertex: it calls its pool, once for all vertices. Users reach a typed
 /// pool through Graph.
 
+#include <locograph/core/scratch.h>
 #include <locograph/core/vertex.h>
+#include <locograph/core/vertex_difference.h>
 
 #include <memory>
 #include <span>
@@ -49,6 +51,15 @@ class VertexPool {
   virtual void oplus(std::span<const ActiveVertex> vertices, const double* state,
                      const double* step, double* out) const = 0;
 
+  /// d = a ⊟ b of two states of a vertex; not a number where there is none.
+  virtual void ominus(int index, const double* a, const double* b, double* d,
+                      Scratch& scratch) const = 0;
+  /// ∂((a ⊞ δ) ⊟ b)/∂δ at zero, dimension × dimension, by column.
+  virtual void ominus_jacobian(int index, const double* a, const double* b, double* jacobian,
+                               Scratch& scratch) const = 0;
+  /// What the two ask of the scratch memory.
+  virtual std::size_t ominus_scratch_bytes(int index) const = 0;
+
   /// Null when the type has no derived quantities.
   virtual std::unique_ptr<DerivedStore> make_derived(
       std::span<const ActiveVertex> vertices) const = 0;
@@ -91,6 +102,18 @@ class TypedVertexPool final : public VertexPool {
       vertices[v.index].oplus(state + v.state_offset, step + v.tangent_offset,
                               out + v.state_offset);
     }
+  }
+
+  void ominus(int index, const double* a, const double* b, double* d,
+              Scratch& scratch) const override {
+    detail::ominus(vertices[index], a, b, d, scratch);
+  }
+  void ominus_jacobian(int index, const double* a, const double* b, double* jacobian,
+                       Scratch& scratch) const override {
+    detail::ominus_jacobian(vertices[index], a, b, jacobian, scratch);
+  }
+  std::size_t ominus_scratch_bytes(int index) const override {
+    return detail::ominus_scratch_bytes(dimension(index), state_size(index));
   }
 
   std::unique_ptr<DerivedStore> make_derived(

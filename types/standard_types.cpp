@@ -1,3 +1,4 @@
+#include <locograph/core/dense_prior.h>
 #include <locograph/types/standard_types.h>
 
 namespace locograph {
@@ -7,6 +8,7 @@ TypeRegistry standard_types() {
   add_slam2d_types(types);
   add_slam3d_types(types);
   add_bundle_types(types);
+  types.add_edge_pool<DensePriorPool>();
   return types;
 }
 

@@ -43,6 +43,41 @@ INSTANTIATE_TEST_SUITE_P(Optimize, KnownGraph,
                                          KnownOptimum{"intel.g2o", 45.004696},
                                          KnownOptimum{"kitti_00.g2o", 98.322012}));
 
+TEST(Optimize, TellsWhatIsFreeWhenTheSystemIsSingular) {
+  const CommandRunner runner;
+  runner.write("a.g2o",
+               std::string(kTriangle) + "VERTEX_XY 7 1 1\nEDGE_BEARING_SE2_XY 1 7 0.5 100\n");
+  const Outcome outcome = runner.run("optimize a.g2o --algorithm gn --json");
+  EXPECT_NE(outcome.exit_code, 0);
+  const nlohmann::json diagnosis = outcome.json()["diagnosis"];
+  EXPECT_EQ(diagnosis["free_directions"], 1);
+  EXPECT_EQ(diagnosis["parts"][0]["loosest"][0]["vertex"], 7);
+  const Outcome text = runner.run("optimize a.g2o --algorithm gn");
+  EXPECT_NE(text.out.find("1 direction is free, mostly at vertex 7 (VERTEX_XY)"), std::string::npos)
+      << text.out;
+}
+
+TEST(Optimize, DiagnosesAHealthyGraphWhenAsked) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle);
+  const Outcome outcome = runner.run("optimize a.g2o --diagnose --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["diagnosis"]["healthy"], true);
+  EXPECT_FALSE(runner.run("optimize a.g2o --json").json().contains("diagnosis"));
+}
+
+TEST(Optimize, GivesTheWholeGraphToCeres) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle);
+  const Outcome theirs = runner.run("optimize a.g2o --linear-solver ceres --json");
+  if (theirs.err.find("built without Ceres") != std::string::npos) GTEST_SKIP() << theirs.err;
+  ASSERT_EQ(theirs.exit_code, 0) << theirs.err;
+  const nlohmann::json ours = runner.run("optimize a.g2o --json").json();
+  EXPECT_EQ(theirs.json()["linear_solver"], "ceres");
+  EXPECT_EQ(theirs.json()["dimension"], 6);
+  EXPECT_NEAR(theirs.json()["final_chi2"].get<double>(), ours["final_chi2"].get<double>(), 1e-9);
+}
+
 TEST(Optimize, PrintsOneJsonObjectWithEveryField) {
   const CommandRunner runner;
   runner.write("a.g2o", kTriangle);

@@ -57,7 +57,9 @@ class RandomLines {
     std::vector<std::string> lines;
     std::string head = tag, vertices;
     for (int i = 0; i < arity; ++i) {
-      lines.push_back(vertex(pool->make_slot_pool(i)->tag(), first_id + i));
+      // Null where any type of vertex will do.
+      const std::unique_ptr<VertexPool> slot = pool->make_slot_pool(i);
+      lines.push_back(vertex(slot ? slot->tag() : "VERTEX_XY", first_id + i));
       vertices += lines.back() + "\n";
       head += " " + std::to_string(first_id + i);
     }

@@ -8,6 +8,7 @@ namespace locograph {
 
 /// Planar pose. Tangent: (dx, dy) in world axes, dθ; both are added.
 struct VertexSE2 : Vertex<3, 3> {
+  static constexpr bool kFlat = true;
   template <class T>
   using View = SE2<T>;
   template <class T>
@@ -19,6 +20,11 @@ struct VertexSE2 : Vertex<3, 3> {
     out[0] = s[0] + d[0];
     out[1] = s[1] + d[1];
     out[2] = wrap_angle(T(s[2] + d[2]));
+  }
+  static void ominus(const double* a, const double* b, double* d) {
+    d[0] = a[0] - b[0];
+    d[1] = a[1] - b[1];
+    d[2] = wrap_angle(a[2] - b[2]);
   }
   static void store(const SE2<double>& pose, double* s) {
     s[0] = pose.translation()[0];
@@ -33,6 +39,7 @@ LOCOGRAPH_REGISTER_VERTEX("VERTEX_SE2", VertexSE2)
 
 /// Point in the plane.
 struct VertexXY : Vertex<2, 2> {
+  static constexpr bool kFlat = true;
   template <class T>
   using View = Eigen::Matrix<T, 2, 1>;
   template <class T>
@@ -43,6 +50,10 @@ struct VertexXY : Vertex<2, 2> {
   static void oplus(const T* s, const T* d, T* out) {
     out[0] = s[0] + d[0];
     out[1] = s[1] + d[1];
+  }
+  static void ominus(const double* a, const double* b, double* d) {
+    d[0] = a[0] - b[0];
+    d[1] = a[1] - b[1];
   }
   static void store(const Eigen::Vector2d& point, double* s) {
     s[0] = point[0];

@@ -81,6 +81,14 @@ Eigen::Quaternion<T> quaternion_exp(const Eigen::Matrix<T, 3, 1>& v) {
   return Eigen::Quaternion<T>(cos(angle * T(0.5)), factor * v[0], factor * v[1], factor * v[2]);
 }
 
+/// Rotation vector of a unit quaternion, of length at most π; the inverse of quaternion_exp().
+inline Eigen::Vector3d quaternion_log(const Eigen::Quaterniond& q) {
+  const double sign = q.w() < 0.0 ? -1.0 : 1.0;  // q and −q are the same rotation
+  const double sine = q.vec().norm(), cosine = sign * q.w();
+  const double factor = sine < 1e-9 ? 2.0 / cosine : 2.0 * std::atan2(sine, cosine) / sine;
+  return sign * factor * q.vec();
+}
+
 /// The matrix [v]× with [v]× w = v × w.
 inline Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;

@@ -24,6 +24,11 @@ struct VertexSE3 : Vertex<6, 7> {
     rotation.normalize();
     SE3<T>(translation, rotation).store(out);
   }
+  static void ominus(const double* a, const double* b, double* d) {
+    const SE3<double> between = SE3<double>(b).inverse() * SE3<double>(a);
+    Eigen::Map<Eigen::Matrix<double, 6, 1>>(d) << between.translation(),
+        quaternion_log(between.rotation());
+  }
   static void store(const SE3<double>& pose, double* s) { pose.store(s); }
 
   VertexSE3() { SE3<double>().store(state.data()); }
@@ -40,6 +45,7 @@ LOCOGRAPH_REGISTER_VERTEX("VERTEX_SE3:QUAT", VertexSE3)
 
 /// Point in space.
 struct VertexPointXYZ : Vertex<3, 3> {
+  static constexpr bool kFlat = true;
   template <class T>
   using View = Eigen::Matrix<T, 3, 1>;
   template <class T>
@@ -49,6 +55,9 @@ struct VertexPointXYZ : Vertex<3, 3> {
   template <class T>
   static void oplus(const T* s, const T* d, T* out) {
     for (int i = 0; i < 3; ++i) out[i] = s[i] + d[i];
+  }
+  static void ominus(const double* a, const double* b, double* d) {
+    for (int i = 0; i < 3; ++i) d[i] = a[i] - b[i];
   }
   static void store(const Eigen::Vector3d& point, double* s) {
     for (int i = 0; i < 3; ++i) s[i] = point[i];

@@ -1,0 +1,61 @@
+#pragma once
+/// Covariances of chosen vertices at the optimum: blocks of (JᵀΩJ)⁻¹.
+///
+///     Covariance covariance(graph, *make_linear_solver("auto"));   // linearises and factorises
+///     if (!covariance.singular()) Eigen::Matrix3d sigma = covariance.block(a, a);
+///     std::vector<Eigen::MatrixXd> blocks = covariance.blocks({{a, a}, {a, b}});
+///
+/// A block is a dimension × dimension matrix in the tangents of its two vertices, for the free
+/// vertices of the graph with the others held where they are. Ω is taken to be the inverse
+/// covariance of the measurement, whose likelihood is exp(−½ eᵀΩe); robust kernels count with their
+/// weight at the present state. Works with every linear solver, also one that eliminates vertices.
+///
+/// Ask for many blocks at once: they share the work (LinearSolver::inverse_blocks). The solver
+/// keeps the factorisation, so nothing else may use it in the meantime.
+
+#include <locograph/core/linear_solver.h>
+#include <locograph/core/workspace.h>
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace locograph {
+
+class Covariance {
+ public:
+  /// At the graph's present state. Keeps references to both.
+  Covariance(Graph& graph, LinearSolver& solver);
+  Covariance(Graph&&, LinearSolver&) = delete;
+
+  /// Some direction is not measured (or no state is finite): there is no covariance.
+  bool singular() const { return singular_; }
+  /// Empty when it is not singular.
+  const std::string& reason_text() const { return reason_; }
+
+  /// By vertex slots. Throws Error when singular, and for vertices that are fixed or not there.
+  Eigen::MatrixXd block(int a, int b) const;
+  std::vector<Eigen::MatrixXd> blocks(std::span<const std::pair<int, int>> pairs) const;
+  template <class A, class B>
+  Eigen::MatrixXd block(VertexId<A> a, VertexId<B> b) const {
+    return block(a.slot, b.slot);
+  }
+  /// Of several vertices together, in the order given.
+  Eigen::MatrixXd joint(std::span<const int> vertices) const;
+
+ private:
+  int block_row(int slot) const;
+  bool solution_explodes();
+
+  Graph& graph_;
+  LinearSolver& solver_;
+  Problem problem_;
+  Workspace workspace_;
+  std::vector<int> block_of_slot_;
+  bool singular_ = false;
+  std::string reason_;
+};
+
+}  // namespace locograph

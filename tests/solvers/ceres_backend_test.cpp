@@ -1,0 +1,191 @@
+#include <gtest/gtest.h>
+#include <locograph/solvers/ceres_backend.h>
+#include <locograph/types/standard_types.h>
+
+#include "core/toy_graphs.h"
+#include "types/random_lines.h"
+
+namespace locograph::test {
+namespace {
+
+std::vector<std::string> edge_tags() {
+  const TypeRegistry types = standard_types();
+  std::vector<std::string> tags;
+  for (const std::string& tag : types.tags()) {
+    if (types.edge_type(tag) != nullptr) tags.push_back(tag);
+  }
+  return tags;
+}
+std::string test_name(const testing::TestParamInfo<std::string>& info) {
+  std::string name = info.param;
+  std::erase_if(name, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; });
+  return name;
+}
+
+/// Several edges of one type, with measurements that contradict each other, on the same vertices.
+Graph contradicting_edges(const std::string& tag, unsigned seed) {
+  RandomLines lines(standard_types(), seed);
+  std::string text = lines.parameters();
+  for (int i = 0; i < 8; ++i) {
+    const std::vector<std::string> all = lines.edge(tag, 0);
+    if (i == 0) {
+      for (std::size_t v = 0; v + 1 < all.size(); ++v) text += all[v] + "\n";
+    }
+    text += all.back() + "\n";
+  }
+  Graph graph = read_graph_text(text, "random.g2o", {}, standard_types());
+  if (graph.vertex_slots() > 1) graph.set_fixed(0, true);
+  return graph;
+}
+
+void expect_the_same_cost_and_gradient(Graph& graph) {
+  Problem problem;
+  problem.compile(graph);
+  Workspace workspace;
+  workspace.allocate(problem);
+  workspace.load_state();
+  const Cost cost = workspace.evaluate(workspace.state());
+  workspace.linearise();
+  const CeresEvaluation theirs = evaluate_with_ceres(graph);
+  EXPECT_NEAR(theirs.cost, cost.robust, 1e-12 * cost.robust);
+  ASSERT_EQ(theirs.gradient.size(), workspace.gradient().size());
+  double largest = 0.0;
+  for (const double g : theirs.gradient) largest = std::max(largest, std::abs(g));
+  EXPECT_GT(largest, 0.0);
+  for (std::size_t i = 0; i < theirs.gradient.size(); ++i) {
+    EXPECT_NEAR(theirs.gradient[i], workspace.gradient()[i], 1e-11 * largest);
+  }
+}
+
+OptimiserOptions exact() {
+  OptimiserOptions options;
+  options.gain = 1e-14;
+  options.max_iterations = 500;
+  return options;
+}
+
+/// Moves every free vertex by a small step.
+void disturb(Graph& graph, double size) {
+  Problem problem;
+  problem.compile(graph);
+  Workspace workspace;
+  workspace.allocate(problem);
+  workspace.load_state();
+  std::mt19937 engine(5);
+  std::normal_distribution<double> normal(0.0, size);
+  for (double& d : workspace.step()) d = normal(engine);
+  workspace.apply_step();
+  workspace.accept_trial();
+  workspace.store_state();
+}
+
+class EveryEdgeType : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(CeresBackend, EveryEdgeType, testing::ValuesIn(edge_tags()), test_name);
+
+TEST_P(EveryEdgeType, HasTheCostAndGradientThatCeresComputes) {
+  for (const char* kernel : {"none", "huber:0.5", "cauchy:2"}) {
+    Graph graph = contradicting_edges(GetParam(), 1);
+    graph.set_kernel(RobustKernel::parse(kernel));
+    expect_the_same_cost_and_gradient(graph);
+  }
+}
+
+TEST_P(EveryEdgeType, HasTheOptimumThatCeresFinds) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    Graph graph = contradicting_edges(GetParam(), seed);
+    const OptimiserResult ours = run(graph, exact());
+    EXPECT_TRUE(ours.converged) << ours.reason_text();
+    // From near by: contradicting measurements have more minima than one.
+    disturb(graph, 1e-3);
+    const OptimiserResult theirs = optimise_with_ceres(graph, exact());
+    EXPECT_TRUE(theirs.converged) << theirs.reason_text();
+    EXPECT_NEAR(theirs.final.chi2, ours.final.chi2, 1e-8 * ours.final.chi2);
+  }
+}
+
+TEST(CeresBackend, AgreesOnSizesAndArityKnownAtRunTime) {
+  Graph mixed = mixed_graph<Derivatives::kDual>();
+  mixed.set_kernel(RobustKernel::parse("huber:1"));
+  expect_the_same_cost_and_gradient(mixed);
+  Graph sized = sized_graph();
+  expect_the_same_cost_and_gradient(sized);
+}
+
+TEST(CeresBackend, AgreesUnderASchurComplement) {
+  for (const Algorithm algorithm : {Algorithm::kLevenbergMarquardt, Algorithm::kDogleg}) {
+    Graph poses;
+    std::vector<VertexId<VertexSE2>> ids;
+    for (int i = 0; i < 6; ++i) ids.push_back(poses.add_vertex(i, VertexSE2(SE2<double>(i, 0, 0))));
+    for (int i = 0; i < 4; ++i) {
+      const auto point = poses.add_vertex(10 + i, VertexXY({i + 0.5, 2.0}));
+      poses.set_eliminate(point.slot, true);
+      for (const VertexId<VertexSE2> pose : ids) {
+        EdgeSE2XY edge;
+        edge.measurement << i + 0.4 - 1.1 * pose.slot, 2.1 + 0.1 * i;
+        poses.add_edge(edge, pose, point);
+      }
+    }
+    poses.set_fixed(ids[0].slot, true);
+    OptimiserOptions options = exact();
+    options.algorithm = algorithm;
+    const OptimiserResult theirs = optimise_with_ceres(poses, options);
+    EXPECT_TRUE(theirs.converged) << theirs.reason_text();
+    disturb(poses, 1e-2);
+    const OptimiserResult ours = run(poses, options, "block-cholesky");
+    EXPECT_NEAR(theirs.final.chi2, ours.final.chi2, 1e-8 * ours.final.chi2);
+  }
+}
+
+TEST(CeresBackend, CountsIterationsAndObeysTheCaller) {
+  Graph graph = helix_3d(30, 0.2);
+  OptimiserOptions options;
+  const OptimiserResult result = optimise_with_ceres(graph, options);
+  EXPECT_TRUE(result.converged);
+  EXPECT_EQ(result.statistics.size(), static_cast<std::size_t>(result.iterations));
+  EXPECT_NEAR(result.statistics.back().cost, result.final.robust, 1e-9 * result.final.robust);
+  EXPECT_LT(result.final.chi2, result.initial.chi2);
+
+  graph = helix_3d(30, 0.2);
+  options.on_iteration = [](const OptimiserResult& so_far) { return so_far.iterations < 2; };
+  EXPECT_EQ(optimise_with_ceres(graph, options).reason, OptimiserResult::Reason::kStopped);
+  options = {};
+  options.max_iterations = 1;
+  graph = helix_3d(30, 0.2);
+  EXPECT_EQ(optimise_with_ceres(graph, options).reason, OptimiserResult::Reason::kMaxIterations);
+  options = {};
+  options.deadline = Deadline::after(0.0);
+  graph = helix_3d(30, 0.2);
+  EXPECT_EQ(optimise_with_ceres(graph, options).reason, OptimiserResult::Reason::kDeadline);
+}
+
+TEST(CeresBackend, RefusesWhatItCannotSolve) {
+  Graph graph = ring_2d(5);
+  OptimiserOptions options;
+  options.algorithm = Algorithm::kGaussNewton;
+  EXPECT_THROW(optimise_with_ceres(graph, options), Error);
+  graph.set_constraint({0}, ConstraintKind::kEquality);
+  EXPECT_THROW(optimise_with_ceres(graph, {}), Error);
+}
+
+class PoseGraphFile : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(CeresBackend, PoseGraphFile,
+                         testing::Values("tinyGrid3D", "CSAIL", "intel"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST_P(PoseGraphFile, HasTheOptimumThatCeresFinds) {
+  const std::filesystem::path file = std::filesystem::path(LOCOGRAPH_SHARED_DATA) / "pose_graphs" /
+                                     (std::string(GetParam()) + ".g2o");
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+  Graph graph = read_graph(file, standard_types());
+  graph.set_fixed(0, true);
+  const OptimiserResult ours = run(graph, {});
+  graph = read_graph(file, standard_types());
+  graph.set_fixed(0, true);
+  const OptimiserResult theirs = optimise_with_ceres(graph, {});
+  EXPECT_TRUE(theirs.converged) << theirs.reason_text();
+  EXPECT_NEAR(theirs.initial.chi2, ours.initial.chi2, 1e-12 * ours.initial.chi2);
+  EXPECT_NEAR(theirs.final.chi2, ours.final.chi2, 1e-6 * ours.final.chi2);
+}
+
+}  // namespace
+}  // namespace locograph::test
