@@ -3,7 +3,8 @@ include(CMakePackageConfigHelpers)
 set(locograph_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/locograph)
 install(EXPORT locographTargets NAMESPACE locograph:: DESTINATION ${locograph_config_dir})
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/locographConfig.cmake.in
-  ${PROJECT_BINARY_DIR}/locographConfig.cmake INSTALL_DESTINATION ${locograph_config_dir})
+  ${PROJECT_BINARY_DIR}/locographConfig.cmake INSTALL_DESTINATION ${locograph_config_dir}
+  PATH_VARS CMAKE_INSTALL_INCLUDEDIR)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/locographConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/locographConfig.cmake

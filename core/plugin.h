@@ -16,13 +16,13 @@
 
 #include <cstdint>
 
-#ifndef LOCOGRAPH_VERSION
-#error "link locograph::core (CMake), which defines LOCOGRAPH_VERSION"
+#if !defined(LOCOGRAPH_VERSION) || !defined(LOCOGRAPH_HEADERS)
+#error "build plug-ins by locograph_add_plugin() of the CMake package"
 #endif
 
 namespace locograph {
 
-/// Raised whenever a class that crosses the boundary changes its meaning but not its size.
+/// Raised when PluginRecord changes; everything else that may differ is one of its fields.
 inline constexpr std::uint32_t kPluginAbiVersion = 1;
 inline constexpr char kPluginMagic[8] = {'L', 'O', 'C', 'O', 'P', 'L', 'U', 'G'};
 inline constexpr const char* kPluginEntryPoint = "locograph_plugin";
@@ -73,6 +73,7 @@ struct PluginRecord {
 /// How the including file is compiled. Internal linkage: each side must see its own.
 static constexpr PluginAbiField kPluginAbi[] = {
     {"locograph version", LOCOGRAPH_VERSION, 0},
+    {"hash of the headers", LOCOGRAPH_HEADERS, 0},
     {"compiler", LOCOGRAPH_COMPILER, 0},
     {"standard library", LOCOGRAPH_STANDARD_LIBRARY, 0},
     {"_GLIBCXX_USE_CXX11_ABI", nullptr, LOCOGRAPH_STRING_ABI},
@@ -97,6 +98,8 @@ static constexpr PluginAbiField kPluginAbi[] = {
     {"sizeof(CompiledEdges)", nullptr, sizeof(CompiledEdges)},
     {"sizeof(CompiledEdges::Slot)", nullptr, sizeof(CompiledEdges::Slot)},
     {"sizeof(ActiveVertex)", nullptr, sizeof(ActiveVertex)},
+    {"sizeof(EdgeData<6>)", nullptr, sizeof(detail::EdgeData<6>)},
+    {"sizeof(WeightedEdgeData<6>)", nullptr, sizeof(detail::WeightedEdgeData<6>)},
     {"sizeof(EdgePool)", nullptr, sizeof(EdgePool)},
     {"sizeof(VertexPool)", nullptr, sizeof(VertexPool)},
     {"sizeof(Graph)", nullptr, sizeof(Graph)},

@@ -5,6 +5,7 @@
 #include <locograph/types/chordal_guess.h>
 #include <locograph/types/slam2d/edges.h>
 #include <locograph/types/slam3d/edges.h>
+#include <locograph/types/slam3d/priors.h>
 #include <locograph/types/standard_types.h>
 
 #include <fstream>

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <locograph/core/graph_file.h>
+#include <locograph/types/slam2d/point_sets.h>
 #include <locograph/types/standard_types.h>
 
 #include <cmath>
@@ -178,8 +179,8 @@ const std::vector<Case>& cases() {
 TEST(KnownErrors, AreWhatTheyAreByHand) {
   for (const Case& known : cases()) {
     SCOPED_TRACE(known.lines);
-    const Graph graph = read_graph_text(with_information(known.lines, known.error.size()), "known",
-                                        {}, standard_types());
+    Graph graph = read_graph_text(with_information(known.lines, known.error.size()), "known", {},
+                                  standard_types());
     Problem problem;
     problem.compile(graph);
     Workspace workspace;
@@ -203,7 +204,8 @@ TEST(KnownErrors, CoverEveryRegisteredEdge) {
   for (const std::string& tag : types.tags()) {
     const TypeRegistry::MakeEdgePool* make = types.edge_type(tag);
     // Aliases make a pool that is written under another tag.
-    if (make != nullptr) EXPECT_TRUE(covered.count((*make)()->tag())) << tag;
+    if (make == nullptr) continue;
+    EXPECT_TRUE(covered.count((*make)()->tag())) << tag;
   }
 }
 
@@ -235,6 +237,17 @@ TEST(LotsOfPoints, MustMeasureEveryVertexTheyName) {
       EXPECT_EQ(error.line(), 4) << error.what();
     }
   }
+}
+
+TEST(LotsOfPoints, AreRefusedWithoutAMeasurementOfEachAlsoInAProgram) {
+  Graph graph;
+  const VertexId<VertexSE2> pose = graph.add_vertex(0, VertexSE2());
+  const VertexId<VertexXY> a = graph.add_vertex(1, VertexXY()), b = graph.add_vertex(2, VertexXY());
+  EdgeSE2LotsOfXY scan;
+  scan.resize(2);
+  EXPECT_THROW(graph.add_dynamic_edge(scan, {a, b}, pose), Error);
+  scan.resize(4);
+  EXPECT_NO_THROW(graph.add_dynamic_edge(scan, {a, b}, pose));
 }
 
 }  // namespace

@@ -36,8 +36,8 @@ class RandomLines {
     const std::string head = tag + " " + std::to_string(id);
     const auto known = vertex_fields_.find(tag);
     if (known != vertex_fields_.end()) return with_shape(head, known->second);
-    for (int fields = 1; fields < 64; ++fields) {
-      for (int integers = 0; integers <= 2; ++integers) {
+    for (int integers = 0; integers <= 2; ++integers) {
+      for (int fields = 1; fields < 64; ++fields) {
         const VertexShape shape{fields, integers};
         const std::string line = with_shape(head, shape);
         if (accepted(line)) {
@@ -98,12 +98,14 @@ class RandomLines {
     std::snprintf(buffer, sizeof buffer, " %.17g", value);
     return buffer;
   }
-  /// Never whole, so that a field for an integer refuses it. Now and then ±π, where headings wrap.
+  /// Never whole, so that a field for an integer refuses it. Now and then one is ±π, where headings
+  /// wrap; one only, so that points do not coincide.
   std::string numbers(int count, bool with_wraps) {
     std::uniform_real_distribution<double> uniform(-3.1, 3.1);
     std::string all;
+    const int wrapping = with_wraps ? static_cast<int>(engine_() % (2 * count)) : count;
     for (int i = 0; i < count; ++i) {
-      const unsigned kind = with_wraps ? engine_() % 10 : 9;
+      const unsigned kind = i == wrapping ? engine_() % 4 : 9;
       const double pi = kind % 2 == 0 ? std::numbers::pi : -std::numbers::pi;
       all += text(kind < 2 ? pi : kind < 4 ? pi * (1.0 - 1e-9) : uniform(engine_));
     }

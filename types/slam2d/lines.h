@@ -54,6 +54,10 @@ struct VertexSegment2D : Vertex<4, 4> {
   static void store(const Eigen::Vector4d& ends, double* s) {
     for (int i = 0; i < 4; ++i) s[i] = ends[i];
   }
+  void read(FieldReader& in) {
+    read_field(in, state);
+    if (state.head<2>() == state.tail<2>()) in.fail("a segment of length zero", "two ends apart");
+  }
 };
 LOCOGRAPH_REGISTER_VERTEX("VERTEX_SEGMENT2D", VertexSegment2D)
 
@@ -79,7 +83,8 @@ struct EdgeSE2Line2D : Edge<2, VertexSE2, VertexLine2D> {
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_SE2_LINE2D", EdgeSE2Line2D)
 
-/// EDGE_LINE2D: difference of two lines. Error (2): (l − k) − z; g2o does not wrap this angle.
+/// EDGE_LINE2D: difference of two lines. Error (2): (l − k) − z, the angle wrapped (g2o leaves that
+/// out, and so has a jump where a line's own angle wraps).
 struct EdgeLine2D : Edge<2, VertexLine2D, VertexLine2D> {
   Eigen::Vector2d measurement = Eigen::Vector2d::Zero();
   auto fields() { return std::tie(measurement); }
@@ -88,6 +93,7 @@ struct EdgeLine2D : Edge<2, VertexLine2D, VertexLine2D> {
   void error(const Eigen::Matrix<T, 2, 1>& k, const Eigen::Matrix<T, 2, 1>& l,
              Eigen::Ref<Eigen::Matrix<T, 2, 1>> e) const {
     e = l - k - measurement.template cast<T>();
+    e[0] = wrap_angle(T(e[0]));
   }
   void jacobians(const Eigen::Vector2d&, const Eigen::Vector2d&, JacobianRef<EdgeLine2D, 0> jk,
                  JacobianRef<EdgeLine2D, 1> jl) const {

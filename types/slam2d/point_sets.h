@@ -36,6 +36,8 @@ struct EdgeSE2LotsOfXY : DynamicEdge<Eigen::Dynamic, VertexXY, VertexSE2> {
     measurement.setZero(dimension);
     information.setIdentity(dimension, dimension);
   }
+  /// Throws Error unless there is a measurement of every point.
+  void bind(const Parameters&) const;
 
   void error(const SE2<double>& a, std::span<const Eigen::Vector2d> points,
              Eigen::Ref<Eigen::VectorXd> e) const;

@@ -54,6 +54,15 @@ void EdgePriorSE2::jacobians(const SE2<double>&, JacobianRef<EdgePriorSE2, 0> ja
   ja.topLeftCorner<2, 2>() = rotation_transposed(measurement);
 }
 
+void EdgeSE2LotsOfXY::bind(const Parameters&) const {
+  const std::size_t points = vertices.size() - 1;
+  if (measurement.size() != kRowsPerVertex * static_cast<Eigen::Index>(points)) {
+    throw locograph::Error("an edge on " + std::to_string(points) + " points measures " +
+                               std::to_string(measurement.size()) + " coordinates",
+                           std::to_string(kRowsPerVertex) + " of each point");
+  }
+}
+
 void EdgeSE2LotsOfXY::error(const SE2<double>& a, std::span<const Eigen::Vector2d> points,
                             Eigen::Ref<Eigen::VectorXd> e) const {
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -86,6 +86,8 @@ struct EdgeSE3LotsOfXYZ : DynamicEdge<Eigen::Dynamic, VertexPointXYZ, VertexSE3>
     measurement.setZero(dimension);
     information.setIdentity(dimension, dimension);
   }
+  /// Throws Error unless there is a measurement of every point.
+  void bind(const Parameters&) const;
 
   void error(const SE3<double>& a, std::span<const Eigen::Vector3d> points,
              Eigen::Ref<Eigen::VectorXd> e) const;

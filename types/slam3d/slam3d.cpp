@@ -33,6 +33,15 @@ void EdgeSE3PointXYZ::jacobians(const SE3<double>& a, const Eigen::Vector3d& p,
   jp = sensor_from_a * a.rotation().conjugate().toRotationMatrix();
 }
 
+void EdgeSE3LotsOfXYZ::bind(const Parameters&) const {
+  const std::size_t points = vertices.size() - 1;
+  if (measurement.size() != kRowsPerVertex * static_cast<Eigen::Index>(points)) {
+    throw locograph::Error("an edge on " + std::to_string(points) + " points measures " +
+                               std::to_string(measurement.size()) + " coordinates",
+                           std::to_string(kRowsPerVertex) + " of each point");
+  }
+}
+
 void EdgeSE3LotsOfXYZ::error(const SE3<double>& a, std::span<const Eigen::Vector3d> points,
                              Eigen::Ref<Eigen::VectorXd> e) const {
   const Eigen::Quaterniond back = a.rotation().conjugate();
