@@ -98,7 +98,8 @@ class EdgeCost final : public ceres::CostFunction {
                   state_.data() + edge_.slots[s].state_offset);
     }
     for (std::size_t p = 0; p < pools_.size(); ++p) {
-      if (derived_[p]) pools_[p]->derive(vertices_[p], 0, vertices_[p].size(), state_.data(), *derived_[p]);
+      if (derived_[p])
+        pools_[p]->derive(vertices_[p], 0, vertices_[p].size(), state_.data(), *derived_[p]);
     }
     const Evaluation x{state_.data(), derived_, &scratch_};
     pool_.error(edge_, 0, x, error_.data());
