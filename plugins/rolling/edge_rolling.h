@@ -42,4 +42,6 @@ struct EdgeRolling : WeightedEdge<Eigen::Dynamic, VertexConfiguration, VertexCon
 LOCOGRAPH_REGISTER_EDGE(EdgeRolling::kTag, EdgeRolling)
 extern template class TypedEdgePool<EdgeRolling>;
 
+extern template class TypedEdgePool<EdgeRolling>;  // robot_types.cpp
+
 }  // namespace locograph

@@ -2,7 +2,7 @@
 /// Small vertex and edge types that reach every path through the core: derivatives by hand, by dual
 /// numbers and by differences; arity and sizes fixed or known at run time; derived quantities.
 
-#include <locograph/core/edge.h>
+#include <locograph/core/typed_edge_pool.h>
 #include <locograph/types/slam2d/vertices.h>
 #include <locograph/types/slam3d/vertices.h>
 
@@ -284,3 +284,26 @@ struct ToyNotANumber : Edge<2, VertexXY> {
 LOCOGRAPH_REGISTER_EDGE("TOY_NOT_A_NUMBER", ToyNotANumber)
 
 }  // namespace locograph::test
+
+namespace locograph {
+
+// Compiled once, in toy_types.cpp.
+extern template class TypedEdgePool<test::ToyRange<test::Derivatives::kByHand>>;
+extern template class TypedEdgePool<test::ToyRange<test::Derivatives::kDual>>;
+extern template class TypedEdgePool<test::ToyRange<test::Derivatives::kNumeric>>;
+extern template class TypedEdgePool<test::ToyMoments<test::Derivatives::kByHand>>;
+extern template class TypedEdgePool<test::ToyMoments<test::Derivatives::kDual>>;
+extern template class TypedEdgePool<test::ToyMoments<test::Derivatives::kNumeric>>;
+extern template class TypedEdgePool<test::ToyView<test::Derivatives::kByHand>>;
+extern template class TypedEdgePool<test::ToyView<test::Derivatives::kDual>>;
+extern template class TypedEdgePool<test::ToyView<test::Derivatives::kNumeric>>;
+extern template class TypedEdgePool<test::ToyReach<test::Derivatives::kByHand>>;
+extern template class TypedEdgePool<test::ToyReach<test::Derivatives::kNumeric>>;
+extern template class TypedEdgePool<test::ToyMeet<test::Derivatives::kByHand>>;
+extern template class TypedEdgePool<test::ToyMeet<test::Derivatives::kNumeric>>;
+extern template class TypedEdgePool<test::ToyCarry<test::Derivatives::kByHand>>;
+extern template class TypedEdgePool<test::ToyCarry<test::Derivatives::kNumeric>>;
+extern template class TypedEdgePool<test::ToySignal>;
+extern template class TypedEdgePool<test::ToyPosture>;
+
+}  // namespace locograph

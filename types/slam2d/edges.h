@@ -2,7 +2,7 @@
 /// Planar edges: relative pose, point and bearing measurements, priors.
 /// Tags, order of fields and errors are those of the `.g2o` format.
 
-#include <locograph/core/edge.h>
+#include <locograph/core/typed_edge_pool.h>
 #include <locograph/types/slam2d/parameters.h>
 #include <locograph/types/slam2d/vertices.h>
 
@@ -188,5 +188,10 @@ struct EdgeSE2PointXYOffset : Edge<2, VertexSE2, VertexXY> {
   Eigen::Vector2d predict_second(const SE2<double>& a) const { return point.predict_second(a); }
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_SE2_POINTXY_OFFSET", EdgeSE2PointXYOffset)
+
+// Compiled once, with the registration: the most used of them.
+extern template class TypedEdgePool<EdgeSE2>;
+extern template class TypedEdgePool<EdgeSE2XY>;
+extern template class TypedEdgePool<EdgePriorSE2>;
 
 }  // namespace locograph

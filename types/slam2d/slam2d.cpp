@@ -82,6 +82,10 @@ void EdgeSE2LotsOfXY::jacobians(const SE2<double>& a, std::span<const Eigen::Vec
   }
 }
 
+template class TypedEdgePool<EdgeSE2>;
+template class TypedEdgePool<EdgeSE2XY>;
+template class TypedEdgePool<EdgePriorSE2>;
+
 void add_slam2d_types(TypeRegistry& types) {
   types.add_parameter<OffsetSE2>("PARAMS_SE2OFFSET");
   types.add_vertex<VertexSE2>();

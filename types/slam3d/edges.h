@@ -2,7 +2,7 @@
 /// Spatial edges: relative pose, point and camera measurements. Tags, order of fields and errors
 /// are those of the `.g2o` format.
 
-#include <locograph/core/edge.h>
+#include <locograph/core/typed_edge_pool.h>
 #include <locograph/types/slam3d/parameters.h>
 #include <locograph/types/slam3d/vertices.h>
 
@@ -176,5 +176,9 @@ struct EdgeProjectDisparity : Edge<3, VertexSE3, VertexPointXYZ> {
   }
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_PROJECT_DISPARITY", EdgeProjectDisparity)
+
+// Compiled once, with the registration: the most used of them.
+extern template class TypedEdgePool<EdgeSE3>;
+extern template class TypedEdgePool<EdgeSE3PointXYZ>;
 
 }  // namespace locograph

@@ -63,6 +63,9 @@ void EdgeSE3LotsOfXYZ::jacobians(const SE3<double>& a, std::span<const Eigen::Ve
   }
 }
 
+template class TypedEdgePool<EdgeSE3>;
+template class TypedEdgePool<EdgeSE3PointXYZ>;
+
 void add_slam3d_types(TypeRegistry& types) {
   types.add_parameter<OffsetSE3>("PARAMS_SE3OFFSET");
   types.add_parameter<CameraCalibration>("PARAMS_CAMERACALIB");
