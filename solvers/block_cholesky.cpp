@@ -90,16 +90,21 @@ bool BlockCholesky::analyse_if_below(const BlockPattern& pattern, double limit) 
   s_ = supernodes(graph, tree, pattern.dimension);
   place_entries();
   factor_.reserve(s_.panel_begin.back());
-  updates_.reserve(s_.update_size);
   vectors_.reserve(s_.vector_begin.back());
   failed_.assign(s_.items(), -1);
-  runner_.prepare(s_.items(), threads_ ? threads_->size() : 1);
+  reserve_updates();
   return true;
+}
+
+void BlockCholesky::reserve_updates() {
+  const int threads = threads_ ? threads_->size() : 1;
+  runner_.prepare(s_.items(), threads);
+  updates_.reserve(s_.shared_size + threads * s_.stack_size);
 }
 
 void BlockCholesky::use_threads(ThreadPool* threads) {
   threads_ = threads;
-  if (threads) runner_.prepare(s_.items(), threads->size());
+  reserve_updates();
 }
 
 void BlockCholesky::place_entries() {
@@ -184,16 +189,20 @@ void BlockCholesky::assemble_entries(int s, const double* values, const double* 
   }
 }
 
+double* BlockCholesky::update_matrix(int s, int thread) {
+  double* begin = updates_.data() + s_.update_begin[s];
+  return s_.on_stack(s) ? begin + s_.shared_size + thread * s_.stack_size : begin;
+}
+
 /// Adds the columns begin … end − 1 of a child's update matrix to its parent's panel, if they are
 /// pivots there, or else to the parent's update matrix.
-void BlockCholesky::add_child(int child, bool pivots, int begin, int end) {
+void BlockCholesky::add_child(int child, int thread, bool pivots, int begin, int end) {
   const int parent = s_.parent[child];
   const long from_leading = padded(s_.below[child]);
-  const double* from = updates_.data() + s_.update_begin[child];
+  const double* from = update_matrix(child, thread);
   const int skipped = pivots ? 0 : padded(s_.width[parent]);
   const long to_leading = pivots ? s_.leading[parent] : padded(s_.below[parent]);
-  double* to =
-      pivots ? factor_.data() + s_.panel_begin[parent] : updates_.data() + s_.update_begin[parent];
+  double* to = pivots ? factor_.data() + s_.panel_begin[parent] : update_matrix(parent, thread);
   const Supernodes::Run* runs = s_.run.data();
   const std::int64_t middle = s_.run_begin[child] + s_.pivot_runs[child];
   const std::int64_t last = s_.run_end[child];
@@ -218,20 +227,20 @@ void BlockCholesky::add_child(int child, bool pivots, int begin, int end) {
   }
 }
 
-int BlockCholesky::factorise_front(int s, const double* values, const double* damping) {
+int BlockCholesky::factorise_front(int s, const double* values, const double* damping, int thread) {
   const int width = s_.width[s], below = s_.below[s], leading = s_.leading[s];
   double* panel = factor_.data() + s_.panel_begin[s];
   clear(panel, std::int64_t{leading} * width);
   assemble_entries(s, values, damping);
   const int* begin = s_.child.data() + s_.child_begin[s];
   const int* end = s_.child.data() + s_.child_begin[s + 1];
-  for (const int* c = begin; c != end; ++c) add_child(*c, true, 0, s_.below[*c]);
+  for (const int* c = begin; c != end; ++c) add_child(*c, thread, true, 0, s_.below[*c]);
   const int failed = cholesky_in_place(panel, leading, leading, width);
   if (failed >= 0 || below == 0) return failed;
   const double* under = panel + padded(width);
-  negative_product(updates_.data() + s_.update_begin[s], padded(below), under, leading, under,
-                   leading, padded(below), below, width, true);
-  for (const int* c = begin; c != end; ++c) add_child(*c, false, 0, s_.below[*c]);
+  negative_product(update_matrix(s, thread), padded(below), under, leading, under, leading,
+                   padded(below), below, width, true);
+  for (const int* c = begin; c != end; ++c) add_child(*c, thread, false, 0, s_.below[*c]);
   return -1;
 }
 
@@ -250,7 +259,7 @@ int BlockCholesky::factorise_front_together(int s, const double* values, const d
     for (int k = s_.child_begin[s]; k < s_.child_begin[s + 1]; ++k) {
       const int child = s_.child[k];
       crew.share(chunks(s_.below[child], kColumnChunk), [&](int i) {
-        add_child(child, pivots, i * kColumnChunk, (i + 1) * kColumnChunk);
+        add_child(child, crew.thread(), pivots, i * kColumnChunk, (i + 1) * kColumnChunk);
       });
     }
   };
@@ -281,8 +290,8 @@ int BlockCholesky::factorise_front_together(int s, const double* values, const d
   if (below == 0) return -1;
   const LowerTiles tiles{padded(below), below};
   crew.share(tiles.count(), [&](int i) {
-    tiles.compute(i, updates_.data() + s_.update_begin[s], padded(below), panel + padded(width),
-                  leading, width, true);
+    tiles.compute(i, update_matrix(s, crew.thread()), padded(below), panel + padded(width), leading,
+                  width, true);
   });
   add_children(false);
   return -1;
@@ -295,7 +304,7 @@ bool BlockCholesky::factorise(const double* values, const double* damping) {
     if (item > lowest.load(std::memory_order_relaxed)) return;
     for (int s = s_.item_begin[item]; s < s_.item_begin[item + 1]; ++s) {
       const int failed = worth_sharing(s) ? factorise_front_together(s, values, damping, crew)
-                                          : factorise_front(s, values, damping);
+                                          : factorise_front(s, values, damping, crew.thread());
       if (failed < 0) continue;
       const int row = s_.scalar_begin[s_.first[s]] + failed;
       const auto after = std::upper_bound(s_.scalar_begin.begin(), s_.scalar_begin.end(), row);

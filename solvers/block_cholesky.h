@@ -57,11 +57,14 @@ class BlockCholesky final : public LinearSolver {
     bool transposed;
   };
 
+  void reserve_updates();
   void place_entries();
   void assemble_entries(int supernode, const double* values, const double* damping);
-  void add_child(int child, bool pivots, int begin, int end);
+  /// The update matrix of a front that `thread` works on, or whose parent it works on.
+  double* update_matrix(int supernode, int thread);
+  void add_child(int child, int thread, bool pivots, int begin, int end);
   /// Both return the scalar column that failed, or -1.
-  int factorise_front(int supernode, const double* values, const double* damping);
+  int factorise_front(int supernode, const double* values, const double* damping, int thread);
   int factorise_front_together(int supernode, const double* values, const double* damping,
                                const ItemRunner::Crew& crew);
   bool worth_sharing(int supernode) const;
@@ -72,7 +75,7 @@ class BlockCholesky final : public LinearSolver {
   Supernodes s_;
   std::vector<Entry> entries_;
   std::vector<std::int64_t> entry_begin_;  ///< by supernode
-  AlignedMemory factor_, updates_;
+  AlignedMemory factor_, updates_;  ///< updates_: the shared ones, then a stack for each thread
   mutable AlignedMemory vectors_;
   std::vector<int> failed_;  ///< block column that failed, of an item that did
   mutable ItemRunner runner_;

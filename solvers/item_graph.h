@@ -70,9 +70,13 @@ class ItemRunner {
       for (int spins = 0; loop_->helpers.load() != 0;) pause(spins);
     }
 
+    /// Number of the thread that has the item, below the size of the pool.
+    int thread() const { return thread_; }
+
    private:
     friend class ItemRunner;
     Loop* loop_ = nullptr;
+    int thread_ = 0;
   };
 
   template <class Work>
@@ -85,6 +89,7 @@ class ItemRunner {
     threads->run(threads->size(), [&](int thread) {
       Crew crew;
       crew.loop_ = &loops_[thread];
+      crew.thread_ = thread;
       for (int item; (item = take(graph)) >= 0;) {
         work(item, crew);
         finish(graph, item);

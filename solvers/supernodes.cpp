@@ -309,23 +309,23 @@ void lay_out(Supernodes& s) {
   }
 }
 
-/// Places of the update matrices. They live from their front to that of their parent: in a subtree,
-/// children of a front lie on top of one stack while its own goes on the other, so two stacks hold
-/// an item, one for each parity of the depth. What others wait for stays apart.
+/// Places of the update matrices, which live from their front to that of their parent. In a
+/// subtree item, children of a front lie on top of one stack while its own goes on the other, so
+/// two stacks are enough, one for each parity of the depth; every item starts with empty ones.
+/// Above, fronts run side by side: there a matrix takes the places of its grandchildren, whose
+/// parents are done when it begins.
 void place_updates(Supernodes& s) {
   const int count = s.count();
   std::vector<int> depth(count, 0);
   for (int i = count - 1; i >= 0; --i) depth[i] = s.parent[i] == -1 ? 0 : depth[s.parent[i]] + 1;
   const auto size = [&](int i) { return std::int64_t{s.below[i]} * padded(s.below[i]); };
-  const auto on_stack = [&](int i) { return s.parent[i] != -1 && s.parent[i] < s.top; };
   s.update_begin.assign(count, 0);
-  s.update_size = 0;
+  std::int64_t peak[2] = {0, 0};
   for (int item = 0; s.item_begin[item] < s.top; ++item) {
-    const int begin = s.item_begin[item], end = s.item_begin[item + 1];
-    std::int64_t cursor[2] = {0, 0}, peak[2] = {0, 0};
-    for (int i = begin; i < end; ++i) {
+    std::int64_t cursor[2] = {0, 0};
+    for (int i = s.item_begin[item]; i < s.item_begin[item + 1]; ++i) {
       const int mine = depth[i] & 1;
-      if (on_stack(i)) {
+      if (s.on_stack(i)) {
         s.update_begin[i] = cursor[mine];
         cursor[mine] += size(i);
         peak[mine] = std::max(peak[mine], cursor[mine]);
@@ -334,16 +334,45 @@ void place_updates(Supernodes& s) {
         cursor[1 - mine] -= size(s.child[k]);
       }
     }
-    const std::int64_t base[2] = {s.update_size, s.update_size + peak[0]};
-    s.update_size += peak[0] + peak[1];
-    for (int i = begin; i < end; ++i) {
-      if (on_stack(i)) s.update_begin[i] += base[depth[i] & 1];
-    }
   }
+  s.stack_size = peak[0] + peak[1];
+  for (int i = 0; i < s.top; ++i) {
+    if (s.on_stack(i) && (depth[i] & 1) != 0) s.update_begin[i] += peak[0];
+  }
+
+  // What the shared matrices of a subtree need, by parity relative to its root.
+  std::vector<std::int64_t> same(count, 0), other(count, 0);
   for (int i = 0; i < count; ++i) {
-    if (on_stack(i)) continue;
-    s.update_begin[i] = s.update_size;
-    s.update_size += size(i);
+    if (s.on_stack(i)) continue;
+    std::int64_t grandchildren = 0;
+    if (i >= s.top) {
+      for (int k = s.child_begin[i]; k < s.child_begin[i + 1]; ++k) {
+        other[i] += same[s.child[k]];
+        grandchildren += other[s.child[k]];
+      }
+    }
+    same[i] = std::max(size(i), grandchildren);
+  }
+  // From the roots down: where the numbers of either parity begin.
+  std::vector<std::int64_t> same_begin(count, 0), other_begin(count, 0);
+  s.shared_size = 0;
+  for (int i = count - 1; i >= 0; --i) {
+    if (s.on_stack(i)) continue;
+    if (s.parent[i] == -1) {
+      same_begin[i] = s.shared_size;
+      other_begin[i] = s.shared_size + same[i];
+      s.shared_size += same[i] + other[i];
+    }
+    s.update_begin[i] = same_begin[i];
+    if (i < s.top) continue;
+    std::int64_t next_same = same_begin[i], next_other = other_begin[i];
+    for (int k = s.child_begin[i]; k < s.child_begin[i + 1]; ++k) {
+      const int child = s.child[k];
+      same_begin[child] = next_other;
+      other_begin[child] = next_same;
+      next_other += same[child];
+      next_same += other[child];
+    }
   }
 }
 

@@ -46,8 +46,9 @@ struct Supernodes {
   std::vector<std::int64_t> run_begin, run_end;  ///< of each supernode, into run
   std::vector<Run> run;
   std::vector<int> pivot_runs;             ///< how many runs of each end among the parent's pivots
-  std::vector<std::int64_t> update_begin;  ///< of each update matrix in working memory
-  std::int64_t update_size = 0;            ///< working memory, in numbers
+  std::vector<std::int64_t> update_begin;  ///< of each update matrix: on a stack, or else shared
+  std::int64_t stack_size = 0;             ///< numbers that each thread needs
+  std::int64_t shared_size = 0;            ///< numbers for what items hand to others
   std::vector<double> seconds;             ///< estimated, of each front
 
   std::vector<int> item_begin;  ///< first supernode of each item; items + 1 entries
@@ -56,6 +57,8 @@ struct Supernodes {
   ItemGraph downwards;          ///< parents before children; its item i is the i-th from the end
 
   int count() const { return static_cast<int>(parent.size()); }
+  /// Whether an update matrix lives and dies inside one item, on the stack of its thread.
+  bool on_stack(int s) const { return parent[s] != -1 && parent[s] < top; }
   int items() const { return upwards.size(); }
 };
 
