@@ -122,15 +122,20 @@ class RandomLines {
     }
     return all;
   }
+  template <class Number>
+  static void append(std::string& line, Number number) {
+    line += ' ';
+    line += std::to_string(number);
+  }
   std::string with_shape(const std::string& head, const VertexShape& shape) {
     std::string line = head + numbers(shape.numbers, true);
-    for (int i = 0; i < shape.integers; ++i) line += " " + std::to_string(engine_() % 100);
+    for (int i = 0; i < shape.integers; ++i) append(line, engine_() % 100);
     return line;
   }
   std::string with_shape(const std::string& head, const EdgeShape& shape, bool run_time) {
     std::string line = head;
-    if (run_time) line += " " + std::to_string(shape.count);
-    for (const int p : shape.parameters) line += " " + std::to_string(p);
+    if (run_time) append(line, shape.count);
+    for (const int p : shape.parameters) append(line, p);
     return line + numbers(shape.measurement, false) + information(shape.dimension);
   }
 
