@@ -11,7 +11,6 @@
 namespace locograph {
 namespace {
 
-constexpr int kMostDirections = 100;  ///< of one part, used to tell its loosest vertices
 constexpr std::size_t kMostVertices = 10;
 
 /// Part of each vertex slot, -1 for removed ones.
@@ -36,73 +35,32 @@ std::vector<int> part_of_slot(const Graph& graph, const std::vector<Component>& 
   return part;
 }
 
-/// The entries of the block rows of one part.
-Eigen::VectorXd entries_of(const BlockPattern& pattern, const std::vector<int>& blocks,
-                           const Eigen::VectorXd& all) {
-  int rows = 0;
-  for (const int b : blocks) rows += pattern.dimension[b];
-  Eigen::VectorXd own(rows);
-  rows = 0;
-  for (const int b : blocks) {
-    own.segment(rows, pattern.dimension[b]) =
-        all.segment(pattern.scalar_begin[b], pattern.dimension[b]);
-    rows += pattern.dimension[b];
-  }
-  return own;
-}
-
-/// The vertices of one part that its free directions move most.
-std::vector<Diagnosis::LooseVertex> loosest(const Problem& problem, const std::vector<int>& blocks,
-                                            const std::vector<Eigen::VectorXd>& directions) {
-  const BlockPattern& pattern = problem.pattern();
-  const Eigen::Index rows = directions[0].size();
-  Eigen::MatrixXd basis(rows, static_cast<Eigen::Index>(directions.size()));
-  for (std::size_t d = 0; d < directions.size(); ++d) {
-    basis.col(static_cast<Eigen::Index>(d)) = directions[d].normalized();
-  }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(basis);
-  const Eigen::MatrixXd orthonormal =
-      qr.householderQ() * Eigen::MatrixXd::Identity(rows, basis.cols());
-  std::vector<Diagnosis::LooseVertex> all;
-  Eigen::Index row = 0;
-  for (const int b : blocks) {
-    const double share = orthonormal.middleRows(row, pattern.dimension[b]).squaredNorm();
-    all.push_back({problem.free_vertices()[b], share});
-    row += pattern.dimension[b];
-  }
-  // Rounding must not decide between vertices that are equally loose.
-  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
-    return std::round(a.share * 1e6) > std::round(b.share * 1e6);
-  });
-  if (all.size() > kMostVertices) all.resize(kMostVertices);
-  std::erase_if(all, [](const auto& v) { return v.share < 1e-6; });
-  return all;
-}
-
 void find_free_directions(Workspace& workspace, const std::vector<int>& part_of,
                           std::vector<Diagnosis::Part>& parts) {
   const Problem& problem = workspace.problem();
   const BlockPattern& pattern = problem.pattern();
-  const NullSpace free(workspace);
-  std::vector<int> part_of_row;
-  std::vector<std::vector<int>> blocks(parts.size());
-  for (int b = 0; b < pattern.size(); ++b) {
-    const int part = part_of[problem.free_vertices()[b]];
-    part_of_row.insert(part_of_row.end(), pattern.dimension[b], part);
-    blocks[part].push_back(b);
+  const NullSpace null_space(workspace);
+  // Held vertices may cut a part into several that H does not tie together.
+  for (const NullSpace::Part& loose : null_space.parts()) {
+    Diagnosis::Part& part = parts[part_of[problem.free_vertices()[loose.blocks[0]]]];
+    const Eigen::Index count = loose.directions.cols();
+    part.free_directions += static_cast<int>(count);
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(loose.directions);
+    const Eigen::MatrixXd basis =
+        qr.householderQ() * Eigen::MatrixXd::Identity(loose.directions.rows(), count);
+    Eigen::Index row = 0;
+    for (const int b : loose.blocks) {
+      const double share = basis.middleRows(row, pattern.dimension[b]).squaredNorm();
+      if (share > 1e-6) part.loosest.push_back({problem.free_vertices()[b], share});
+      row += pattern.dimension[b];
+    }
   }
-  std::vector<std::vector<Eigen::VectorXd>> directions(parts.size());
-  for (int i = 0; i < free.dimension(); ++i) {
-    const Eigen::VectorXd direction = free.direction(i);
-    Eigen::Index largest = 0;
-    direction.cwiseAbs().maxCoeff(&largest);
-    const int part = part_of_row[largest];
-    ++parts[part].free_directions;
-    if (static_cast<int>(directions[part].size()) == kMostDirections) continue;
-    directions[part].push_back(entries_of(pattern, blocks[part], direction));
-  }
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    if (!directions[p].empty()) parts[p].loosest = loosest(problem, blocks[p], directions[p]);
+  for (Diagnosis::Part& part : parts) {
+    // Rounding must not decide between vertices that are equally loose.
+    std::stable_sort(part.loosest.begin(), part.loosest.end(), [](const auto& a, const auto& b) {
+      return std::round(a.share * 1e6) > std::round(b.share * 1e6);
+    });
+    if (part.loosest.size() > kMostVertices) part.loosest.resize(kMostVertices);
   }
 }
 

@@ -156,6 +156,34 @@ void Workspace::error(int pool, int k, double* error) {
                                               error);
 }
 
+Workspace::Linearised Workspace::linearise_edge(int pool_number, int k) {
+  EdgePool& pool = *problem_->graph().edge_pools()[pool_number];
+  const CompiledEdges& compiled = problem_->edges()[pool_number];
+  const int index = compiled.edges[k];
+  const int first = compiled.constraint_row.empty() ? -1 : compiled.constraint_row[k];
+  Linearised edge;
+  edge.error.resize(pool.dimension(index));
+  error(pool_number, k, edge.error.data());
+  if (first >= 0) {
+    constrain_error(constraint_rows_.data() + first, edge.error);
+  } else {
+    edge.weight =
+        pool.kernel(index).weights(edge.error.dot(pool.information(index) * edge.error)).weight;
+  }
+  for (int s = compiled.slot_begin[k]; s < compiled.slot_begin[k + 1]; ++s) {
+    edge.jacobians.emplace_back();
+    if (compiled.slots[s].tangent_offset < 0) continue;
+    Eigen::MatrixXd& jacobian = edge.jacobians.back();
+    jacobian = pool.jacobian(compiled, k, s - compiled.slot_begin[k], evaluation(state_, 0), false);
+    if (first >= 0) constrain_jacobian(constraint_rows_.data() + first, edge.error, jacobian);
+    // A hinge that is not violated has no derivative.
+    for (Eigen::Index r = 0; pool.one_sided() && r < edge.error.size(); ++r) {
+      if (edge.error[r] == 0.0) jacobian.row(r).setZero();
+    }
+  }
+  return edge;
+}
+
 void Workspace::diagonal(std::vector<double>& diagonal) const {
   const BlockPattern& pattern = problem_->pattern();
   for (int c = 0; c < pattern.size(); ++c) {

@@ -47,6 +47,13 @@ class Workspace {
   Cost linearise();
   /// Error vector of edge k of pool p at the state evaluated last.
   void error(int pool, int k, double* error);
+  /// One edge as linearise() counts it, shift, scale and hinge of a constraint included. Allocates.
+  struct Linearised {
+    Eigen::VectorXd error;
+    std::vector<Eigen::MatrixXd> jacobians;  ///< by slot; empty for vertices that are held
+    double weight = 1.0;                     ///< of the robust kernel
+  };
+  Linearised linearise_edge(int pool, int k);
 
   /// The diagonal of H.
   void diagonal(std::vector<double>& diagonal) const;

@@ -57,7 +57,9 @@ TEST(Marginalisation, OfALinearProblemKeepsEstimateCovarianceAndChi2) {
   EXPECT_EQ(first.edges_removed, 6);
   EXPECT_EQ(second.blanket, (std::vector<int>{3, 5, 7, 11}));
   EXPECT_EQ(part.vertex_count(), 21);
-  const OptimiserResult all = run(whole, {}), rest = run(part, {});
+  OptimiserOptions undamped;
+  undamped.algorithm = Algorithm::kGaussNewton;
+  const OptimiserResult all = run(whole, undamped), rest = run(part, undamped);
   EXPECT_TRUE(rest.converged);
   EXPECT_LE(state_difference(whole, part), 1e-11);
   EXPECT_NEAR(rest.final.chi2 + first.constant + second.constant, all.final.chi2, 1e-10);
@@ -86,9 +88,10 @@ TEST(Marginalisation, AtTheOptimumKeepsPosesWhereTheyAre) {
 }
 
 TEST(Marginalisation, IsRightToFirstOrderAroundItsLinearisationPoint) {
-  // New measurements pull the rest away: the error falls with the square of the pull.
+  // New measurements pull the rest away: the error falls with the square of the pull. (Without
+  // noise: residuals leave curvature in the edges that Gauss-Newton neglects.)
   const auto difference = [](double pull) {
-    Graph whole = ring_2d(20), part = ring_2d(20);
+    Graph whole = ring_2d(20, 0.0), part = ring_2d(20, 0.0);
     OptimiserOptions exact;
     exact.gain = 1e-14;
     for (Graph* graph : {&whole, &part}) run(*graph, exact);
