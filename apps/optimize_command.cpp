@@ -252,9 +252,8 @@ ExitCode optimize(const OptimizeOptions& options) {
   }
   guess(graph, options, *solver);
   int dimension = 0, rejected = 0;
-  const OptimiserResult result =
-      ceres ? run_ceres(graph, options, dimension, times)
-            : run(graph, options, *solver, dimension, rejected, times);
+  const OptimiserResult result = ceres ? run_ceres(graph, options, dimension, times)
+                                       : run(graph, options, *solver, dimension, rejected, times);
   Json diagnosis;
   std::string diagnosis_text;
   if (options.diagnose || calls_for_diagnosis(result)) {
