@@ -16,7 +16,8 @@ std::vector<std::filesystem::path> plugin_folders() {
   std::vector<std::filesystem::path> folders;
   for (std::filesystem::path folder = program.parent_path();
        !failed && folder != folder.parent_path(); folder = folder.parent_path()) {
-    if (std::filesystem::is_directory(folder / "lib/locograph", failed)) {
+    std::error_code missing;
+    if (std::filesystem::is_directory(folder / "lib/locograph", missing)) {
       folders.push_back(folder / "lib/locograph");
     }
   }
