@@ -28,9 +28,9 @@
 /// Optional members: fields() names what is saved besides ids and information (without it nothing
 /// is); bind(const Parameters&) looks up shared parameters before use; predict_first/predict_second
 /// (binary edges) give one vertex's view from the other's, for initial guesses. An error size known
-/// at run time only is Eigen::Dynamic and hides dimension(). kRowsPerVertex (DynamicEdge): the error
-/// has so many rows for each of the many vertices, and files count the vertices, not the rows.
-/// Every edge carries its vertices, information and robust kernel by value.
+/// at run time only is Eigen::Dynamic and hides dimension(). kRowsPerVertex (DynamicEdge): the
+/// error has so many rows for each of the many vertices, and files count the vertices, not the
+/// rows. Every edge carries its vertices, information and robust kernel by value.
 ///
 /// A WeightedEdge has a diagonal Ω, a vector of weights, and a row-major Jacobian that is zero
 /// before jacobians() is called; only entries other than zero cost time. It suits errors of many

@@ -9,10 +9,10 @@
 /// kernels; the vertices are eliminated by a Schur complement (Λ = H_bb − H_bm H_mm⁻¹ H_mb and the
 /// same for the gradient), and they and their edges removed. The prior on the free vertices left on
 /// those edges, the Markov blanket, is (x ⊟ x₀ + Λ⁻g)ᵀ Λ (x ⊟ x₀ + Λ⁻g), x₀ the present state:
-/// exact for linear edges; for others to second order in x ⊟ x₀, but for the curvature of the errors
-/// that Gauss-Newton neglects. Directions that no edge measures stay free (generalised inverses).
-/// Fixed vertices count as constants: of the vertices taken out, and of the blanket, on which the
-/// prior does not depend; freeing one later does not undo that.
+/// exact for linear edges; for others to second order in x ⊟ x₀, but for the curvature of the
+/// errors that Gauss-Newton neglects. Directions that no edge measures stay free (generalised
+/// inverses). Fixed vertices count as constants: of the vertices taken out, and of the blanket, on
+/// which the prior does not depend; freeing one later does not undo that.
 ///
 /// Dense in the vertices taken out and their blanket: meant for a few at a time.
 
