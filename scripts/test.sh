@@ -24,7 +24,7 @@ build build-asan --target "${unit_tests[@]}"
 say "running ${unit_tests[*]} under AddressSanitizer and UBSan"
 printf "$root/build-asan/tests/bin/%s\n" "${unit_tests[@]}" |
   ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 \
-    xargs -P "$jobs" -I PROGRAM timeout 900 PROGRAM --gtest_brief=1 >&2 ||
+    xargs -P "$jobs" -I PROGRAM timeout 2400 PROGRAM --gtest_brief=1 >&2 ||
   die "a sanitized test failed"
 
 say "running all tests"
