@@ -9,14 +9,6 @@
 
 namespace locograph {
 
-template class TypedEdgePool<EdgeJointLimits>;
-template class TypedEdgePool<EdgeObstacleDistance>;
-template class TypedEdgePool<EdgePlanTracking>;
-template class TypedEdgePool<EdgeRolling>;
-template class TypedEdgePool<EdgeVelocityLimits>;
-template class TypedEdgePool<EdgeVelocityTracking>;
-template class TypedEdgePool<EdgeWheelContact>;
-
 void add_robot_types(TypeRegistry& types) {
   types.add_parameter<RobotParameter>("PARAMS_ROBOT");
   types.add_parameter<WheelsParameter>("PARAMS_WHEELS");

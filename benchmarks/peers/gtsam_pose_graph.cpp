@@ -13,6 +13,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <string>
 
@@ -21,10 +22,17 @@ int main(int argc, char** argv) {
   const std::string file = argv[1];
   bool spatial = false;
   std::ifstream in(file);
-  for (std::string line; !spatial && std::getline(in, line);) {
-    spatial = line.find("SE3:QUAT") != std::string::npos;
+  // GTSAM's reader stops at a FIX line; a prior on the first pose, below, stands for it.
+  const std::string copy = file + ".gtsam";
+  {
+    std::ofstream out(copy);
+    for (std::string line; std::getline(in, line);) {
+      spatial = spatial || line.find("SE3:QUAT") != std::string::npos;
+      if (line.rfind("FIX", 0) != 0) out << line << "\n";
+    }
   }
-  const auto [graph, initial] = gtsam::readG2o(file, spatial);
+  const auto [graph, initial] = gtsam::readG2o(copy, spatial);
+  std::filesystem::remove(copy);
   const gtsam::Key first = initial->keys().front();
   if (spatial) {
     graph->addPrior(first, initial->at<gtsam::Pose3>(first), gtsam::noiseModel::Unit::Create(6));

@@ -31,6 +31,4 @@ struct EdgeJointLimits : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
 LOCOGRAPH_REGISTER_EDGE(EdgeJointLimits::kTag, EdgeJointLimits)
 extern template class TypedEdgePool<EdgeJointLimits>;
 
-extern template class TypedEdgePool<EdgeJointLimits>;  // robot_types.cpp
-
 }  // namespace locograph

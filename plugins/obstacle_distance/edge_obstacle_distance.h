@@ -37,6 +37,4 @@ struct EdgeObstacleDistance : WeightedEdge<Eigen::Dynamic, VertexConfiguration> 
 LOCOGRAPH_REGISTER_EDGE(EdgeObstacleDistance::kTag, EdgeObstacleDistance)
 extern template class TypedEdgePool<EdgeObstacleDistance>;
 
-extern template class TypedEdgePool<EdgeObstacleDistance>;  // robot_types.cpp
-
 }  // namespace locograph

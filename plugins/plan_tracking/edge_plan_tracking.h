@@ -49,6 +49,4 @@ extern template class TypedEdgePool<EdgePlanTracking>;
 /// eq. 10.86).
 Eigen::Matrix3d inverse_right_jacobian(const Eigen::Vector3d& rotation_vector);
 
-extern template class TypedEdgePool<EdgePlanTracking>;  // robot_types.cpp
-
 }  // namespace locograph

@@ -42,6 +42,4 @@ struct EdgeRolling : WeightedEdge<Eigen::Dynamic, VertexConfiguration, VertexCon
 LOCOGRAPH_REGISTER_EDGE(EdgeRolling::kTag, EdgeRolling)
 extern template class TypedEdgePool<EdgeRolling>;
 
-extern template class TypedEdgePool<EdgeRolling>;  // robot_types.cpp
-
 }  // namespace locograph

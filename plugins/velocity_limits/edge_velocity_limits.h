@@ -40,6 +40,4 @@ struct EdgeVelocityLimits : WeightedEdge<Eigen::Dynamic, VertexConfiguration, Ve
 LOCOGRAPH_REGISTER_EDGE(EdgeVelocityLimits::kTag, EdgeVelocityLimits)
 extern template class TypedEdgePool<EdgeVelocityLimits>;
 
-extern template class TypedEdgePool<EdgeVelocityLimits>;  // robot_types.cpp
-
 }  // namespace locograph

@@ -39,6 +39,4 @@ struct EdgeVelocityTracking
 LOCOGRAPH_REGISTER_EDGE(EdgeVelocityTracking::kTag, EdgeVelocityTracking)
 extern template class TypedEdgePool<EdgeVelocityTracking>;
 
-extern template class TypedEdgePool<EdgeVelocityTracking>;  // robot_types.cpp
-
 }  // namespace locograph

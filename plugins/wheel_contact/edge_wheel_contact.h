@@ -32,6 +32,4 @@ struct EdgeWheelContact : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
 LOCOGRAPH_REGISTER_EDGE(EdgeWheelContact::kTag, EdgeWheelContact)
 extern template class TypedEdgePool<EdgeWheelContact>;
 
-extern template class TypedEdgePool<EdgeWheelContact>;  // robot_types.cpp
-
 }  // namespace locograph
