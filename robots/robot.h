@@ -74,6 +74,7 @@ struct Link {
   double mass = 0.0;                                  ///< kg; 0 without <inertial>
   Eigen::Vector3d com = Eigen::Vector3d::Zero();      ///< m, link frame
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< kg m^2, about com, along the link axes
+  int inertial_line = 0;  ///< of <inertial> in the URDF, of <link> if there is none
   std::vector<CollisionShape> collision;
 };
 

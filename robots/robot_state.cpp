@@ -79,6 +79,25 @@ void RobotState::frame_jacobian(
   }
 }
 
+void RobotState::point_jacobian(
+    int link, const Eigen::Vector3d& point_world,
+    Eigen::Ref<Eigen::Matrix<double, 3, Eigen::Dynamic>> jacobian) const {
+  const int base = robot_->base_tangent_size();
+  if (base > 0) {
+    const Eigen::Matrix3d rotation = world_from_body_[0].linear();
+    const Eigen::Vector3d arm = point_world - world_from_body_[0].translation();
+    jacobian.leftCols<3>() = rotation;
+    for (int k = 0; k < 3; ++k) jacobian.col(3 + k) = rotation.col(k).cross(arm);
+  }
+  for (const int i : robot_->support(link)) {
+    if (tree_->bodies[static_cast<std::size_t>(i) + 1].revolute) {
+      jacobian.col(base + i) = joint_axis(i).cross(point_world - joint_origin(i));
+    } else {
+      jacobian.col(base + i) = joint_axis(i);
+    }
+  }
+}
+
 // d . (axis x (p - o)) = axis . ((p - o) x d) for a joint; for the base, with d in base axes,
 // d . (v + omega x r) = v . d + omega . (r x d).
 void RobotState::add_point_gradient(int link, const Eigen::Vector3d& point_world,

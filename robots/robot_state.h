@@ -46,6 +46,12 @@ class RobotState {
   void frame_jacobian(int link, const Eigen::Isometry3d& link_from_frame,
                       Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>> jacobian) const;
 
+  /// The linear rows of frame_jacobian(), 3 x tangent_size, for a point fixed to `link` that is now
+  /// at point_world. Writes the columns of the base and of support(link) only: the others are zero
+  /// in every configuration and left to the caller.
+  void point_jacobian(int link, const Eigen::Vector3d& point_world,
+                      Eigen::Ref<Eigen::Matrix<double, 3, Eigen::Dynamic>> jacobian) const;
+
   /// row[k * stride] += scale * direction . d(point)/d(tangent_k) for a point fixed to `link` that
   /// is now at point_world. Touches the columns of the base and of support(link) only.
   void add_point_gradient(int link, const Eigen::Vector3d& point_world,
@@ -59,14 +65,18 @@ class RobotState {
                          int stride = 1) const;
 
   /// Throws Error if no link has a mass.
+  void require_mass() const;
+  /// Mass * centre of mass [kg m] and mass [kg] of one body of robot().tree() and all bodies behind
+  /// it. Body 0 stands for the whole robot, body i + 1 for what active joint i moves.
+  const Eigen::Vector4d& subtree_moment(int body) const {
+    return subtree_moment_[static_cast<std::size_t>(body)];
+  }
+  /// Throws Error if no link has a mass.
   Eigen::Vector3d center_of_mass() const;
-  /// 3 x tangent_size, overwrites all columns. The torques that hold the robot against gravity g
-  /// are -total_mass * jacobian^T * g. Throws Error if no link has a mass.
+  /// 3 x tangent_size, overwrites all columns. Throws Error if no link has a mass.
   void center_of_mass_jacobian(Eigen::Ref<Eigen::Matrix<double, 3, Eigen::Dynamic>> jacobian) const;
 
  private:
-  void require_mass() const;
-
   const Robot* robot_;
   const KinematicTree* tree_;
   std::vector<Eigen::Isometry3d> world_from_body_;

@@ -5,10 +5,12 @@
 #include <locograph/robots/xml_file.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 #include <map>
 #include <mutex>
+#include <sstream>
 
 namespace locograph {
 namespace {
@@ -16,6 +18,8 @@ namespace {
 using Element = XmlFile::Element;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Negative eigenvalues that are rounding: of the decomposition, and of thin bodies in six digits.
+constexpr double kInertiaRounding = 1e-6;
 
 /// The structure of a URDF, checked: urdfdom reads the values but knows neither lines nor most
 /// mistakes.
@@ -47,6 +51,9 @@ class UrdfStructure {
         for (const Element& shape : xml_.children(link, kind)) check_geometry(shape, name);
       }
       check_numbers(link);
+      if (const Element* inertial = link.FirstChildElement("inertial")) {
+        check_inertial(*inertial, name);
+      }
     }
     if (links_.empty()) throw xml_.error(xml_.root(), "no <link>", "at least one link");
   }
@@ -65,6 +72,35 @@ class UrdfStructure {
     if (name == "sphere" || name == "cylinder") check_positive(*kind, "radius", 1);
     if (name == "cylinder") check_positive(*kind, "length", 1);
     if (name == "box") check_positive(*kind, "size", 3);
+  }
+
+  void check_inertial(const Element& inertial, const std::string& link) const {
+    const Element* mass = inertial.FirstChildElement("mass");
+    const Element* inertia = inertial.FirstChildElement("inertia");
+    if (mass == nullptr || inertia == nullptr) {
+      throw xml_.error(
+          inertial,
+          "link '" + link + "' has an <inertial> without " + (mass == nullptr ? "mass" : "inertia"),
+          "<mass value> and <inertia ixx ixy ixz iyy iyz izz>, or no <inertial>");
+    }
+    if (xml_.numbers(*mass, "value", 1)[0] < 0.0) {
+      throw xml_.error(*mass, "link '" + link + "' has a negative mass", "0 kg or more");
+    }
+    const auto entry = [&](const char* name) { return xml_.numbers(*inertia, name, 1)[0]; };
+    Eigen::Matrix3d matrix;
+    matrix << entry("ixx"), entry("ixy"), entry("ixz"), entry("ixy"), entry("iyy"), entry("iyz"),
+        entry("ixz"), entry("iyz"), entry("izz");
+    const Eigen::Vector3d principal =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix, Eigen::EigenvaluesOnly)
+            .eigenvalues();
+    if (principal[0] < -kInertiaRounding * principal.cwiseAbs().maxCoeff()) {
+      std::ostringstream moment;
+      moment << principal[0];
+      throw xml_.error(*inertia,
+                       "link '" + link + "' has a negative principal moment of inertia, " +
+                           moment.str() + " kg m^2",
+                       "a matrix without negative eigenvalues");
+    }
   }
 
   void check_positive(const Element& element, const char* name, int count) const {
@@ -301,6 +337,8 @@ Link convert(const urdf::Link& source, const XmlFile& xml, const Element& elemen
              const std::filesystem::path& urdf) {
   Link link;
   link.name = source.name;
+  const Element* inertial_element = element.FirstChildElement("inertial");
+  link.inertial_line = (inertial_element == nullptr ? element : *inertial_element).GetLineNum();
   if (source.inertial) {
     const urdf::Inertial& inertial = *source.inertial;
     const Eigen::Isometry3d origin = isometry(inertial.origin);

@@ -1,6 +1,7 @@
 // Every unusable file is an Error that says where and what.
 #include <locograph/common/error.h>
 #include <locograph/robots/collision_model.h>
+#include <locograph/robots/dynamics.h>
 
 #include "robots/robot_test_support.h"
 
@@ -142,6 +143,74 @@ TEST_F(BadInput, NumbersThatAreNone) {
   expect_urdf(changed("value=\"2\"", "value=\"two\""), 4, "<mass> with value=\"two\"");
   expect_urdf(changed("value=\"2\"", "value=\"nan\""), 4, "1 finite number");
   expect_urdf(changed("xyz=\"0 3 4\"", "xyz=\"0 0 0\""), 10, "joint 'turn' has a zero axis");
+}
+
+TEST_F(BadInput, MassAndInertiaThatNoLinkHas) {
+  expect_urdf(changed("<mass value=\"2\"/>", "<mass value=\"-2\"/>"), 4,
+              "link 'arm' has a negative mass, expected 0 kg or more");
+  expect_urdf(changed("<mass value=\"2\"/>", ""), 4, "link 'arm' has an <inertial> without mass");
+  expect_urdf(
+      changed("<inertia ixx=\"1\" ixy=\"0.1\" ixz=\"0\" iyy=\"2\" iyz=\"0\" izz=\"3\"/>", ""), 4,
+      "link 'arm' has an <inertial> without inertia");
+  expect_urdf(changed("iyy=\"2\" iyz=\"0\" izz=\"3\"", "iyy=\"2\" iyz=\"0\""), 5,
+              "<inertia> without izz");
+  expect_urdf(changed("ixx=\"1\" ixy=\"0.1\"", "ixx=\"-1\" ixy=\"0\""), 5,
+              "link 'arm' has a negative principal moment of inertia, -1 kg m^2");
+  expect_urdf(changed("ixx=\"1\" ixy=\"0.1\"", "ixx=\"1\" ixy=\"1.5\""), 5,
+              "link 'arm' has a negative principal moment of inertia, -0.0811388 kg m^2");
+}
+
+TEST_F(BadInput, MassesWithoutWhichThereIsNoMotion) {
+  const auto expect_refused = [&](const std::string& text, int line, const std::string& part,
+                                  bool floating) {
+    const Robot robot =
+        Robot::load(folder.write("bad.urdf", text), {}, {.floating_base = floating});
+    try {
+      RobotDynamics dynamics(robot);
+      ADD_FAILURE() << "no error: " << part;
+    } catch (const Error& error) {
+      const std::string what = error.what();
+      EXPECT_EQ(error.line(), line) << what;
+      EXPECT_EQ(std::filesystem::path(error.file()).filename(), "bad.urdf") << what;
+      EXPECT_NE(what.find(part), std::string::npos) << what << "\nlacks: " << part;
+    }
+  };
+  const std::string slide_inertial =
+      "<inertial><mass value=\"1\"/><origin xyz=\"0 0 0.3\"/>\n"
+      "    <inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial>";
+  expect_refused(changed(slide_inertial, ""), 6, "joint 'push' moves no mass, only link 'slide'",
+                 true);
+  expect_refused(changed("ixx=\"1\" ixy=\"0.1\" ixz=\"0\" iyy=\"2\"",
+                         "ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\""),
+                 4, "link 'arm' gives its body the principal moments of inertia 1, 1 and 3 kg m^2",
+                 false);
+  expect_refused("<robot name='r'>\n<link name='a'/></robot>", 2,
+                 "robot 'r' has a floating base and no mass", true);
+  const std::string wheel =
+      "<robot name='r'><link name='a'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' "
+      "iyy='1' iyz='0' izz='1'/></inertial></link>\n<link name='b'>\n<inertial>"
+      "<origin xyz='0 0.1 0'/><mass value='1'/><inertia ixx='IXX' ixy='0' ixz='0' iyy='0' iyz='0' "
+      "izz='IXX'/></inertial></link><joint name='j' type='continuous'><parent link='a'/>"
+      "<child link='b'/><axis xyz='0 1 0'/></joint></robot>";
+  const auto with = [&](const std::string& inertia) {
+    std::string text = wheel;
+    for (std::size_t at = text.find("IXX"); at != std::string::npos; at = text.find("IXX")) {
+      text.replace(at, 3, inertia);
+    }
+    return text;
+  };
+  expect_refused(with("0"), 3, "joint 'j' moves no inertia, only link 'b'", true);
+  expect_refused(with("2"), 3, "joint 'j' moves no inertia, only link 'b'", true);
+}
+
+TEST_F(BadInput, RobotWithoutMassUnderGravity) {
+  const Robot robot =
+      Robot::load(folder.write("bad.urdf", "<robot name='r'>\n<link name='a'/></robot>"));
+  const RobotState state(robot);
+  Eigen::VectorXd torques(6);
+  Eigen::MatrixXd derivative(6, 6);
+  EXPECT_THROW(gravity_torques(state, standard_gravity(), torques), Error);
+  EXPECT_THROW(gravity_torque_derivative(state, standard_gravity(), derivative), Error);
 }
 
 TEST_F(BadInput, GeometryThatIsNone) {

@@ -114,6 +114,33 @@ TEST_P(Jacobians, GivePointGradientsThatAreTheirRows) {
   }
 }
 
+TEST_P(Jacobians, OfPointsAreTheLinearRowsOfFrames) {
+  std::mt19937 random(10);
+  Jacobian6 frame(6, robot->tangent_size());
+  for (int link = 0; link < static_cast<int>(robot->links().size()); ++link) {
+    state->update(random_configuration(*robot, random).data());
+    Eigen::Isometry3d link_from_point = Eigen::Isometry3d::Identity();
+    link_from_point.translation() = random_vector(3, 0.5, random);
+    state->frame_jacobian(link, link_from_point, frame);
+    Jacobian3 point = Jacobian3::Constant(3, robot->tangent_size(), 7.0);
+    state->point_jacobian(link, state->world_from_link(link) * link_from_point.translation(),
+                          point);
+    std::vector<bool> moves(static_cast<std::size_t>(robot->tangent_size()), false);
+    std::fill_n(moves.begin(), robot->base_tangent_size(), true);
+    for (const int i : robot->support(link)) {
+      moves[static_cast<std::size_t>(robot->base_tangent_size() + i)] = true;
+    }
+    for (int k = 0; k < robot->tangent_size(); ++k) {
+      if (moves[static_cast<std::size_t>(k)]) {
+        EXPECT_LT((point.col(k) - frame.col(k).head<3>()).norm(), 1e-14);
+      } else {
+        EXPECT_EQ(point.col(k), Eigen::Vector3d::Constant(7.0));
+        EXPECT_TRUE(frame.col(k).isZero(0.0));
+      }
+    }
+  }
+}
+
 TEST_P(Jacobians, GiveAxisGradientsThatAreTheirRows) {
   std::mt19937 random(7);
   Jacobian6 jacobian(6, robot->tangent_size());
@@ -171,6 +198,7 @@ TEST(RobotState, AllocatesNothingOnceBuilt) {
   state.update(q.data());
   state.frame_jacobian(wheel, Eigen::Isometry3d::Identity(), frame);
   state.center_of_mass_jacobian(com);
+  state.point_jacobian(wheel, Eigen::Vector3d::Ones(), com);
   state.add_point_gradient(wheel, Eigen::Vector3d::Ones(), Eigen::Vector3d::UnitX(), 1.0,
                            row.data());
   state.add_axis_gradient(wheel, Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitX(), 1.0,

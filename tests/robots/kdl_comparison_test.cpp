@@ -1,58 +1,21 @@
 // Kinematics and centre of mass of the public robots against an independent library.
-#include <console_bridge/console.h>
 #include <locograph/robots/robot_state.h>
-#include <urdf_parser/urdf_parser.h>
 
-#include <kdl/frames.hpp>
 #include <kdl/jacobian.hpp>
-#include <kdl/tree.hpp>
 #include <kdl/treefksolverpos_recursive.hpp>
 #include <kdl/treejnttojacsolver.hpp>
-#include <map>
-#include <sstream>
 
+#include "robots/kdl_test_support.h"
 #include "robots/robot_test_support.h"
 
 namespace locograph::test {
 namespace {
 
-KDL::Frame to_kdl(const urdf::Pose& pose) {
-  return KDL::Frame(
-      KDL::Rotation::Quaternion(pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w),
-      KDL::Vector(pose.position.x, pose.position.y, pose.position.z));
-}
-
-KDL::Joint to_kdl(const urdf::Joint& joint, const KDL::Frame& origin) {
-  const KDL::Vector axis = origin.M * KDL::Vector(joint.axis.x, joint.axis.y, joint.axis.z);
-  if (joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS) {
-    return KDL::Joint(joint.name, origin.p, axis, KDL::Joint::RotAxis);
-  }
-  if (joint.type == urdf::Joint::PRISMATIC) {
-    return KDL::Joint(joint.name, origin.p, axis, KDL::Joint::TransAxis);
-  }
-  return KDL::Joint(joint.name, KDL::Joint::None);
-}
-
-/// Depth first: KDL's solvers copy the tree that way and number the joints anew.
-void add_children(const urdf::Link& link, KDL::Tree& tree) {
-  for (const urdf::LinkSharedPtr& child : link.child_links) {
-    const urdf::Joint& joint = *child->parent_joint;
-    const KDL::Frame origin = to_kdl(joint.parent_to_joint_origin_transform);
-    tree.addSegment(KDL::Segment(child->name, to_kdl(joint, origin), origin), link.name);
-    add_children(*child, tree);
-  }
-}
-
 /// A robot twice: ours, and KDL's from urdfdom's model.
 struct Twin {
   Twin(const std::filesystem::path& file, bool floating)
       : robot(Robot::load(file, {}, {.floating_base = floating})) {
-    std::ifstream stream(file);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    console_bridge::noOutputHandler();
-    source = urdf::parseURDF(text.str());
-    console_bridge::restorePreviousOutputHandler();
+    source = parse_urdf(file);
     const std::string root = robot.links()[0].name;
     tree = KDL::Tree(root);
     add_children(*source->getLink(root), tree);

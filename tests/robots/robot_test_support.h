@@ -5,9 +5,11 @@
 #include <locograph/robots/robot.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,30 @@ inline const std::vector<std::string>& public_robots() {
   static const std::vector<std::string> names = {
       "centauro", "centauro_capsule", "cogimon", "anymal", "go2", "simple_humanoid"};
   return names;
+}
+
+struct RobotFile {
+  std::string name;
+  std::filesystem::path urdf;
+};
+
+inline void PrintTo(const RobotFile& file, std::ostream* stream) { *stream << file.name; }
+
+/// The public robots and those that come along, as robots/models/NAME/NAME.urdf.
+inline std::vector<RobotFile> public_and_own_robots() {
+  std::vector<RobotFile> robots;
+  for (const std::string& name : public_robots()) {
+    robots.push_back({"public_" + name, public_robot(name + ".urdf")});
+  }
+  std::vector<std::string> own;
+  for (const std::filesystem::directory_entry& entry :
+       std::filesystem::directory_iterator(model(""))) {
+    const std::string name = entry.path().filename().string();
+    if (std::filesystem::exists(entry.path() / (name + ".urdf"))) own.push_back(name);
+  }
+  std::sort(own.begin(), own.end());
+  for (const std::string& name : own) robots.push_back({name, model(name + "/" + name + ".urdf")});
+  return robots;
 }
 
 /// Unit-quaternion base anywhere within 2 m, joints within their limits (continuous: +-pi).
@@ -47,11 +73,31 @@ inline Eigen::VectorXd random_configuration(const Robot& robot, std::mt19937& ra
   return q;
 }
 
+/// The same with every other joint, on average, at one of its limits.
+inline Eigen::VectorXd configuration_at_limits(const Robot& robot, std::mt19937& random) {
+  Eigen::VectorXd q = random_configuration(robot, random);
+  std::uniform_int_distribution<int> side(0, 3);
+  for (int i = 0; i < robot.active_joint_count(); ++i) {
+    const Joint& joint = robot.active_joint(i);
+    const int drawn = side(random);
+    if (joint.type == JointType::kContinuous || drawn > 1) continue;
+    q[robot.base_configuration_size() + i] = drawn == 0 ? joint.lower : joint.upper;
+  }
+  return q;
+}
+
 inline Eigen::VectorXd random_vector(int size, double scale, std::mt19937& random) {
   std::uniform_real_distribution<double> unit(-scale, scale);
   Eigen::VectorXd v(size);
   for (int i = 0; i < size; ++i) v[i] = unit(random);
   return v;
+}
+
+/// For measured errors in the reports of the tests.
+inline std::string scientific(double value) {
+  std::ostringstream text;
+  text << std::scientific << value;
+  return text.str();
 }
 
 /// A fresh folder, removed at the end of the test.

@@ -1,0 +1,120 @@
+#include <locograph/common/error.h>
+#include <locograph/robots/body_inertia.h>
+#include <locograph/robots/kinematic_tree.h>
+
+#include <Eigen/Eigenvalues>
+#include <sstream>
+
+namespace locograph {
+namespace {
+
+// Inertias of flat bodies, where the largest moment is the sum of the others, come in three digits.
+constexpr double kRoundedInertia = 1e-3;
+// Below this part of the largest moment of inertia, the one about the axis is rounding.
+constexpr double kNoInertia = 1e-12;
+
+/// mass * (|r|^2 1 - r r^T): what moving the reference point by r adds to an inertia (Steiner).
+Eigen::Matrix3d steiner(double mass, const Eigen::Vector3d& r) {
+  return mass * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
+}
+
+std::vector<BodyInertia> fold(const Robot& robot) {
+  const KinematicTree& tree = robot.tree();
+  std::vector<BodyInertia> bodies(tree.bodies.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Eigen::Vector4d& moment = tree.bodies[b].moment;
+    bodies[b].mass = moment[3];
+    if (moment[3] > 0.0) bodies[b].com = moment.head<3>() / moment[3];
+  }
+  std::vector<Eigen::Matrix4d> body_from_link(robot.links().size(), Eigen::Matrix4d::Identity());
+  for (const KinematicTree::RigidLink& rigid : tree.rigid_links) {
+    body_from_link[static_cast<std::size_t>(rigid.link)] = rigid.body_from_link;
+  }
+  for (std::size_t l = 0; l < robot.links().size(); ++l) {
+    const Link& link = robot.links()[l];
+    BodyInertia& body = bodies[static_cast<std::size_t>(tree.body_of_link[l])];
+    const Eigen::Matrix3d rotation = body_from_link[l].topLeftCorner<3, 3>();
+    const Eigen::Vector3d com =
+        rotation * link.com + body_from_link[l].topRightCorner<3, 1>() - body.com;
+    body.inertia += rotation * link.inertia * rotation.transpose() + steiner(link.mass, com);
+  }
+  return bodies;
+}
+
+/// The link of a body whose inertia is furthest from that of a solid.
+const Link& worst_link(const Robot& robot, int body) {
+  const std::vector<Link>& links = robot.links();
+  std::size_t worst =
+      static_cast<std::size_t>(robot.tree().link_of_body[static_cast<std::size_t>(body)]);
+  double largest_excess = 0.0;
+  for (std::size_t l = 0; l < links.size(); ++l) {
+    if (robot.tree().body_of_link[l] != body) continue;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(links[l].inertia,
+                                                                Eigen::EigenvaluesOnly);
+    const Eigen::Vector3d& principal = solver.eigenvalues();
+    const double excess = principal[2] - principal[1] - principal[0];
+    if (excess > largest_excess) {
+      largest_excess = excess;
+      worst = l;
+    }
+  }
+  return links[worst];
+}
+
+void check_solid(const Robot& robot, int body, const BodyInertia& inertia) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia.inertia,
+                                                              Eigen::EigenvaluesOnly);
+  const Eigen::Vector3d& principal = solver.eigenvalues();
+  if (principal[0] + principal[1] >= (1.0 - kRoundedInertia) * principal[2]) return;
+  const Link& link = worst_link(robot, body);
+  std::ostringstream what;
+  what << "link '" << link.name << "' gives its body the principal moments of inertia "
+       << principal[0] << ", " << principal[1] << " and " << principal[2] << " kg m^2";
+  throw Error(robot.urdf_file().string(), link.inertial_line, what.str(),
+              "none of them above the sum of the other two");
+}
+
+/// A joint that moves no mass, or turns only one body, and that about an axis through all its mass,
+/// has no equation of motion in any configuration.
+void check_moved(const Robot& robot, const std::vector<BodyInertia>& bodies) {
+  const KinematicTree& tree = robot.tree();
+  std::vector<bool> massive_below(bodies.size(), false);
+  for (std::size_t b = bodies.size() - 1; b > 0; --b) {
+    const BodyInertia& body = bodies[b];
+    const Eigen::Vector3d axis = tree.bodies[b].axis.head<3>();
+    const double largest = body.inertia.diagonal().maxCoeff() + body.mass * body.com.squaredNorm();
+    const double turned =
+        axis.dot(body.inertia * axis) + body.mass * axis.cross(body.com).squaredNorm();
+    const bool moves = tree.bodies[b].revolute ? turned > kNoInertia * largest : body.mass > 0.0;
+    const bool massive = body.mass > 0.0 || largest > 0.0;
+    if (!moves && !massive_below[b]) {
+      const Joint& joint = robot.active_joint(static_cast<int>(b) - 1);
+      const Link& link = robot.links()[static_cast<std::size_t>(joint.child_link)];
+      throw Error(robot.urdf_file().string(), link.inertial_line,
+                  "joint '" + joint.name + "' moves no " + (body.mass > 0.0 ? "inertia" : "mass") +
+                      ", only link '" + link.name + "'",
+                  "an <inertial> with a positive mass and inertia, or the joint not among the "
+                  "active ones");
+    }
+    const std::size_t parent = static_cast<std::size_t>(tree.bodies[b].parent);
+    massive_below[parent] = massive_below[parent] || massive_below[b] || massive;
+  }
+}
+
+}  // namespace
+
+std::vector<BodyInertia> body_inertias(const Robot& robot) {
+  const std::vector<BodyInertia> bodies = fold(robot);
+  check_moved(robot, bodies);
+  for (std::size_t b = robot.floating_base() ? 0 : 1; b < bodies.size(); ++b) {
+    check_solid(robot, static_cast<int>(b), bodies[b]);
+  }
+  if (robot.floating_base() && !(robot.total_mass() > 0.0)) {
+    throw Error(robot.urdf_file().string(), robot.links()[0].inertial_line,
+                "robot '" + robot.name() + "' has a floating base and no mass",
+                "an <inertial> with a positive mass in at least one link");
+  }
+  return bodies;
+}
+
+}  // namespace locograph

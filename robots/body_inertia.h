@@ -1,0 +1,30 @@
+#pragma once
+/// Mass, centre of mass and inertia of the moving bodies of a robot, links joined by fixed and
+/// frozen joints taken together.
+///
+///     const std::vector<locograph::BodyInertia> bodies = locograph::body_inertias(robot);
+///     double trunk_kg = bodies[0].mass;                    // numbered as in robot.tree().bodies
+///
+/// Errors, with the file and the line of an <inertial> or <link>, if the equations of motion have
+/// no solution: a joint that moves no mass, or that only turns a body about an axis through all of
+/// its mass; a body whose largest principal moment of inertia is above the sum of the other two,
+/// which no body has. The last is asked of whole bodies: published models break it in the inertias
+/// of their cameras and covers, which does not matter once they are part of a trunk. The root of a
+/// fixed base does not move and is not looked at.
+
+#include <locograph/robots/robot.h>
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace locograph {
+
+struct BodyInertia {
+  double mass = 0.0;                                  ///< kg
+  Eigen::Vector3d com = Eigen::Vector3d::Zero();      ///< m, body frame; 0 if there is no mass
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< kg m^2, about com, along the body axes
+};
+
+std::vector<BodyInertia> body_inertias(const Robot& robot);
+
+}  // namespace locograph

@@ -1,0 +1,141 @@
+#include <locograph/robots/kinematic_tree.h>
+#include <locograph/robots/statics.h>
+
+namespace locograph {
+namespace {
+
+Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+const KinematicTree::Body& body_of_joint(const RobotState& state, int active) {
+  return state.robot().tree().bodies[static_cast<std::size_t>(active) + 1];
+}
+
+/// How the mass moment of everything behind a joint moves with it [kg m].
+Eigen::Vector3d moment_column(const RobotState& state, int active) {
+  const Eigen::Vector4d& moment = state.subtree_moment(active + 1);
+  const Eigen::Vector3d& axis = state.joint_axis(active);
+  if (!body_of_joint(state, active).revolute) return moment[3] * axis;
+  return axis.cross(moment.head<3>() - moment[3] * state.joint_origin(active));
+}
+
+}  // namespace
+
+void gravity_torques(const RobotState& state, const Eigen::Vector3d& gravity,
+                     Eigen::Ref<Eigen::VectorXd> torques) {
+  state.require_mass();
+  const int base = state.robot().base_tangent_size();
+  if (base > 0) {
+    const Eigen::Isometry3d& world_from_base = state.world_from_link(0);
+    const Eigen::Vector4d& moment = state.subtree_moment(0);
+    const Eigen::Vector3d arm = moment.head<3>() - moment[3] * world_from_base.translation();
+    torques.head<3>().noalias() = -moment[3] * (world_from_base.linear().transpose() * gravity);
+    torques.segment<3>(3).noalias() = -(world_from_base.linear().transpose() * arm.cross(gravity));
+  }
+  for (int i = 0; i < state.robot().active_joint_count(); ++i) {
+    torques[base + i] = -gravity.dot(moment_column(state, i));
+  }
+}
+
+void gravity_torque_derivative(const RobotState& state, const Eigen::Vector3d& gravity,
+                               Eigen::Ref<Eigen::MatrixXd> derivative) {
+  state.require_mass();
+  const int base = state.robot().base_tangent_size();
+  const Eigen::Isometry3d& world_from_base = state.world_from_link(0);
+  derivative.setZero();
+  if (base > 0) {
+    const Eigen::Vector4d& moment = state.subtree_moment(0);
+    const Eigen::Vector3d arm = world_from_base.linear().transpose() *
+                                (moment.head<3>() - moment[3] * world_from_base.translation());
+    const Eigen::Matrix3d turning = skew(world_from_base.linear().transpose() * gravity);
+    derivative.block<3, 3>(0, 3) = -moment[3] * turning;
+    derivative.block<3, 3>(3, 3).noalias() = -skew(arm) * turning;
+  }
+  for (int i = 0; i < state.robot().active_joint_count(); ++i) {
+    const Eigen::Vector3d u = moment_column(state, i).cross(gravity);
+    for (int j = i; j >= 0; j = body_of_joint(state, j).parent - 1) {
+      if (!body_of_joint(state, j).revolute) continue;
+      const double value = -state.joint_axis(j).dot(u);
+      derivative(base + i, base + j) = value;
+      derivative(base + j, base + i) = value;
+    }
+    if (base > 0) {
+      const Eigen::Vector3d column = -(world_from_base.linear().transpose() * u);
+      derivative.block<3, 1>(3, base + i) = column;
+      derivative.block<1, 3>(base + i, 3) = column.transpose();
+    }
+  }
+}
+
+void add_wrench_torques(const RobotState& state, const PointWrench& wrench, double scale,
+                        Eigen::Ref<Eigen::VectorXd> torques) {
+  const Eigen::Vector3d point = state.world_from_link(wrench.link) * wrench.point;
+  state.add_point_gradient(wrench.link, point, wrench.force, scale, torques.data());
+  const Eigen::Vector3d moment = scale * wrench.moment;
+  const int base = state.robot().base_tangent_size();
+  if (base > 0) {
+    torques.segment<3>(3).noalias() += state.world_from_link(0).linear().transpose() * moment;
+  }
+  for (const int i : state.robot().support(wrench.link)) {
+    if (body_of_joint(state, i).revolute) torques[base + i] += state.joint_axis(i).dot(moment);
+  }
+}
+
+void add_wrench_torque_derivative(const RobotState& state, const PointWrench& wrench, double scale,
+                                  Eigen::Ref<Eigen::MatrixXd> derivative) {
+  const int base = state.robot().base_tangent_size();
+  const Eigen::Isometry3d& world_from_base = state.world_from_link(0);
+  const Eigen::Vector3d point = state.world_from_link(wrench.link) * wrench.point;
+  const Eigen::Vector3d force = scale * wrench.force;
+  const Eigen::Vector3d moment = scale * wrench.moment;
+  if (base > 0) {
+    const Eigen::Vector3d arm =
+        world_from_base.linear().transpose() * (point - world_from_base.translation());
+    const Eigen::Matrix3d turning = skew(world_from_base.linear().transpose() * force);
+    derivative.block<3, 3>(0, 3) += turning;
+    derivative.block<3, 3>(3, 3).noalias() += skew(arm) * turning;
+    derivative.block<3, 3>(3, 3) += skew(world_from_base.linear().transpose() * moment);
+  }
+  for (const int i : state.robot().support(wrench.link)) {
+    const bool revolute = body_of_joint(state, i).revolute;
+    const Eigen::Vector3d& axis = state.joint_axis(i);
+    Eigen::Vector3d upper, lower;  // u, and u + a x m
+    if (revolute) {
+      upper = axis.cross(point - state.joint_origin(i)).cross(force);
+      lower = upper + axis.cross(moment);
+    } else {
+      lower = upper = axis.cross(force);
+    }
+    if (revolute) derivative(base + i, base + i) += axis.dot(upper);
+    for (int j = body_of_joint(state, i).parent - 1; j >= 0;
+         j = body_of_joint(state, j).parent - 1) {
+      if (!body_of_joint(state, j).revolute) continue;
+      derivative(base + i, base + j) += state.joint_axis(j).dot(lower);
+      derivative(base + j, base + i) += state.joint_axis(j).dot(upper);
+    }
+    if (base > 0) {
+      derivative.block<3, 1>(3, base + i).noalias() += world_from_base.linear().transpose() * upper;
+      derivative.block<1, 3>(base + i, 3).noalias() += lower.transpose() * world_from_base.linear();
+    }
+  }
+}
+
+void static_torques(const RobotState& state, const Eigen::Vector3d& gravity,
+                    std::span<const PointWrench> wrenches, Eigen::Ref<Eigen::VectorXd> torques) {
+  gravity_torques(state, gravity, torques);
+  for (const PointWrench& wrench : wrenches) add_wrench_torques(state, wrench, -1.0, torques);
+}
+
+void static_torque_derivative(const RobotState& state, const Eigen::Vector3d& gravity,
+                              std::span<const PointWrench> wrenches,
+                              Eigen::Ref<Eigen::MatrixXd> derivative) {
+  gravity_torque_derivative(state, gravity, derivative);
+  for (const PointWrench& wrench : wrenches) {
+    add_wrench_torque_derivative(state, wrench, -1.0, derivative);
+  }
+}
+
+}  // namespace locograph
