@@ -48,6 +48,31 @@ void BM_AllSphereGradients(benchmark::State& run) {
 }
 BENCHMARK(BM_AllSphereGradients)->Arg(10)->Arg(20)->Arg(40);
 
+/// What all collision edges of one configuration need: link poses, and centre and Jacobian of every
+/// covering sphere.
+void BM_PosesAndAllSphereJacobians(benchmark::State& run) {
+  using Jacobian3 = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+  const locograph::Robot robot = centauro();
+  locograph::RobotState state(robot);
+  Eigen::VectorXd q = robot.named_configuration("home");
+  const std::vector<locograph::CollisionSphere> spheres =
+      locograph::covering_spheres(robot, 1e-3 * static_cast<double>(run.range(0)));
+  std::vector<Jacobian3> jacobians(spheres.size(), Jacobian3::Zero(3, robot.tangent_size()));
+  std::vector<Eigen::Vector3d> centres(spheres.size());
+  for (auto _ : run) {
+    q[8] += 1e-9;
+    state.update(q.data());
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      centres[i] = state.world_from_link(spheres[i].link) * spheres[i].center;
+      state.point_jacobian(spheres[i].link, centres[i], jacobians[i]);
+    }
+    benchmark::DoNotOptimize(jacobians.data());
+    benchmark::ClobberMemory();
+  }
+  run.counters["spheres"] = static_cast<double>(spheres.size());
+}
+BENCHMARK(BM_PosesAndAllSphereJacobians)->Arg(10)->Arg(20)->Arg(40);
+
 void BM_FrameJacobian(benchmark::State& run) {
   const locograph::Robot robot = centauro();
   locograph::RobotState state(robot);
