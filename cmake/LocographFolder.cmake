@@ -68,6 +68,7 @@ function(locograph_benchmark name)
   target_compile_definitions(${name} PRIVATE
     LOCOGRAPH_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data"
     LOCOGRAPH_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/benchmarks)
   set_target_properties(${name} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/benchmarks/bin)
 endfunction()
