@@ -8,7 +8,6 @@
 #include <kdl/tree.hpp>
 #include <kdl/treefksolverpos_recursive.hpp>
 #include <kdl/treejnttojacsolver.hpp>
-#include <map>
 #include <sstream>
 
 #include "robots/robot_test_support.h"
