@@ -1,34 +1,15 @@
 #include <locograph/apps/describe.h>
-#include <locograph/robots/robot.h>
-
-#include <cmath>
+#include <locograph/apps/type_names.h>
 
 namespace locograph {
 namespace {
 
-const char* type_name(JointType type) {
-  switch (type) {
-    case JointType::kFixed:
-      return "fixed";
-    case JointType::kRevolute:
-      return "revolute";
-    case JointType::kContinuous:
-      return "continuous";
-    case JointType::kPrismatic:
-      return "prismatic";
-  }
-  return "";
-}
-
-/// JSON has no infinity: what is unlimited is null.
-Json limit(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json joint_json(const Joint& joint) {
   return {{"type", type_name(joint.type)},
-          {"lower", limit(joint.lower)},
-          {"upper", limit(joint.upper)},
-          {"max_velocity", limit(joint.max_velocity)},
-          {"max_effort", limit(joint.max_effort)},
+          {"lower", limit_json(joint.lower)},
+          {"upper", limit_json(joint.upper)},
+          {"max_velocity", limit_json(joint.max_velocity)},
+          {"max_effort", limit_json(joint.max_effort)},
           {"units", joint.type == JointType::kPrismatic ? "m, m/s, N" : "rad, rad/s, Nm"}};
 }
 

@@ -1,5 +1,5 @@
 #include <locograph/apps/describe.h>
-#include <locograph/world/obstacles.h>
+#include <locograph/apps/type_names.h>
 #include <locograph/world/octree.h>
 
 namespace locograph {
@@ -10,18 +10,6 @@ Json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 Json bounds_json(const Eigen::AlignedBox3d& box) {
   if (box.isEmpty()) return nullptr;
   return {{"lower_m", vector_json(box.min())}, {"upper_m", vector_json(box.max())}};
-}
-
-const char* shape_name(Obstacle::Shape shape) {
-  switch (shape) {
-    case Obstacle::Shape::kBox:
-      return "box";
-    case Obstacle::Shape::kSphere:
-      return "sphere";
-    case Obstacle::Shape::kCylinder:
-      return "cylinder";
-  }
-  return "";
 }
 
 Json size_json(const Obstacle& obstacle) {
@@ -52,7 +40,7 @@ Json describe_map(const std::filesystem::path& path) {
 Json describe_obstacles(const std::filesystem::path& path) {
   Json obstacles = Json::array();
   for (const Obstacle& obstacle : load_obstacles(path)) {
-    Json json = {{"shape", shape_name(obstacle.shape)}, {"name", obstacle.name}};
+    Json json = {{"shape", type_name(obstacle.shape)}, {"name", obstacle.name}};
     json["center_m"] = vector_json(obstacle.world_from_obstacle.translation());
     json.update(size_json(obstacle));
     json["key_frames"] = obstacle.motion.size();

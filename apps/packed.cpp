@@ -1,7 +1,6 @@
 #include <locograph/apps/packed.h>
 
 #include <bit>
-#include <cstring>
 
 namespace locograph {
 namespace {

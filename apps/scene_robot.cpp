@@ -1,43 +1,14 @@
 #include <locograph/apps/packed.h>
 #include <locograph/apps/scene.h>
+#include <locograph/apps/type_names.h>
 #include <locograph/robots/stl_file.h>
 #include <locograph/robots/visual_model.h>
 
-#include <cmath>
+#include <algorithm>
 #include <map>
 
 namespace locograph {
 namespace {
-
-const char* type_name(ShapeType type) {
-  switch (type) {
-    case ShapeType::kSphere:
-      return "sphere";
-    case ShapeType::kCapsule:
-      return "capsule";
-    case ShapeType::kCylinder:
-      return "cylinder";
-    case ShapeType::kBox:
-      return "box";
-    case ShapeType::kMesh:
-      return "mesh";
-  }
-  return "";
-}
-
-const char* type_name(JointType type) {
-  switch (type) {
-    case JointType::kFixed:
-      return "fixed";
-    case JointType::kRevolute:
-      return "revolute";
-    case JointType::kContinuous:
-      return "continuous";
-    case JointType::kPrismatic:
-      return "prismatic";
-  }
-  return "";
-}
 
 /// Each mesh file once.
 class Meshes {
@@ -83,9 +54,6 @@ Json shape_json(const VisualShape& shape, Meshes& meshes) {
   return json;
 }
 
-/// JSON has no infinity: what is unlimited is null.
-Json limit(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json joint_json(const Joint& joint) {
   return {{"name", joint.name},
           {"type", type_name(joint.type)},
@@ -93,10 +61,10 @@ Json joint_json(const Joint& joint) {
           {"child", joint.child_link},
           {"origin", pose_json(joint.parent_from_joint)},
           {"axis", vector_json(joint.axis)},
-          {"lower", limit(joint.lower)},
-          {"upper", limit(joint.upper)},
-          {"velocity", limit(joint.max_velocity)},
-          {"effort", limit(joint.max_effort)},
+          {"lower", limit_json(joint.lower)},
+          {"upper", limit_json(joint.upper)},
+          {"velocity", limit_json(joint.max_velocity)},
+          {"effort", limit_json(joint.max_effort)},
           {"index", joint.index},
           {"frozen", joint.frozen_position}};
 }

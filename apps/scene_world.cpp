@@ -1,5 +1,6 @@
 #include <locograph/apps/packed.h>
 #include <locograph/apps/scene.h>
+#include <locograph/apps/type_names.h>
 
 #include <algorithm>
 #include <array>
@@ -9,18 +10,6 @@ namespace {
 
 /// What a page can draw at 60 frames a second, and about 2 MB of it.
 constexpr std::size_t kMostVoxels = 100000;
-
-const char* type_name(Obstacle::Shape shape) {
-  switch (shape) {
-    case Obstacle::Shape::kBox:
-      return "box";
-    case Obstacle::Shape::kSphere:
-      return "sphere";
-    case Obstacle::Shape::kCylinder:
-      return "cylinder";
-  }
-  return "";
-}
 
 Json map_json(const octomap::OcTree& tree, const Eigen::AlignedBox3d& near) {
   struct Voxel {

@@ -1,7 +1,6 @@
 #include <locograph/core/covariance.h>
 #include <locograph/core/null_space.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace locograph {

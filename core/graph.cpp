@@ -2,7 +2,6 @@
 #include <locograph/core/information.h>
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 
 namespace locograph {
 namespace {
@@ -12,6 +11,19 @@ void set_slot(std::vector<std::vector<int>>& slots, int pool, int index, int slo
   if (static_cast<int>(slots.size()) <= pool) slots.resize(pool + 1);
   if (static_cast<int>(slots[pool].size()) <= index) slots[pool].resize(index + 1);
   slots[pool][index] = slot;
+}
+
+/// Clears a record and takes its object out of the pool, whose last one moves into the gap. slots:
+/// of the pool's objects.
+template <class Pool, class Record>
+void remove_from_pool(Pool& pool, std::vector<int>& slots, std::vector<Record>& records,
+                      Record& record) {
+  const int moved = slots.back();
+  pool.remove(record.index);
+  records[moved].index = record.index;
+  slots[record.index] = moved;
+  slots.pop_back();
+  record = {};
 }
 
 }  // namespace
@@ -139,14 +151,8 @@ void Graph::remove_edge(EdgeId e) {
   if (!incident_.empty()) {
     for (const int v : edge_vertices(e.slot)) std::erase(incident_[v], e.slot);
   }
-  std::vector<int>& slots = edge_slot_of_pool_index_[record.pool];
-  const int last = edge_pools_[record.pool]->size() - 1;
-  const int moved = slots[last];
-  edge_pools_[record.pool]->remove(record.index);
-  edge_records_[moved].index = record.index;
-  slots[record.index] = moved;
-  slots.pop_back();
-  record = {};
+  remove_from_pool(*edge_pools_[record.pool], edge_slot_of_pool_index_[record.pool], edge_records_,
+                   record);
   --edge_count_;
 }
 
@@ -191,14 +197,8 @@ void Graph::remove_vertex(int slot) {
   for (const int e : edges) remove_edge({e});
   VertexRecord& record = vertex_records_[slot];
   slot_of_id_.erase(record.id);
-  std::vector<int>& slots = vertex_slot_of_pool_index_[record.pool];
-  const int last = vertex_pools_[record.pool]->size() - 1;
-  const int moved = slots[last];
-  vertex_pools_[record.pool]->remove(record.index);
-  vertex_records_[moved].index = record.index;
-  slots[record.index] = moved;
-  slots.pop_back();
-  record = {};
+  remove_from_pool(*vertex_pools_[record.pool], vertex_slot_of_pool_index_[record.pool],
+                   vertex_records_, record);
   --vertex_count_;
 }
 

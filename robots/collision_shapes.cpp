@@ -1,6 +1,5 @@
 #include <locograph/robots/urdf_reader.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace locograph {

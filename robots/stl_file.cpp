@@ -1,10 +1,11 @@
+#include <locograph/common/atomic_file.h>
 #include <locograph/common/error.h>
 #include <locograph/robots/stl_file.h>
 
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
+#include <locale>
 #include <sstream>
 
 namespace locograph {
@@ -34,16 +35,29 @@ std::vector<Eigen::Vector3d> read_binary(const std::string& bytes) {
   return corners;
 }
 
-std::vector<Eigen::Vector3d> read_text(const std::string& bytes) {
+std::vector<Eigen::Vector3d> read_text(const std::string& file, const std::string& text) {
   std::vector<Eigen::Vector3d> corners;
-  std::istringstream words(bytes);
-  std::string word;
-  while (words >> word) {
-    Eigen::Vector3d corner;
-    if (word == "vertex" && words >> corner.x() >> corner.y() >> corner.z()) {
+  std::istringstream lines(text);
+  std::string content;
+  bool ended = false;
+  for (int line = 1; std::getline(lines, content); ++line) {
+    std::istringstream words(content);
+    words.imbue(std::locale::classic());
+    for (std::string word; words >> word;) {
+      if (word == "solid") break;  // a name follows
+      if (word == "endsolid") {
+        ended = true;
+        break;
+      }
+      if (word != "vertex") continue;
+      Eigen::Vector3d corner;
+      if (!(words >> corner.x() >> corner.y() >> corner.z())) {
+        throw Error(file, line, "unreadable vertex", "vertex x y z");
+      }
       corners.push_back(corner);
     }
   }
+  if (!ended) throw Error(file, 0, "truncated", "a line 'endsolid'");
   return corners;
 }
 
@@ -57,18 +71,12 @@ bool all_finite(const std::vector<Eigen::Vector3d>& corners) {
 }  // namespace
 
 std::vector<Eigen::Vector3d> stl_triangles(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || !std::filesystem::is_regular_file(file)) {
-    throw Error(file.string(), 0, "cannot be read", "a readable STL file");
-  }
-  std::ostringstream buffer;
-  buffer << stream.rdbuf();
-  const std::string bytes = buffer.str();
+  const std::string bytes = read_file(file);
   std::vector<Eigen::Vector3d> corners;
   if (is_binary(bytes)) {
     corners = read_binary(bytes);
   } else if (bytes.starts_with("solid")) {
-    corners = read_text(bytes);
+    corners = read_text(file.string(), bytes);
   }
   if (corners.empty() || corners.size() % 3 != 0 || !all_finite(corners)) {
     throw Error(file.string(), 0, "no triangles of an STL mesh", "text or binary STL");

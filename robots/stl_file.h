@@ -5,7 +5,7 @@
 ///     for (std::size_t i = 0; i + 2 < corners.size(); i += 3) draw(corners[i], corners[i + 1], …);
 ///
 /// Three corners for each triangle, in the file's order and own units. Throws Error when the file
-/// cannot be read or holds no triangle.
+/// cannot be read, is cut short or holds no triangle.
 
 #include <Eigen/Core>
 #include <filesystem>

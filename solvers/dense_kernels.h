@@ -24,8 +24,6 @@ void subtract_product(double* c, int ldc, const double* a, int lda, const double
 /// C −= A Bᵀ on and below the diagonal, where B is the first n rows of A (m ≥ n); above it C is
 /// overwritten with anything.
 void subtract_lower_product(double* c, int ldc, const double* a, int lda, int m, int n, int k);
-/// The same, C = −A Bᵀ: what was in C is not read.
-void negative_lower_product(double* c, int ldc, const double* a, int lda, int m, int n, int k);
 
 /// C = −A Bᵀ; `lower` as above: B is the first n rows of A and what is above the diagonal is
 /// anything.

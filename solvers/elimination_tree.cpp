@@ -1,7 +1,5 @@
 #include <locograph/solvers/elimination_tree.h>
 
-#include <algorithm>
-
 namespace locograph {
 namespace {
 

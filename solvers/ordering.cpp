@@ -3,7 +3,6 @@
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
-#include <algorithm>
 #include <numeric>
 
 #if LOCOGRAPH_HAVE_METIS

@@ -241,7 +241,7 @@ void SchurSolver::solve(const double* right_hand_side, double* x) const {
   });
   scatter(x + pattern_.scalar_begin[pattern_.kept], x);
   if (pattern_.kept > 0 && chosen_ == Reduced::kPcg) {
-    pcg_iterations_ = iteration_.solve(
+    iteration_.solve(
         pcg_options_, threads_, x, x, [&](const double* v, double* out) { multiply(v, out); },
         [&](const double* v, double* out) { preconditioner_.apply(v, out, threads_); });
   } else if (pattern_.kept > 0) {

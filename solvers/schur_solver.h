@@ -53,8 +53,6 @@ class SchurSolver final : public LinearSolver {
   /// Multiply-adds of one factorisation (and, with conjugate gradients, an estimate of the solve);
   /// valid after analyse().
   double cost() const { return cost_; }
-  /// Of the last solve() with conjugate gradients.
-  int pcg_iterations() const { return pcg_iterations_; }
 
  private:
   static constexpr int kChunk = 256;  ///< eliminated columns that one thread takes at a time
@@ -87,7 +85,6 @@ class SchurSolver final : public LinearSolver {
   const double* damping_ = nullptr;
   mutable PcgIteration iteration_;
   mutable std::vector<double> eliminated_part_;
-  mutable int pcg_iterations_ = 0;
   double cost_ = 0.0;
   int failed_row_ = -1;
   bool analysed_ = false;

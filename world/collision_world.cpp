@@ -1,11 +1,9 @@
 #include <locograph/common/error.h>
-#include <locograph/robots/robot.h>
 #include <locograph/world/collision_world.h>
 #include <locograph/world/convex_shape.h>
-#include <locograph/world/stl_vertices.h>
+#include <locograph/world/link_solid.h>
 #include <locograph/world/voxel_tree.h>
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -19,33 +17,7 @@ struct Body {
   Eigen::Isometry3d link_from_shape;
 };
 
-ConvexShape mesh_hull(const Robot& robot, const CollisionShape& shape) {
-  if (!shape.mesh_found)
-    throw Error(robot.urdf_file().string(), shape.line,
-                "collision mesh " + shape.mesh_file.string() + " was not found",
-                "a readable STL file");
-  std::vector<Eigen::Vector3d> vertices = stl_vertices(shape.mesh_file);
-  for (Eigen::Vector3d& vertex : vertices) vertex = vertex.cwiseProduct(shape.size).eval();
-  return ConvexShape::hull(std::move(vertices));
-}
-
-ConvexShape convex_shape(const Robot& robot, const CollisionShape& shape) {
-  switch (shape.type) {
-    case ShapeType::kSphere:
-      return ConvexShape::sphere(shape.radius);
-    case ShapeType::kCapsule:
-      return ConvexShape::capsule(shape.radius, shape.length);
-    case ShapeType::kCylinder:
-      return ConvexShape::cylinder(shape.radius, shape.length);
-    case ShapeType::kBox:
-      return ConvexShape::box(shape.size);
-    case ShapeType::kMesh:
-      break;
-  }
-  return mesh_hull(robot, shape);
-}
-
-ConvexShape convex_shape(const Obstacle& obstacle) {
+ConvexShape obstacle_solid(const Obstacle& obstacle) {
   switch (obstacle.shape) {
     case Obstacle::Shape::kSphere:
       return ConvexShape::sphere(obstacle.size[0]);
@@ -102,7 +74,7 @@ CollisionWorld::CollisionWorld(const Robot& robot, std::shared_ptr<const octomap
     parts_->link_begin.push_back(parts_->bodies.size());
     const int index = int(parts_->link_names.size());
     for (const CollisionShape& shape : link.collision)
-      parts_->bodies.push_back({index, convex_shape(robot, shape), shape.link_from_shape});
+      parts_->bodies.push_back({index, link_solid(robot, shape), shape.link_from_shape});
     parts_->link_names.push_back(link.name);
   }
   parts_->link_begin.push_back(parts_->bodies.size());
@@ -117,7 +89,7 @@ CollisionWorld::CollisionWorld(const Robot& robot, std::shared_ptr<const octomap
   if (tree) parts_->voxels.emplace(*tree);
   for (const Obstacle& obstacle : obstacles) {
     obstacle.validate();
-    parts_->obstacle_shapes.push_back(convex_shape(obstacle));
+    parts_->obstacle_shapes.push_back(obstacle_solid(obstacle));
   }
   parts_->obstacles = std::move(obstacles);
 }

@@ -1,7 +1,6 @@
 #include <locograph/common/error.h>
 #include <locograph/world/obstacles.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace locograph {

@@ -1,6 +1,6 @@
+#include <locograph/common/atomic_file.h>
 #include <locograph/common/error.h>
 #include <locograph/world/obstacles.h>
-#include <locograph/world/replace_file.h>
 #include <tinyxml2.h>
 
 #include <algorithm>
@@ -283,7 +283,7 @@ void save_obstacles(std::span<const Obstacle> obstacles, const std::filesystem::
   }
   tinyxml2::XMLPrinter printer;
   document.Print(&printer);
-  replace_file(path, [&](std::ostream& out) { out << printer.CStr(); });
+  write_file_atomically(path, printer.CStr());
 }
 
 }  // namespace locograph

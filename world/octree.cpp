@@ -1,15 +1,13 @@
+#include <locograph/common/atomic_file.h>
 #include <locograph/common/error.h>
 #include <locograph/world/octree.h>
-#include <locograph/world/replace_file.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <iomanip>
 #include <iterator>
-#include <limits>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -206,11 +204,11 @@ std::shared_ptr<octomap::OcTree> load_octree(const std::filesystem::path& path) 
 }
 
 void save_octree(const octomap::OcTree& tree, const std::filesystem::path& path) {
-  replace_file(path, [&](std::ostream& out) {
-    out << kBinaryFirstLine << "\nid " << tree.getTreeType() << "\nsize " << tree.size() << "\nres "
-        << std::setprecision(17) << tree.getResolution() << "\ndata\n";
-    if (tree.size() > 0) tree.writeBinaryData(out);
-  });
+  std::ostringstream out;
+  out << kBinaryFirstLine << "\nid " << tree.getTreeType() << "\nsize " << tree.size() << "\nres "
+      << std::setprecision(17) << tree.getResolution() << "\ndata\n";
+  if (tree.size() > 0) tree.writeBinaryData(out);
+  write_file_atomically(path, out.str());
 }
 
 std::shared_ptr<octomap::OcTree> octree_from_boxes(std::span<const Box> boxes,

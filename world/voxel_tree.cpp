@@ -18,7 +18,6 @@ VoxelTree::VoxelTree(const octomap::OcTree& tree) : resolution_(tree.getResoluti
           resolution_;
     boxes.emplace_back(lower, lower + Eigen::Vector3d::Constant(extent * resolution_));
   }
-  leaf_count_ = boxes.size();
   if (boxes.empty()) return;
   nodes_.reserve(2 * boxes.size() - 1);
   build(boxes, 0, boxes.size());

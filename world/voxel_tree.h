@@ -34,7 +34,6 @@ class VoxelTree {
   explicit VoxelTree(const octomap::OcTree& tree);
 
   bool empty() const { return nodes_.empty(); }
-  std::size_t voxel_count() const { return leaf_count_; }
 
   /// True if something nearer than the initial query.best.distance was found.
   bool nearest(Query& query) const;
@@ -49,7 +48,6 @@ class VoxelTree {
   int build(std::vector<Eigen::AlignedBox3d>& boxes, std::size_t begin, std::size_t end);
 
   std::vector<Node> nodes_;
-  std::size_t leaf_count_ = 0;
   double resolution_ = 0.0;
 };
 

@@ -26,6 +26,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "command_line.h"
 #include "generated_bundle.h"
 
 namespace locograph {
@@ -317,63 +318,41 @@ Json compare(const std::string& name, const BundleProblem& bundle, const Setting
   return json;
 }
 
-int positive(const std::string& option, const char* value) {
-  const int number = value == nullptr ? 0 : std::atoi(value);
-  if (number < 1) throw Error("option " + option, "a number of 1 or more");
-  return number;
-}
-
-int run(int argc, char** argv) {
-  Settings settings;
-  BundleOptions generated;
-  std::vector<std::filesystem::path> files;
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    const auto value = [&] { return positive(argument, i + 1 < argc ? argv[++i] : nullptr); };
-    if (argument == "--cameras") {
-      generated.cameras = value();
-    } else if (argument == "--points") {
-      generated.points = value();
-    } else if (argument == "--seed") {
-      generated.seed = static_cast<unsigned>(value());
-    } else if (argument == "--runs") {
-      settings.runs = value();
-    } else if (argument == "--threads") {
-      settings.threads = value();
-    } else if (argument == "--skip") {
-      if (++i == argc) throw Error("option --skip", "the name of a linear solver");
-      settings.skip.insert(argv[i]);
-    } else {
-      files.emplace_back(argument);
-    }
-  }
-  Json all = {{"unit", "s"}, {"threads", settings.threads}, {"runs", settings.runs}};
-  all["problems"] = Json::array();
-  const bool given = !files.empty();
-  if (!given) {
-    files.push_back(std::filesystem::path(LOCOGRAPH_SHARED_DATA) / "bundle/dubrovnik-3-7-pre.txt");
-    if (!std::filesystem::exists(files.back())) files.clear();
-  }
-  for (const std::filesystem::path& file : files) {
-    std::cerr << file.filename().string() << "\n";
-    all["problems"].push_back(compare(file.filename().string(), load_bundle(file), settings));
-  }
-  if (!given) {
-    std::cerr << "generated\n";
-    all["problems"].push_back(compare("generated", generate_bundle(generated), settings));
-  }
-  std::cout << all.dump(1) << "\n";
-  return 0;
-}
-
 }  // namespace
 }  // namespace locograph
 
 int main(int argc, char** argv) {
-  try {
-    return locograph::run(argc, argv);
-  } catch (const locograph::Error& error) {
-    std::cerr << "bundle_benchmark: " << error.what() << "\n";
-    return 2;
-  }
+  using namespace locograph;
+  Settings settings;
+  BundleOptions generated;
+  std::vector<std::filesystem::path> files;
+  std::vector<std::string> skip;
+  CLI::App app("Bundle adjustment to convergence", "bundle_benchmark");
+  app.add_option("BAL", files, "Problems; default: one of the shared data and a generated one");
+  app.add_option("--cameras", generated.cameras, "Generated")->check(CLI::PositiveNumber);
+  app.add_option("--points", generated.points, "Generated")->check(CLI::PositiveNumber);
+  app.add_option("--seed", generated.seed, "Of what is generated")->check(CLI::PositiveNumber);
+  app.add_option("--runs", settings.runs, "Measurements of each")->check(CLI::PositiveNumber);
+  app.add_option("--threads", settings.threads, "Threads to use")->check(CLI::PositiveNumber);
+  app.add_option("--skip", skip, "A linear solver to leave out")->allow_extra_args(false);
+  return run_benchmark(app, argc, argv, [&] {
+    settings.skip = {skip.begin(), skip.end()};
+    Json all = {{"unit", "s"}, {"threads", settings.threads}, {"runs", settings.runs}};
+    all["problems"] = Json::array();
+    const bool given = !files.empty();
+    if (!given) {
+      files.push_back(std::filesystem::path(LOCOGRAPH_SHARED_DATA) /
+                      "bundle/dubrovnik-3-7-pre.txt");
+      if (!std::filesystem::exists(files.back())) files.clear();
+    }
+    for (const std::filesystem::path& file : files) {
+      std::cerr << file.filename().string() << "\n";
+      all["problems"].push_back(compare(file.filename().string(), load_bundle(file), settings));
+    }
+    if (!given) {
+      std::cerr << "generated\n";
+      all["problems"].push_back(compare("generated", generate_bundle(generated), settings));
+    }
+    std::cout << all.dump(1) << "\n";
+  });
 }

@@ -16,9 +16,11 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <map>
 #include <string>
 #include <vector>
+
+#include "command_line.h"
+#include "pose_graph_files.h"
 
 namespace locograph {
 namespace {
@@ -107,42 +109,27 @@ void report(const std::string& name, const Updates& updates, bool last) {
       updates.seconds.back(), total, updates.chi2, last ? "" : ",");
 }
 
-int run(int count, char** arguments) {
-  std::vector<std::string> files;
-  int every = 1;
-  for (int i = 1; i < count; ++i) {
-    if (std::string(arguments[i]) == "--every" && i + 1 < count) {
-      every = std::max(1, std::stoi(arguments[++i]));
-    } else {
-      files.emplace_back(arguments[i]);
-    }
-  }
-  if (files.empty()) {
-    for (const char* name : {"intel", "manhattan"}) {
-      files.push_back(std::string(LOCOGRAPH_SHARED_DATA) + "/pose_graphs/" + name + ".g2o");
-    }
-  }
-  std::printf("{\n");
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    const Graph map = read_graph(files[i], standard_types());
-    Replay replay(map);
-    std::printf("  \"%s\": {\n", files[i].c_str());
-    report("whole", replay.run(false, every), false);
-    report("window", replay.run(true, every), true);
-    std::printf("  }%s\n", i + 1 < files.size() ? "," : "");
-  }
-  std::printf("}\n");
-  return 0;
-}
-
 }  // namespace
 }  // namespace locograph
 
-int main(int count, char** arguments) {
-  try {
-    return locograph::run(count, arguments);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
+int main(int argc, char** argv) {
+  using namespace locograph;
+  std::vector<std::filesystem::path> files = {pose_graph_file("intel"),
+                                              pose_graph_file("manhattan")};
+  int every = 1;
+  CLI::App app("Pose graphs solved after every pose", "incremental_benchmark");
+  app.add_option("FILE", files, "Planar pose graphs (.g2o); default: intel and manhattan");
+  app.add_option("--every", every, "Poses between two solutions")->check(CLI::PositiveNumber);
+  return run_benchmark(app, argc, argv, [&] {
+    std::printf("{\n");
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      const Graph map = read_graph(files[i], standard_types());
+      Replay replay(map);
+      std::printf("  \"%s\": {\n", files[i].c_str());
+      report("whole", replay.run(false, every), false);
+      report("window", replay.run(true, every), true);
+      std::printf("  }%s\n", i + 1 < files.size() ? "," : "");
+    }
+    std::printf("}\n");
+  });
 }

@@ -4,48 +4,25 @@
 ///     linearise_factorise_benchmark --benchmark_format=json
 
 #include <benchmark/benchmark.h>
-#include <locograph/core/graph_file.h>
-#include <locograph/core/workspace.h>
 #include <locograph/solvers/linear_solvers.h>
-#include <locograph/types/standard_types.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
 
+#include "linearised_graph.h"
+#include "pose_graph_files.h"
+
 namespace locograph {
 namespace {
 
-struct Loaded {
-  Graph graph;
-  Problem problem;
-  Workspace workspace;
-  std::vector<double> damping;
-
-  explicit Loaded(const std::string& name)
-      : graph(read_graph(
-            std::filesystem::path(LOCOGRAPH_SHARED_DATA) / "pose_graphs" / (name + ".g2o"),
-            standard_types(), {.lenient = true})) {
-    graph.set_fixed(0, true);
-    problem.compile(graph);
-    workspace.allocate(problem);
-    workspace.load_state();
-    workspace.evaluate(workspace.state());
-    workspace.linearise();
-    std::vector<double> diagonal(problem.dimension());
-    workspace.diagonal(diagonal);
-    damping.assign(problem.dimension(), 1e-5 * *std::max_element(diagonal.begin(), diagonal.end()));
-  }
-};
-
 void compile(benchmark::State& state, const std::string& name) {
-  Loaded loaded(name);
+  LinearisedGraph loaded(pose_graph_file(name));
   for (auto _ : state) loaded.problem.compile(loaded.graph);
 }
 
 void linearise(benchmark::State& state, const std::string& name) {
-  Loaded loaded(name);
+  LinearisedGraph loaded(pose_graph_file(name));
   for (auto _ : state) benchmark::DoNotOptimize(loaded.workspace.linearise());
   state.counters["ns_per_edge"] = benchmark::Counter(
       1e-9 * loaded.problem.edge_count(),
@@ -53,7 +30,7 @@ void linearise(benchmark::State& state, const std::string& name) {
 }
 
 void evaluate(benchmark::State& state, const std::string& name) {
-  Loaded loaded(name);
+  LinearisedGraph loaded(pose_graph_file(name));
   for (auto _ : state) {
     benchmark::DoNotOptimize(loaded.workspace.evaluate(loaded.workspace.state()));
   }
@@ -63,12 +40,12 @@ void evaluate(benchmark::State& state, const std::string& name) {
 }
 
 void analyse(benchmark::State& state, const std::string& name) {
-  Loaded loaded(name);
+  LinearisedGraph loaded(pose_graph_file(name));
   for (auto _ : state) make_linear_solver("block-cholesky")->analyse(loaded.problem.pattern());
 }
 
 void factorise(benchmark::State& state, const std::string& name) {
-  Loaded loaded(name);
+  LinearisedGraph loaded(pose_graph_file(name));
   const std::unique_ptr<LinearSolver> solver = make_linear_solver("block-cholesky");
   solver->analyse(loaded.problem.pattern());
   for (auto _ : state) {
@@ -79,7 +56,7 @@ void factorise(benchmark::State& state, const std::string& name) {
 }
 
 void solve(benchmark::State& state, const std::string& name) {
-  Loaded loaded(name);
+  LinearisedGraph loaded(pose_graph_file(name));
   const std::unique_ptr<LinearSolver> solver = make_linear_solver("block-cholesky");
   solver->analyse(loaded.problem.pattern());
   solver->factorise(loaded.workspace.hessian().data(), loaded.damping.data());
@@ -100,9 +77,7 @@ int main(int argc, char** argv) {
       {"factorise", locograph::factorise}, {"solve", locograph::solve}};
   for (const auto& [step, function] : steps) {
     for (const char* name : {"intel", "manhattan", "parking-garage", "sphere2500", "torus3D"}) {
-      const std::filesystem::path file = std::filesystem::path(LOCOGRAPH_SHARED_DATA) /
-                                         "pose_graphs" / (std::string(name) + ".g2o");
-      if (!std::filesystem::exists(file)) continue;
+      if (!std::filesystem::exists(locograph::pose_graph_file(name))) continue;
       const std::string label = std::string(step) + "/" + name;
       benchmark::RegisterBenchmark(label.c_str(), function, std::string(name))
           ->Unit(benchmark::kMillisecond);

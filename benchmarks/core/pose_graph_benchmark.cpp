@@ -31,7 +31,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "command_line.h"
 #include "peer_program.h"
+#include "pose_graph_files.h"
 
 namespace locograph {
 namespace {
@@ -224,7 +226,7 @@ struct Options {
   int runs = 3;
   bool chordal = false;
   std::vector<PeerProgram> peers;
-  std::vector<std::filesystem::path> files;
+  std::vector<std::filesystem::path> files = pose_graph_files();
 };
 
 /// How much longer each peer took: time to 0.1 %, by name.
@@ -274,43 +276,8 @@ Json compare(const std::filesystem::path& file, const Options& options, Ratios& 
   return json;
 }
 
-Options parse(int argc, char** argv) {
-  Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    const auto value = [&]() -> std::string {
-      if (i + 1 >= argc) throw Error("option " + argument + " without a value", "one");
-      return argv[++i];
-    };
-    if (argument == "--runs") {
-      options.runs = std::atoi(value().c_str());
-      if (options.runs < 1) throw Error("option --runs", "a number of 1 or more");
-    } else if (argument == "--guess") {
-      options.chordal = value() == "chordal";
-      if (!options.chordal) throw Error("option --guess", "chordal");
-    } else if (argument == "--g2o") {
-      const std::string program = value();
-      for (const char* solver : {"lm_var_cholmod", "lm_var", "gn_var_cholmod"}) {
-        options.peers.push_back({std::string("g2o ") + solver, program, solver});
-      }
-    } else if (argument == "--gtsam") {
-      options.peers.push_back({"gtsam", value(), ""});
-    } else {
-      options.files.emplace_back(argument);
-    }
-  }
-  const std::filesystem::path folder = std::filesystem::path(LOCOGRAPH_SHARED_DATA) / "pose_graphs";
-  if (options.files.empty() && std::filesystem::exists(folder)) {
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-      if (entry.path().extension() == ".g2o") options.files.push_back(entry.path());
-    }
-    std::sort(options.files.begin(), options.files.end());
-  }
+void run(const Options& options) {
   if (options.files.empty()) throw Error("no graph files", "FILE.g2o arguments");
-  return options;
-}
-
-int run(const Options& options) {
   Json all = {{"unit", "s"},
               {"runs", options.runs},
               {"guess", options.chordal ? "chordal" : "file"},
@@ -328,17 +295,29 @@ int run(const Options& options) {
                                       {"least", *std::min_element(values.begin(), values.end())}};
   }
   std::cout << all.dump(1) << "\n";
-  return 0;
 }
 
 }  // namespace
 }  // namespace locograph
 
 int main(int argc, char** argv) {
-  try {
-    return locograph::run(locograph::parse(argc, argv));
-  } catch (const locograph::Error& error) {
-    std::cerr << "pose_graph_benchmark: " << error.what() << "\n";
-    return 2;
-  }
+  using namespace locograph;
+  Options options;
+  std::string guess, g2o, gtsam;
+  CLI::App app("Pose graphs to convergence", "pose_graph_benchmark");
+  app.add_option("FILE", options.files, "Pose graphs (.g2o); default: the shared data");
+  app.add_option("--runs", options.runs, "Measurements of each")->check(CLI::PositiveNumber);
+  app.add_option("--guess", guess, "What everybody starts from")->check(CLI::IsMember({"chordal"}));
+  app.add_option("--g2o", g2o, "Program to compare with");
+  app.add_option("--gtsam", gtsam, "Program to compare with");
+  return run_benchmark(app, argc, argv, [&] {
+    options.chordal = guess == "chordal";
+    if (!g2o.empty()) {
+      for (const char* solver : {"lm_var_cholmod", "lm_var", "gn_var_cholmod"}) {
+        options.peers.push_back({std::string("g2o ") + solver, g2o, solver});
+      }
+    }
+    if (!gtsam.empty()) options.peers.push_back({"gtsam", gtsam, ""});
+    run(options);
+  });
 }

@@ -20,7 +20,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "command_line.h"
 #include "false_loop_closures.h"
+#include "pose_graph_files.h"
 
 namespace locograph {
 namespace {
@@ -157,43 +159,29 @@ class Case {
 }  // namespace locograph
 
 int main(int argc, char** argv) {
+  using namespace locograph;
   double fraction = 0.1;
   unsigned seed = 1;
   std::vector<std::filesystem::path> files;
-  try {
-    for (int i = 1; i < argc; ++i) {
-      const std::string argument = argv[i];
-      if (argument == "--fraction" && i + 1 < argc) {
-        fraction = std::atof(argv[++i]);
-      } else if (argument == "--seed" && i + 1 < argc) {
-        seed = static_cast<unsigned>(std::atoi(argv[++i]));
-      } else {
-        files.emplace_back(argument);
-      }
-    }
+  for (const char* name : {"manhattan", "intel", "CSAIL", "sphere2500", "parking-garage"}) {
+    files.push_back(pose_graph_file(name));
+  }
+  CLI::App app("Pose graphs with false loop closures", "robustness_benchmark");
+  app.add_option("FILE", files, "Pose graphs (.g2o); default: five of the shared data");
+  app.add_option("--fraction", fraction, "Of the loop closures that are false, in (0, 1)");
+  app.add_option("--seed", seed, "Of the false ones");
+  return run_benchmark(app, argc, argv, [&] {
     if (!(fraction > 0.0 && fraction < 1.0)) {
-      throw locograph::Error("option --fraction", "a number in (0, 1)");
+      throw Error("option --fraction", "a number in (0, 1)");
     }
-    if (files.empty()) {
-      const std::filesystem::path folder =
-          std::filesystem::path(LOCOGRAPH_SHARED_DATA) / "pose_graphs";
-      for (const char* name : {"manhattan", "intel", "CSAIL", "sphere2500", "parking-garage"}) {
-        files.push_back(folder / (std::string(name) + ".g2o"));
-      }
-    }
-    locograph::Json all = {{"fraction", fraction}, {"seed", seed}};
-    all["graphs"] = locograph::Json::array();
+    Json all = {{"fraction", fraction}, {"seed", seed}};
+    all["graphs"] = Json::array();
     for (const std::filesystem::path& file : files) {
       std::cerr << file.filename().string() << "\n";
-      const bool planar = !locograph::load(file).edges_of<locograph::EdgeSE2>().empty();
-      all["graphs"].push_back(
-          planar ? locograph::Case<locograph::EdgeSE2>(file, fraction, seed).run()
-                 : locograph::Case<locograph::EdgeSE3>(file, fraction, seed).run());
+      const bool planar = !load(file).edges_of<EdgeSE2>().empty();
+      all["graphs"].push_back(planar ? Case<EdgeSE2>(file, fraction, seed).run()
+                                     : Case<EdgeSE3>(file, fraction, seed).run());
     }
     std::cout << all.dump(1) << "\n";
-  } catch (const locograph::Error& error) {
-    std::cerr << "robustness_benchmark: " << error.what() << "\n";
-    return 2;
-  }
-  return 0;
+  });
 }

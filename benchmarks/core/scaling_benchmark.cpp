@@ -21,7 +21,8 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <random>
-#include <sstream>
+
+#include "command_line.h"
 
 namespace locograph {
 namespace {
@@ -217,41 +218,21 @@ Json in_a_process(int size, const std::string& solver, const Options& options) {
   return Json::parse(text);
 }
 
-Options parse(int argc, char** argv) {
-  Options options;
-  std::vector<int> sizes;
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    const auto value = [&]() -> std::string {
-      if (i + 1 >= argc) throw Error("option " + argument + " without a value", "one");
-      return argv[++i];
-    };
-    if (argument == "--spatial") {
-      options.spatial = true;
-    } else if (argument == "--threads") {
-      options.threads = std::atoi(value().c_str());
-    } else if (argument == "--ceres-up-to") {
-      options.ceres_up_to = std::atoi(value().c_str());
-    } else if (argument == "--solvers") {
-      options.solvers.clear();
-      std::istringstream names(value());
-      for (std::string name; std::getline(names, name, ',');) options.solvers.push_back(name);
-    } else {
-      sizes.push_back(std::atoi(argument.c_str()));
-      if (sizes.back() < 4) throw Error("size '" + argument + "'", "4 poses or more");
-    }
-  }
-  if (!sizes.empty()) options.sizes = sizes;
-  return options;
-}
-
 }  // namespace
 }  // namespace locograph
 
 int main(int argc, char** argv) {
   using namespace locograph;
-  try {
-    const Options options = parse(argc, argv);
+  Options options;
+  CLI::App app("Grid pose graphs by size", "scaling_benchmark");
+  app.add_option("POSES", options.sizes, "Sizes")->check(CLI::Range(4, 1 << 30));
+  app.add_flag("--spatial", options.spatial, "SE(3) instead of SE(2)");
+  app.add_option("--threads", options.threads, "Threads to use")->check(CLI::PositiveNumber);
+  app.add_option("--ceres-up-to", options.ceres_up_to, "Largest size for Ceres");
+  app.add_option("--solvers", options.solvers, "Linear solvers, separated by commas")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  return run_benchmark(app, argc, argv, [&] {
     Json all = {{"unit", "s"}, {"kind", options.spatial ? "SE(3)" : "SE(2)"}};
     for (const int size : options.sizes) {
       std::vector<std::string> solvers = options.solvers;
@@ -262,9 +243,5 @@ int main(int argc, char** argv) {
       }
     }
     std::cout << all.dump(1) << "\n";
-  } catch (const Error& error) {
-    std::cerr << "scaling_benchmark: " << error.what() << "\n";
-    return 2;
-  }
-  return 0;
+  });
 }

@@ -13,11 +13,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <random>
+
+#include "command_line.h"
 
 namespace locograph {
 namespace {
@@ -156,7 +156,7 @@ class Campaign {
   CheckOptions check_;
 };
 
-int run(unsigned long long seed, int cases) {
+void run(unsigned long long seed, int cases) {
   std::mt19937_64 random(seed);
   Campaign campaign;
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
@@ -184,25 +184,16 @@ int run(unsigned long long seed, int cases) {
                                          {"passed", count("passed")},
                                          {"rows", rows}};
   std::cout << result.dump(2) << '\n';
-  return 0;
 }
 
 }  // namespace
 }  // namespace locograph
 
 int main(int argc, char** argv) {
-  char* end = nullptr;
-  const unsigned long long seed = argc > 1 ? std::strtoull(argv[1], &end, 10) : 1;
-  const bool seed_good = argc <= 1 || (end != argv[1] && *end == '\0');
-  const long cases = argc > 2 ? std::strtol(argv[2], &end, 10) : 20;
-  if (argc > 3 || !seed_good || (argc > 2 && *end != '\0') || cases < 1) {
-    std::cerr << "box_campaign [SEED] [CASES], expected whole numbers, at least one case\n";
-    return 2;
-  }
-  try {
-    return locograph::run(seed, static_cast<int>(cases));
-  } catch (const std::exception& error) {
-    std::cerr << "box_campaign: " << error.what() << '\n';
-    return 2;
-  }
+  unsigned long long seed = 1;
+  int cases = 20;
+  CLI::App app("Boxes at random in a walled corridor", "box_campaign");
+  app.add_option("SEED", seed, "Of the boxes");
+  app.add_option("CASES", cases, "How many")->check(CLI::PositiveNumber);
+  return locograph::run_benchmark(app, argc, argv, [&] { locograph::run(seed, cases); });
 }

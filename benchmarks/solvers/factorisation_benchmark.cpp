@@ -8,11 +8,8 @@
 /// factorisation includes copying the values into their matrix, as ours does.
 
 #include <locograph/common/deadline.h>
-#include <locograph/core/graph_file.h>
-#include <locograph/core/workspace.h>
 #include <locograph/solvers/block_cholesky.h>
 #include <locograph/solvers/eigen_solver.h>
-#include <locograph/types/standard_types.h>
 #if LOCOGRAPH_HAVE_CHOLMOD
 #include <locograph/solvers/cholmod_solver.h>
 #endif
@@ -23,30 +20,14 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "command_line.h"
+#include "linearised_graph.h"
+#include "pose_graph_files.h"
+
 namespace locograph {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-struct System {
-  Graph graph;
-  Problem problem;
-  Workspace workspace;
-  std::vector<double> damping;
-
-  explicit System(const std::filesystem::path& file)
-      : graph(read_graph(file, standard_types(), {.lenient = true})) {
-    graph.set_fixed(0, true);
-    problem.compile(graph);
-    workspace.allocate(problem);
-    workspace.load_state();
-    workspace.evaluate(workspace.state());
-    workspace.linearise();
-    std::vector<double> diagonal(problem.dimension());
-    workspace.diagonal(diagonal);
-    damping.assign(problem.dimension(), 1e-5 * *std::max_element(diagonal.begin(), diagonal.end()));
-  }
-};
 
 /// Median milliseconds of `runs` calls, repeated until each measurement takes a millisecond.
 double median(int runs, const std::function<void()>& work) {
@@ -65,7 +46,7 @@ double median(int runs, const std::function<void()>& work) {
 
 using Make = std::function<std::unique_ptr<LinearSolver>()>;
 
-Json measure(System& system, int runs, const Make& make, ThreadPool* threads = nullptr) {
+Json measure(LinearisedGraph& system, int runs, const Make& make, ThreadPool* threads = nullptr) {
   const BlockPattern& pattern = system.problem.pattern();
   std::unique_ptr<LinearSolver> solver = make();
   solver->use_threads(threads);
@@ -84,7 +65,7 @@ Json measure(System& system, int runs, const Make& make, ThreadPool* threads = n
 }
 
 Json compare(const std::filesystem::path& file, int runs, bool peers) {
-  System system(file);
+  LinearisedGraph system(file);
   const auto ours = [] { return std::make_unique<BlockCholesky>(); };
   BlockCholesky solver;
   solver.analyse(system.problem.pattern());
@@ -126,40 +107,22 @@ Json compare(const std::filesystem::path& file, int runs, bool peers) {
 }  // namespace locograph
 
 int main(int argc, char** argv) {
+  using namespace locograph;
   int runs = 15;
   bool peers = true;
-  std::vector<std::filesystem::path> files;
-  try {
-    for (int i = 1; i < argc; ++i) {
-      const std::string argument = argv[i];
-      if (argument == "--runs" && i + 1 < argc) {
-        runs = std::atoi(argv[++i]);
-        if (runs < 1) throw locograph::Error("option --runs", "a number of 1 or more");
-      } else if (argument == "--peers" && i + 1 < argc) {
-        peers = std::string(argv[++i]) != "no";
-      } else {
-        files.emplace_back(argument);
-      }
-    }
-    const std::filesystem::path folder =
-        std::filesystem::path(LOCOGRAPH_SHARED_DATA) / "pose_graphs";
-    if (files.empty() && std::filesystem::exists(folder)) {
-      for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-        if (entry.path().extension() == ".g2o") files.push_back(entry.path());
-      }
-      std::sort(files.begin(), files.end());
-    }
-    if (files.empty()) throw locograph::Error("no graph files", "FILE.g2o arguments");
-    locograph::Json all = {{"unit", "ms"}, {"runs", runs}};
-    all["graphs"] = locograph::Json::array();
+  std::vector<std::filesystem::path> files = pose_graph_files();
+  CLI::App app("Factorisations of pose graphs", "factorisation_benchmark");
+  app.add_option("FILE", files, "Pose graphs (.g2o); default: the shared data");
+  app.add_option("--runs", runs, "Measurements of each")->check(CLI::PositiveNumber);
+  app.add_option("--peers", peers, "Measure CHOLMOD and Eigen as well");
+  return run_benchmark(app, argc, argv, [&] {
+    if (files.empty()) throw Error("no graph files", "FILE.g2o arguments");
+    Json all = {{"unit", "ms"}, {"runs", runs}};
+    all["graphs"] = Json::array();
     for (const std::filesystem::path& file : files) {
       std::cerr << file.filename().string() << "\n";
-      all["graphs"].push_back(locograph::compare(file, runs, peers));
+      all["graphs"].push_back(compare(file, runs, peers));
     }
     std::cout << all.dump(1) << "\n";
-  } catch (const locograph::Error& error) {
-    std::cerr << "factorisation_benchmark: " << error.what() << "\n";
-    return 2;
-  }
-  return 0;
+  });
 }

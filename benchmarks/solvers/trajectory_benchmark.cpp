@@ -20,6 +20,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "command_line.h"
 #include "solvers/random_system.h"
 
 namespace locograph {
@@ -90,22 +91,16 @@ Json compare(int vertices, int dimension, int band, int runs) {
 }  // namespace locograph
 
 int main(int argc, char** argv) {
+  using namespace locograph;
   int runs = 501;
-  try {
-    for (int i = 1; i < argc; ++i) {
-      if (std::string(argv[i]) != "--runs" || i + 1 >= argc || (runs = std::atoi(argv[++i])) < 1) {
-        throw locograph::Error("options", "--runs and a number of 1 or more");
-      }
-    }
-    locograph::Json all = {{"unit", "ms"}, {"runs", runs}};
-    all["trajectories"] = locograph::Json::array();
+  CLI::App app("Factorisations of trajectories", "trajectory_benchmark");
+  app.add_option("--runs", runs, "Measurements of each")->check(CLI::PositiveNumber);
+  return run_benchmark(app, argc, argv, [&] {
+    Json all = {{"unit", "ms"}, {"runs", runs}};
+    all["trajectories"] = Json::array();
     for (const auto& [dimension, band] : {std::pair(24, 1), {24, 2}, {30, 1}, {30, 2}}) {
-      all["trajectories"].push_back(locograph::compare(20, dimension, band, runs));
+      all["trajectories"].push_back(compare(20, dimension, band, runs));
     }
     std::cout << all.dump(1) << "\n";
-  } catch (const locograph::Error& error) {
-    std::cerr << "trajectory_benchmark: " << error.what() << "\n";
-    return 2;
-  }
-  return 0;
+  });
 }

@@ -3,7 +3,6 @@
 #include <locograph/solvers/linear_solvers.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace locograph {
 

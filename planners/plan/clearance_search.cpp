@@ -1,7 +1,6 @@
 #include <locograph/common/error.h>
 #include <locograph/planners/plan/clearance_search.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace locograph {

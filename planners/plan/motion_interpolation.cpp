@@ -1,7 +1,5 @@
 #include <locograph/planners/plan/motion_interpolation.h>
 
-#include <cmath>
-
 namespace locograph {
 namespace {
 

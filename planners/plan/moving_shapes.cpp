@@ -1,34 +1,11 @@
-#include <locograph/common/error.h>
 #include <locograph/planners/plan/moving_shapes.h>
-#include <locograph/world/stl_vertices.h>
+#include <locograph/world/link_solid.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace locograph {
 namespace {
-
-ConvexShape convex_geometry(const Robot& robot, const CollisionShape& shape) {
-  switch (shape.type) {
-    case ShapeType::kSphere:
-      return ConvexShape::sphere(shape.radius);
-    case ShapeType::kCapsule:
-      return ConvexShape::capsule(shape.radius, shape.length);
-    case ShapeType::kCylinder:
-      return ConvexShape::cylinder(shape.radius, shape.length);
-    case ShapeType::kBox:
-      return ConvexShape::box(shape.size);
-    case ShapeType::kMesh:
-      break;
-  }
-  if (!shape.mesh_found)
-    throw Error(robot.urdf_file().string(), shape.line,
-                "collision mesh " + shape.mesh_file.string() + " was not found",
-                "a readable STL file");
-  std::vector<Eigen::Vector3d> vertices = stl_vertices(shape.mesh_file);
-  for (Eigen::Vector3d& vertex : vertices) vertex = vertex.cwiseProduct(shape.size).eval();
-  return ConvexShape::hull(std::move(vertices));
-}
 
 // Does the shape look the same at every position of the joint above its link?
 bool spins_in_place(const CollisionShape& shape, const Joint& joint) {
@@ -77,7 +54,7 @@ void MovingShapes::add(const Robot& robot, const CollisionShape& collision) {
   Shape shape{.link = collision.link,
               .carrier = carrier,
               .carrier_from_shape = carrier_from_shape,
-              .geometry = convex_geometry(robot, collision),
+              .geometry = link_solid(robot, collision),
               .end_1 = {},
               .end_2 = {},
               .joints = {},

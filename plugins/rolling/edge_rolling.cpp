@@ -43,11 +43,6 @@ void add_pitch_gradient(const RobotState& kinematics, const Wheel& wheel, const 
 
 }  // namespace
 
-EdgeRolling::EdgeRolling(const WheelsParameter& wheels_, int number, double weight)
-    : wheels_number(number) {
-  weights.setConstant(2 * static_cast<Eigen::Index>(wheels_.wheels.size()), weight);
-}
-
 void EdgeRolling::error(const ConfigurationState& a, const ConfigurationState& b,
                         Eigen::Ref<Eigen::VectorXd> e) const {
   require_same_robot(kTag, a.robot, robot);

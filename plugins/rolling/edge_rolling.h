@@ -15,24 +15,17 @@
 /// whatever turns the axle.
 
 #include <locograph/core/typed_edge_pool.h>
-#include <locograph/plugins/configuration/edge_fit.h>
+#include <locograph/plugins/configuration/wheels_edge.h>
 
 namespace locograph {
 
-struct EdgeRolling : WeightedEdge<Eigen::Dynamic, VertexConfiguration, VertexConfiguration> {
+struct EdgeRolling : WheelsEdge<VertexConfiguration, VertexConfiguration> {
   static constexpr std::string_view kTag = "EDGE_ROLLING";
-  int wheels_number = 0;
-  std::shared_ptr<const WheelsParameter> wheels;  ///< looked up by bind()
-  std::shared_ptr<const RobotParameter> robot;    ///< whose wheels they are, likewise
-  auto fields() { return std::tie(wheels_number); }
-  void bind(const Parameters& parameters) {
-    wheels = parameters.get<WheelsParameter>(wheels_number);
-    robot = parameters.get<RobotParameter>(wheels->robot_number);
-    require_rows(kTag, dimension(), 2 * static_cast<long>(wheels->wheels.size()));
-  }
+  void bind(const Parameters& parameters) { bind_wheels(parameters, kTag); }
 
   EdgeRolling() = default;
-  EdgeRolling(const WheelsParameter& wheels, int wheels_number, double weight);
+  EdgeRolling(const WheelsParameter& wheels, int wheels_number, double weight)
+      : WheelsEdge(wheels, wheels_number, weight) {}
 
   void error(const ConfigurationState& a, const ConfigurationState& b,
              Eigen::Ref<Eigen::VectorXd> e) const;

@@ -6,11 +6,6 @@ namespace locograph {
 
 template class TypedEdgePool<EdgeWheelContact>;
 
-EdgeWheelContact::EdgeWheelContact(const WheelsParameter& wheels_, int number, double weight)
-    : wheels_number(number) {
-  weights.setConstant(2 * static_cast<Eigen::Index>(wheels_.wheels.size()), weight);
-}
-
 void EdgeWheelContact::error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const {
   require_same_robot(kTag, q.robot, robot);
   for (std::size_t w = 0; w < wheels->wheels.size(); ++w) {

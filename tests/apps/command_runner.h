@@ -17,6 +17,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "common/temporary_folder.h"
+
 namespace locograph {
 
 struct Outcome {
@@ -29,33 +31,23 @@ struct Outcome {
 
 class CommandRunner {
  public:
-  CommandRunner() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "locograph_XXXXXX").string();
-    folder_ = ::mkdtemp(pattern.data());
-  }
-  CommandRunner(const CommandRunner&) = delete;
-  CommandRunner& operator=(const CommandRunner&) = delete;
-  ~CommandRunner() { std::filesystem::remove_all(folder_); }
+  const std::filesystem::path& folder() const { return folder_.path(); }
 
-  const std::filesystem::path& folder() const { return folder_; }
-
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-  }
+  void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
   std::string read(const std::string& name) const {
-    std::ifstream in(folder_ / name, std::ios::binary);
+    std::ifstream in(folder_.file(name), std::ios::binary);
     return std::string((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   }
-  bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+  bool exists(const std::string& name) const { return std::filesystem::exists(folder_.file(name)); }
   int files() const {
-    return static_cast<int>(std::distance(std::filesystem::directory_iterator(folder_),
+    return static_cast<int>(std::distance(std::filesystem::directory_iterator(folder()),
                                           std::filesystem::directory_iterator()));
   }
 
   /// arguments: as typed in a shell whose current folder is folder().
   Outcome run(const std::string& arguments) const {
-    const std::filesystem::path out = folder_ / ".stdout", err = folder_ / ".stderr";
-    const std::string line = "cd '" + folder_.string() + "' && '" LOCOGRAPH_COMMAND "' " +
+    const std::filesystem::path out = folder_.file(".stdout"), err = folder_.file(".stderr");
+    const std::string line = "cd '" + folder().string() + "' && '" LOCOGRAPH_COMMAND "' " +
                              arguments + " >.stdout 2>.stderr";
     const int status = std::system(line.c_str());
     Outcome outcome;
@@ -68,7 +60,7 @@ class CommandRunner {
   }
 
  private:
-  std::filesystem::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 /// Exit code 2, nothing on standard output, one line on stderr that begins `locograph: PLACE: `.

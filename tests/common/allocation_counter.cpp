@@ -1,12 +1,13 @@
 #include "common/allocation_counter.h"
 
+#include <atomic>
 #include <cerrno>
 #include <cstddef>
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
 namespace {
-long allocations = 0;
+std::atomic<long> allocations = 0;
 }
 
 // glibc lets a program replace these and keeps its own under the names __libc_*; operator new of

@@ -1,7 +1,8 @@
 #pragma once
 /// A fresh folder that disappears with everything in it.
 ///
-///     TemporaryFolder folder;
+///     const TemporaryFolder folder;
+///     read_graph(folder.write("in.g2o", "VERTEX_XY 0 0 0\n"));
 ///     write_graph(graph, folder.file("out.g2o"));
 
 #include <unistd.h>
@@ -33,6 +34,7 @@ class TemporaryFolder {
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path file(std::string_view name) const { return path_ / name; }
   std::filesystem::path write(std::string_view name, std::string_view content) const {
+    std::filesystem::create_directories(file(name).parent_path());
     std::ofstream(file(name), std::ios::binary) << content;
     return file(name);
   }

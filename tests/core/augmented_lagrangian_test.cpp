@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 #include <locograph/core/augmented_lagrangian.h>
 
-#include <numbers>
-
 #include "common/allocation_counter.h"
 #include "core/toy_graphs.h"
 

@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "world/temporary_folder.h"
+#include "common/temporary_folder.h"
 
 namespace locograph {
 namespace {
@@ -158,7 +158,7 @@ TEST(ClearanceSearch, LooksAtFewSamplesWhereNothingIsNear) {
 // Two balls run towards each other on the same circle and meet after a fifth of the step. A bound
 // for one of them alone would stop the search at a quarter, where they are apart again.
 TEST(ClearanceSearch, FindsPartsOfTheRobotThatMeetHeadOnBetweenVertices) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const std::string ball =
       R"(<collision><origin xyz="1 0 0"/><geometry><sphere radius="0.05"/></geometry></collision>)";
   const std::string joint =
@@ -250,7 +250,7 @@ struct Swung {
 
 // Two joints on one axis swing a shape whose centre is 1 m away.
 TEST(MovingShapes, AreTightForAShapeOnTwoHinges) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   for (const Swung& swung :
        {Swung{"sphere", R"(<sphere radius="0.3"/>)", 1.0, 1.01},
         Swung{"box", R"(<box size="0.6 0.8 0.02"/>)", 1.5, 1.1}}) {  // a corner points outwards

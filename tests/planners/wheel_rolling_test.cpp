@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "world/temporary_folder.h"
+#include "common/temporary_folder.h"
 
 namespace locograph {
 namespace {
@@ -39,7 +39,7 @@ class Unicycle : public ::testing::Test {
     return check_motion(robot_, CollisionWorld(robot_, nullptr, {}), motion);
   }
 
-  TemporaryFolder folder_;
+  test::TemporaryFolder folder_;
   Robot robot_;
   int wheel_;
 };

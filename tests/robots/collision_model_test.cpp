@@ -4,7 +4,6 @@
 #include <locograph/robots/urdf_reader.h>
 
 #include <cmath>
-#include <cstring>
 
 #include "robots/robot_test_support.h"
 
@@ -257,6 +256,15 @@ TEST(Meshes, AreReadAsTextOrBinaryStl) {
   EXPECT_THROW(stl_bounds(folder.path() / "none.stl"), Error);
   EXPECT_THROW(stl_bounds(folder.write("c.stl", "solid of nothing\nendsolid")), Error);
   EXPECT_THROW(stl_bounds(folder.write("d.stl", binary.substr(0, 100))), Error);
+  const std::string text = "solid a\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendsolid a\n";
+  EXPECT_EQ(stl_bounds(folder.write("e.stl", text)).max(), Eigen::Vector3d(1, 1, 0));
+  EXPECT_THROW(stl_bounds(folder.write("f.stl", text.substr(0, text.find("ends")))), Error);
+  try {
+    stl_bounds(folder.write("g.stl", "solid a\nvertex 0 0 0\nvertex 1 zero 0\nendsolid a\n"));
+    ADD_FAILURE() << "an unreadable vertex was accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.line(), 3);
+  }
 }
 
 TEST(Meshes, OfThePublicGo2AreFoundAndCovered) {

@@ -3,8 +3,6 @@
 #include <locograph/robots/kinematic_tree.h>
 #include <locograph/robots/robot_state.h>
 
-#include <limits>
-
 #include "robots/robot_test_support.h"
 
 namespace locograph::test {

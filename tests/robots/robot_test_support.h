@@ -1,5 +1,5 @@
 #pragma once
-/// What the robot tests share: the public robots, random configurations, a temporary folder.
+/// What the robot tests share: the public robots, random configurations.
 
 #include <gtest/gtest.h>
 #include <locograph/robots/robot.h>
@@ -7,11 +7,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <random>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "common/temporary_folder.h"
 
 namespace locograph::test {
 
@@ -99,31 +100,6 @@ inline std::string scientific(double value) {
   text << std::scientific << value;
   return text.str();
 }
-
-/// A fresh folder, removed at the end of the test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern =
-        (std::filesystem::temp_directory_path() / "locograph_robots_XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    path_ = pattern;
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
-    const std::filesystem::path file = path_ / name;
-    std::filesystem::create_directories(file.parent_path());
-    std::ofstream(file, std::ios::binary) << text;
-    return file;
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// One revolute, one prismatic and one fixed joint; a mass on each link.
 inline std::string small_robot_urdf() {

@@ -6,32 +6,13 @@
 #include <locograph/types/bundle/pinhole.h>
 #include <locograph/types/standard_types.h>
 
-#include <cmath>
-#include <numbers>
-
-#include "core/dense_system.h"
+#include "types/expect_error.h"
 
 namespace locograph::test {
 namespace {
 
-/// The error of the only edge of a graph file.
-Eigen::VectorXd error_of(const std::string& text) {
-  Graph graph = read_graph_text(text, "case.g2o", {}, standard_types());
-  Problem problem;
-  problem.compile(graph);
-  Workspace workspace;
-  workspace.allocate(problem);
-  workspace.load_state();
-  StateEvaluation evaluation(problem, workspace.state());
-  Eigen::VectorXd error(graph.edge_pools()[0]->dimension(0));
-  graph.edge_pools()[0]->error(problem.edges()[0], 0, evaluation.get(), error.data());
-  return error;
-}
-
 void expect_error(const std::string& text, const std::vector<double>& expected) {
-  const Eigen::VectorXd error = error_of(text);
-  ASSERT_EQ(error.size(), static_cast<Eigen::Index>(expected.size()));
-  for (Eigen::Index i = 0; i < error.size(); ++i) EXPECT_NEAR(error[i], expected[i], 1e-9) << i;
+  test::expect_error(text, expected, 1e-9);
 }
 
 // A quarter turn about z takes (2, 1, −5) to (−1, 2, −5); t moves it to (−1, 2, −4). Then

@@ -8,16 +8,10 @@
 #include <locograph/types/slam3d/priors.h>
 #include <locograph/types/standard_types.h>
 
-#include <fstream>
 #include <memory>
 #include <random>
 
-#if __has_include(<nlohmann/json.hpp>)
-#include <nlohmann/json.hpp>
-#define LOCOGRAPH_TEST_HAS_JSON 1
-#else
-#define LOCOGRAPH_TEST_HAS_JSON 0
-#endif
+#include "core/best_known_chi2.h"
 
 namespace locograph {
 namespace {
@@ -38,8 +32,11 @@ double angle(const SE3<double>& pose) { return 2.0 * pose.rotation().vec().norm(
 
 /// Exact measurements between random poses whose states are garbage: a chain, and chords that point
 /// backwards.
-template <class V, class E, class Pose>
+template <class V, class E, class Pose, class SensorOffset, class EdgeBetweenSensors>
 struct Exact {
+  using Vertex = V;
+  using Offset = SensorOffset;
+  using OffsetEdge = EdgeBetweenSensors;
   std::mt19937 engine{5};
   Graph graph;
   std::vector<Pose> truth;
@@ -71,8 +68,8 @@ struct Exact {
     }
   }
 };
-using Planar = Exact<VertexSE2, EdgeSE2, SE2<double>>;
-using Spatial = Exact<VertexSE3, EdgeSE3, SE3<double>>;
+using Planar = Exact<VertexSE2, EdgeSE2, SE2<double>, OffsetSE2, EdgeSE2Offset>;
+using Spatial = Exact<VertexSE3, EdgeSE3, SE3<double>, OffsetSE3, EdgeSE3Offset>;
 
 template <class T>
 class ChordalGuess : public testing::Test {};
@@ -153,36 +150,17 @@ TEST(ChordalGuess, MovesAFloatingPartOntoMeasuredPositions) {
   exact.expect_truth();
 }
 
-TEST(ChordalGuess, KnowsOffsetsOfSensorsInThePlane) {
-  Planar exact;
-  auto first = std::make_shared<OffsetSE2>(), second = std::make_shared<OffsetSE2>();
+TYPED_TEST(ChordalGuess, KnowsOffsetsOfSensors) {
+  using Offset = typename TypeParam::Offset;
+  TypeParam exact;
+  auto first = std::make_shared<Offset>(), second = std::make_shared<Offset>();
   first->offset = exact.any();
   second->offset = exact.any();
   exact.graph.parameters().set(1, first);
   exact.graph.parameters().set(2, second);
   exact.truth.push_back(exact.any());
-  exact.poses.push_back(exact.graph.add_vertex(7777, VertexSE2()));
-  EdgeSE2Offset edge;
-  edge.first_offset = 1;
-  edge.second_offset = 2;
-  edge.measurement =
-      (exact.truth[6] * first->offset).inverse() * exact.truth.back() * second->offset;
-  exact.graph.add_edge(edge, exact.poses[6], exact.poses.back());
-  exact.hold(0);
-  EXPECT_EQ(guess(exact.graph), 0);
-  exact.expect_truth();
-}
-
-TEST(ChordalGuess, KnowsOffsetsOfSensorsInSpace) {
-  Spatial exact;
-  auto first = std::make_shared<OffsetSE3>(), second = std::make_shared<OffsetSE3>();
-  first->offset = exact.any();
-  second->offset = exact.any();
-  exact.graph.parameters().set(1, first);
-  exact.graph.parameters().set(2, second);
-  exact.truth.push_back(exact.any());
-  exact.poses.push_back(exact.graph.add_vertex(7777, VertexSE3()));
-  EdgeSE3Offset edge;
+  exact.poses.push_back(exact.graph.add_vertex(7777, typename TypeParam::Vertex()));
+  typename TypeParam::OffsetEdge edge;
   edge.first_offset = 1;
   edge.second_offset = 2;
   edge.measurement =
@@ -241,16 +219,12 @@ INSTANTIATE_TEST_SUITE_P(PoseGraphFiles, FromGarbage,
                          [](const auto& info) { return std::string(info.param); });
 
 TEST_P(FromGarbage, TheChordalGuessLeadsToTheBestKnownChi2) {
-#if LOCOGRAPH_TEST_HAS_JSON
   std::string name = GetParam();
   if (name == "parking_garage") name = "parking-garage";
-  const std::filesystem::path data = LOCOGRAPH_SHARED_DATA;
-  const std::filesystem::path file = data / "pose_graphs" / (name + ".g2o");
-  const std::filesystem::path reference = data / ".." / "reference" / "pose_graphs.json";
+  const std::filesystem::path file = test::public_pose_graph(name);
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
-  if (!std::filesystem::exists(reference)) GTEST_SKIP() << reference << " is not there";
-  const double best =
-      nlohmann::json::parse(std::ifstream(reference))["graphs"][name]["chi2"].get<double>();
+  const std::optional<double> best = test::best_known_chi2(name);
+  if (!best) GTEST_SKIP() << "no reference data, or nlohmann-json is not installed";
   Graph graph = read_graph(file, standard_types());
   graph.set_fixed(0, true);
   std::mt19937 engine(1);
@@ -265,10 +239,7 @@ TEST_P(FromGarbage, TheChordalGuessLeadsToTheBestKnownChi2) {
   EXPECT_EQ(guess_chordal(graph, *solver), 0);
   const OptimiserResult result = optimise(graph, {}, *solver);
   EXPECT_TRUE(result.converged) << result.reason_text();
-  EXPECT_NEAR(result.final.chi2, best, 1e-4 * best);
-#else
-  GTEST_SKIP() << "nlohmann-json is not installed";
-#endif
+  EXPECT_NEAR(result.final.chi2, *best, 1e-4 * *best);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-#include "core/dense_system.h"
+#include "types/expect_error.h"
 
 namespace locograph::test {
 namespace {
@@ -179,21 +179,7 @@ const std::vector<Case>& cases() {
 TEST(KnownErrors, AreWhatTheyAreByHand) {
   for (const Case& known : cases()) {
     SCOPED_TRACE(known.lines);
-    Graph graph = read_graph_text(with_information(known.lines, known.error.size()), "known", {},
-                                  standard_types());
-    Problem problem;
-    problem.compile(graph);
-    Workspace workspace;
-    workspace.allocate(problem);
-    workspace.load_state();
-    StateEvaluation evaluation(problem, workspace.state());
-    const EdgePool& pool = *graph.edge_pools()[0];
-    ASSERT_EQ(pool.dimension(0), static_cast<int>(known.error.size()));
-    Eigen::VectorXd error(pool.dimension(0));
-    pool.error(problem.edges()[0], 0, evaluation.get(), error.data());
-    for (std::size_t i = 0; i < known.error.size(); ++i) {
-      EXPECT_NEAR(error[static_cast<Eigen::Index>(i)], known.error[i], 1e-12) << "row " << i;
-    }
+    expect_error(with_information(known.lines, known.error.size()), known.error, 1e-12);
   }
 }
 

@@ -208,13 +208,8 @@ TEST_P(EveryEdgeType, HasTheJacobiansOfItsError) {
   const EdgePool& pool = *graph.edge_pools()[0];
   const CompiledEdges& edges = problem.edges()[0];
   ASSERT_EQ(edges.edges.size(), static_cast<std::size_t>(kSamples));
-  int compared = 0, singular = 0;
+  int singular = 0;
   for (int k = 0; k < kSamples; ++k) {
-    // A point beside a camera is seen infinitely far out: differences tell nothing there.
-    Eigen::VectorXd error(pool.dimension(edges.edges[k]));
-    pool.error(edges, k, x, error.data());
-    if (error.lpNorm<Eigen::Infinity>() > 300.0) continue;
-    ++compared;
     for (int slot = 0; slot < edges.slot_begin[k + 1] - edges.slot_begin[k]; ++slot) {
       const Eigen::MatrixXd used = pool.jacobian(edges, k, slot, x, false);
       const Eigen::MatrixXd numeric = pool.jacobian(edges, k, slot, x, true);
@@ -229,7 +224,6 @@ TEST_P(EveryEdgeType, HasTheJacobiansOfItsError) {
       ++singular;
     }
   }
-  EXPECT_GE(compared, kSamples / 2);
   EXPECT_LE(singular, kSamples / 20);
 }
 

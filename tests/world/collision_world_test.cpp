@@ -4,14 +4,17 @@
 #include <locograph/world/collision_world.h>
 #include <locograph/world/convex_shape.h>
 #include <locograph/world/octree.h>
-#include <world/temporary_folder.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "common/temporary_folder.h"
+
 namespace locograph {
 namespace {
+
+using test::TemporaryFolder;
 
 constexpr double kResolution = 0.05;
 
@@ -296,7 +299,7 @@ TEST_F(CollisionWorldTest, WrongNumbersOfPosesAndMissingMeshesAreErrors) {
   EXPECT_THROW(CollisionWorld(robot_, nullptr, {}, options), Error);
 
   std::filesystem::remove(wedge_);
-  const Robot incomplete = Robot::load(folder_.path("parts.urdf"));
+  const Robot incomplete = Robot::load(folder_.file("parts.urdf"));
   try {
     const CollisionWorld none(incomplete, nullptr, {});
     ADD_FAILURE() << "a missing mesh was accepted";

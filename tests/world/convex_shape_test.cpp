@@ -1,16 +1,20 @@
 #include <gtest/gtest.h>
+#include <locograph/common/atomic_file.h>
 #include <locograph/common/error.h>
 #include <locograph/world/convex_shape.h>
 #include <locograph/world/gjk.h>
 #include <locograph/world/stl_vertices.h>
-#include <world/temporary_folder.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "common/temporary_folder.h"
+
 namespace locograph {
 namespace {
+
+using test::TemporaryFolder;
 
 class Random {
  public:
@@ -226,14 +230,14 @@ TEST(StlVertices, ReadsTextAndBinaryAndRefusesTheRest) {
   EXPECT_EQ(vertices.back(), Eigen::Vector3d(1, 1, 0.25));
   EXPECT_THROW(stl_vertices(folder.write("b.stl", text.substr(0, text.size() - 12))), Error);
   EXPECT_THROW(stl_vertices(folder.write("c.stl", "hello")), Error);
-  EXPECT_THROW(stl_vertices(folder.path("none.stl")), Error);
+  EXPECT_THROW(stl_vertices(folder.file("none.stl")), Error);
 
   const std::filesystem::path foot = std::filesystem::path(LOCOGRAPH_SHARED_DATA) /
                                      "robots/go2_description/collisions/foot_convex.stl";
   if (!std::filesystem::exists(foot)) GTEST_SKIP() << foot << " is missing";
   // A closed triangle mesh of the sphere's topology: V = F / 2 + 2.
   EXPECT_EQ(stl_vertices(foot).size(), 654u / 2 + 2);
-  const std::string content = file_content(foot);
+  const std::string content = read_file(foot);
   EXPECT_THROW(stl_vertices(folder.write("cut.stl", content.substr(0, content.size() - 1))), Error);
 }
 

@@ -1,13 +1,16 @@
 #include <gtest/gtest.h>
 #include <locograph/common/error.h>
 #include <locograph/world/obstacles.h>
-#include <world/temporary_folder.h>
 
 #include <cmath>
 #include <random>
 
+#include "common/temporary_folder.h"
+
 namespace locograph {
 namespace {
+
+using test::TemporaryFolder;
 
 const char* const kGood = R"(<?xml version="1.0"?>
 <obstacles version="1">
@@ -110,7 +113,7 @@ TEST(Obstacles, EveryMistakeInAFileIsReportedWithItsLine) {
 
 TEST(Obstacles, FilesThatAreNoneAreErrors) {
   const TemporaryFolder folder;
-  EXPECT_THROW(load_obstacles(folder.path("missing.xml")), Error);
+  EXPECT_THROW(load_obstacles(folder.file("missing.xml")), Error);
   EXPECT_THROW(load_obstacles(folder.write("empty.xml", "")), Error);
   EXPECT_THROW(load_obstacles(folder.write("other.xml", "<scenario version='1'/>")), Error);
   EXPECT_THROW(load_obstacles(folder.write("new.xml", "<obstacles version='2'/>")), Error);
@@ -142,8 +145,8 @@ TEST(Obstacles, SurviveSavingAndLoadingBitByBit) {
     if (i % 2) obstacle.repeat_s = 0.9;
     obstacles.push_back(obstacle);
   }
-  save_obstacles(obstacles, folder.path("saved.xml"));
-  const std::vector<Obstacle> loaded = load_obstacles(folder.path("saved.xml"));
+  save_obstacles(obstacles, folder.file("saved.xml"));
+  const std::vector<Obstacle> loaded = load_obstacles(folder.file("saved.xml"));
   ASSERT_EQ(loaded.size(), obstacles.size());
   for (std::size_t i = 0; i < loaded.size(); ++i) {
     EXPECT_EQ(loaded[i].name, obstacles[i].name);

@@ -1,13 +1,17 @@
 #include <gtest/gtest.h>
+#include <locograph/common/atomic_file.h>
 #include <locograph/common/error.h>
 #include <locograph/world/octree.h>
 #include <octomap/ColorOcTree.h>
-#include <world/temporary_folder.h>
 
 #include <set>
 
+#include "common/temporary_folder.h"
+
 namespace locograph {
 namespace {
+
+using test::TemporaryFolder;
 
 std::shared_ptr<octomap::OcTree> two_boxes() {
   std::vector<Box> boxes(2);
@@ -78,8 +82,8 @@ TEST(Octree, SurvivesSavingAndLoading) {
   const std::shared_ptr<octomap::OcTree> tree = two_boxes();
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  save_octree(*tree, folder.path("map.bt"));
-  const std::shared_ptr<octomap::OcTree> loaded = load_octree(folder.path("map.bt"));
+  save_octree(*tree, folder.file("map.bt"));
+  const std::shared_ptr<octomap::OcTree> loaded = load_octree(folder.file("map.bt"));
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 
@@ -94,34 +98,34 @@ TEST(Octree, SurvivesSavingAndLoading) {
   collect(*loaded, after);
   EXPECT_EQ(before, after);
   EXPECT_GT(before.size(), 100u);
-  EXPECT_FALSE(std::filesystem::exists(folder.path("map.bt.partial")));
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"map.bt"}) << "something left beside it";
 
   octomap::OcTree theirs(1.0);
-  ASSERT_TRUE(theirs.readBinary(folder.path("map.bt").string()));
+  ASSERT_TRUE(theirs.readBinary(folder.file("map.bt").string()));
   EXPECT_EQ(theirs.size(), tree->size());
 
-  save_octree(*loaded, folder.path("again.bt"));
-  EXPECT_EQ(file_content(folder.path("map.bt")), file_content(folder.path("again.bt")));
+  save_octree(*loaded, folder.file("again.bt"));
+  EXPECT_EQ(read_file(folder.file("map.bt")), read_file(folder.file("again.bt")));
 }
 
 TEST(Octree, SavingIntoAMissingFolderIsAnError) {
   const TemporaryFolder folder;
-  EXPECT_THROW(save_octree(*two_boxes(), folder.path("none/map.bt")), Error);
+  EXPECT_THROW(save_octree(*two_boxes(), folder.file("none/map.bt")), Error);
 }
 
 TEST(Octree, ReadsFullTreesToo) {
   const TemporaryFolder folder;
   const std::shared_ptr<octomap::OcTree> tree = two_boxes();
-  ASSERT_TRUE(tree->write(folder.path("map.ot").string()));
-  const std::shared_ptr<octomap::OcTree> loaded = load_octree(folder.path("map.ot"));
+  ASSERT_TRUE(tree->write(folder.file("map.ot").string()));
+  const std::shared_ptr<octomap::OcTree> loaded = load_octree(folder.file("map.ot"));
   EXPECT_EQ(loaded->size(), tree->size());
   EXPECT_EQ(octree_info(*loaded).occupied_leaves, octree_info(*tree).occupied_leaves);
 }
 
 TEST(Octree, AnEmptyTreeSurvivesToo) {
   const TemporaryFolder folder;
-  save_octree(octomap::OcTree(0.1), folder.path("map.bt"));
-  const OctreeInfo info = octree_info(*load_octree(folder.path("map.bt")));
+  save_octree(octomap::OcTree(0.1), folder.file("map.bt"));
+  const OctreeInfo info = octree_info(*load_octree(folder.file("map.bt")));
   EXPECT_EQ(info.occupied_leaves, 0u);
   EXPECT_TRUE(info.occupied_bounds.isEmpty());
 }
@@ -131,10 +135,10 @@ TEST(Octree, EveryTruncationOfAFileIsAnError) {
   const std::shared_ptr<octomap::OcTree> tree = two_boxes();
   for (const char* name : {"map.bt", "map.ot"}) {
     if (name == std::string("map.bt"))
-      save_octree(*tree, folder.path(name));
+      save_octree(*tree, folder.file(name));
     else
-      ASSERT_TRUE(tree->write(folder.path(name).string()));
-    const std::string content = file_content(folder.path(name));
+      ASSERT_TRUE(tree->write(folder.file(name).string()));
+    const std::string content = read_file(folder.file(name));
     for (std::size_t size = 1; size < content.size(); size += 1 + size / 16)
       error_text(folder.write("cut", content.substr(0, size)));
     EXPECT_NE(
@@ -145,29 +149,29 @@ TEST(Octree, EveryTruncationOfAFileIsAnError) {
 
 TEST(Octree, MissingEmptyAndForeignFilesAreErrors) {
   const TemporaryFolder folder;
-  EXPECT_NE(error_text(folder.path("none.bt")).find("cannot be opened"), std::string::npos);
+  EXPECT_NE(error_text(folder.file("none.bt")).find("cannot be opened"), std::string::npos);
   EXPECT_NE(error_text(folder.write("empty.bt", "")).find("is empty"), std::string::npos);
   EXPECT_NE(error_text(folder.write("text.bt", "hello\nworld\n")).find("not an OctoMap file"),
             std::string::npos);
-  EXPECT_NE(error_text(folder.path("")).find("is a folder"), std::string::npos);
+  EXPECT_NE(error_text(folder.file("")).find("is a folder"), std::string::npos);
 }
 
 TEST(Octree, ATreeOfAnotherTypeIsNamed) {
   const TemporaryFolder folder;
   octomap::ColorOcTree tree(0.1);
   tree.updateNode(octomap::point3d(0.1f, 0.2f, 0.3f), true);
-  ASSERT_TRUE(tree.write(folder.path("color.ot").string()));
-  const std::string full = error_text(folder.path("color.ot"));
+  ASSERT_TRUE(tree.write(folder.file("color.ot").string()));
+  const std::string full = error_text(folder.file("color.ot"));
   EXPECT_NE(full.find("'ColorOcTree', expected type 'OcTree'"), std::string::npos) << full;
   EXPECT_NE(full.find(":4:"), std::string::npos) << full;
-  ASSERT_TRUE(tree.writeBinary(folder.path("color.bt").string()));
-  EXPECT_NE(error_text(folder.path("color.bt")).find("'ColorOcTree'"), std::string::npos);
+  ASSERT_TRUE(tree.writeBinary(folder.file("color.bt").string()));
+  EXPECT_NE(error_text(folder.file("color.bt")).find("'ColorOcTree'"), std::string::npos);
 }
 
 TEST(Octree, HeadersThatContradictTheDataAreErrors) {
   const TemporaryFolder folder;
-  save_octree(*two_boxes(), folder.path("map.bt"));
-  const std::string content = file_content(folder.path("map.bt"));
+  save_octree(*two_boxes(), folder.file("map.bt"));
+  const std::string content = read_file(folder.file("map.bt"));
   const auto replaced = [&](const std::string& key, const std::string& by) {
     const std::size_t at = content.find("\n" + key);
     const std::size_t end = content.find('\n', at + 1);

@@ -1,3 +1,4 @@
+#include <locograph/common/atomic_file.h>
 #include <locograph/types/bundle/bal_file.h>
 #include <locograph/types/bundle/camera_bal.h>
 #include <locograph/types/bundle/inverse_depth.h>
@@ -5,9 +6,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
-#include <limits>
 
 namespace locograph {
 namespace {
@@ -122,10 +120,7 @@ Graph read_bal_text(std::string_view text, const std::string& name) {
 }
 
 Graph read_bal(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw Error(file.string(), 0, "cannot be opened", "a readable file");
-  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  return read_bal_text(text, file.string());
+  return read_bal_text(read_file(file), file.string());
 }
 
 bool looks_like_bal(std::string_view text) {
