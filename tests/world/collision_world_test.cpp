@@ -16,7 +16,7 @@ namespace {
 
 using test::TemporaryFolder;
 
-constexpr double kResolution = 0.05;
+constexpr double kVoxel = 0.05;
 
 // Five links hanging on the first one by joints: ball, rod (a capsule: cylinder and two spheres),
 // can, box, wedge (a mesh).
@@ -91,7 +91,7 @@ std::shared_ptr<octomap::OcTree> block(const Eigen::Vector3d& lower, const Eigen
   std::vector<Box> boxes(1);
   boxes[0].world_from_box.translation() = 0.5 * (lower + upper);
   boxes[0].size = upper - lower;
-  return octree_from_boxes(boxes, kResolution);
+  return octree_from_boxes(boxes, kVoxel);
 }
 
 Eigen::Isometry3d random_pose(std::mt19937& random, double reach) {
@@ -149,7 +149,7 @@ TEST_F(CollisionWorldTest, NothingWithinTheCutOffIsNoLink) {
 TEST_F(CollisionWorldTest, AgreesWithBruteForceOverAllVoxels) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-0.8, 0.8);
-  octomap::OcTree scattered(kResolution);
+  octomap::OcTree scattered(kVoxel);
   for (int i = 0; i < 150; ++i)
     scattered.setNodeValue(uniform(random), uniform(random), uniform(random), 3.5f, true);
   for (int i = 0; i < 8; ++i)  // one larger leaf
@@ -230,7 +230,7 @@ TEST_F(CollisionWorldTest, LinksThatMayTouchTheFloorSeeOnlyWhatRisesAboveIt) {
   boxes[0].size = Eigen::Vector3d(3, 3, 0.2);
   boxes[1].world_from_box.translation() = Eigen::Vector3d(0.8, 0, 0);  // through the floor
   boxes[1].size = Eigen::Vector3d(0.4, 0.4, 0.8);
-  const std::shared_ptr<octomap::OcTree> tree = octree_from_boxes(boxes, kResolution);
+  const std::shared_ptr<octomap::OcTree> tree = octree_from_boxes(boxes, kVoxel);
   CollisionWorldOptions options;
   options.ignore_floor_links = {link("ball")};
   const CollisionWorld world(robot_, tree, {}, options);
