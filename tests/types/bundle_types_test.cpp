@@ -11,9 +11,7 @@
 namespace locograph::test {
 namespace {
 
-void expect_error(const std::string& text, const std::vector<double>& expected) {
-  test::expect_error(text, expected, 1e-9);
-}
+constexpr double kTolerance_px = 1e-9;
 
 // A quarter turn about z takes (2, 1, −5) to (−1, 2, −5); t moves it to (−1, 2, −4). Then
 // p = (−0.25, 0.5), r² = 0.3125, and the distortion is 1 + 0.1·0.3125 + 0.01·0.3125².
@@ -23,7 +21,7 @@ TEST(BalCamera, SeesAPointWhereTheFormulaSays) {
       "VERTEX_CAMERA_BAL 0 0 0 1.5707963267948966 0 0 1 500 0.1 0.01\n"
       "VERTEX_TRACKXYZ 1 2 1 -5\n"
       "EDGE_PROJECT_BAL 0 1 10 20 1 0 1\n",
-      {-0.25 * 500.0 * distortion - 10.0, 0.5 * 500.0 * distortion - 20.0});
+      {-0.25 * 500.0 * distortion - 10.0, 0.5 * 500.0 * distortion - 20.0}, kTolerance_px);
 }
 
 TEST(BalCamera, TurnsByItsRotationVectorAlsoWhenItIsTiny) {
@@ -61,7 +59,7 @@ TEST(PinholeCamera, SeesAPointThroughItsOffset) {
           "\n"
           "VERTEX_TRACKXYZ 1 5 2 3\n"
           "EDGE_PROJECT_PINHOLE 0 1 3 -270 400 1 0 1\n",
-      {-280.0 + 270.0, 440.0 - 400.0});
+      {-280.0 + 270.0, 440.0 - 400.0}, kTolerance_px);
 }
 
 TEST(StereoCamera, SeesAPointInBothImages) {
@@ -72,17 +70,17 @@ TEST(StereoCamera, SeesAPointInBothImages) {
           "\n"
           "VERTEX_TRACKXYZ 1 5 2 3\n"
           "EDGE_PROJECT_STEREO 0 1 3 -270 400 -370 1 0 0 1 0 1\n",
-      {-280.0 + 270.0, 440.0 - 400.0, -380.0 + 370.0});
+      {-280.0 + 270.0, 440.0 - 400.0, -380.0 + 370.0}, kTolerance_px);
 }
 
 TEST(CameraWithItsOwnCalibration, SeesAPointInOneImageAndInTwo) {
   const std::string vertices = "VERTEX_CAM 0 1 0 0 0 " + std::string(kTurnedPose) +
                                " 600 300 320 240 0.5\n"
                                "VERTEX_XYZ 1 5 2 3\n";  // (−3, 2, 4) in the camera
-  expect_error(vertices + "EDGE_PROJECT_P2MC 1 0 -100 400 1 0 1\n",
-               {-130.0 + 100.0, 390.0 - 400.0});
+  expect_error(vertices + "EDGE_PROJECT_P2MC 1 0 -100 400 1 0 1\n", {-130.0 + 100.0, 390.0 - 400.0},
+               kTolerance_px);
   expect_error(vertices + "EDGE_PROJECT_P2SC 1 0 -100 400 -200 1 0 0 1 0 1\n",
-               {-130.0 + 100.0, 390.0 - 400.0, -205.0 + 200.0});
+               {-130.0 + 100.0, 390.0 - 400.0, -205.0 + 200.0}, kTolerance_px);
 }
 
 TEST(CameraWithItsOwnCalibration, KeepsItsCalibration) {
@@ -103,12 +101,12 @@ TEST(InverseDepthPoint, IsSeenFromAnotherPose) {
   expect_error(poses +
                    "VERTEX_INVERSE_DEPTH 2 0.5 -0.25 0.25\n"
                    "EDGE_PROJECT_INVERSE_DEPTH 0 1 2 0 400 100 1 0 1\n",
-               {420.0 - 400.0, 140.0 - 100.0});
+               {420.0 - 400.0, 140.0 - 100.0}, kTolerance_px);
   // Infinitely far: the observer sees it in the same direction.
   expect_error(poses +
                    "VERTEX_INVERSE_DEPTH 2 0.5 -0.25 0\n"
                    "EDGE_PROJECT_INVERSE_DEPTH 0 1 2 0 370 190 1 0 1\n",
-               {0.0, 0.0});
+               {0.0, 0.0}, kTolerance_px);
 }
 
 TEST(CameraCalibration, WithoutFocalLengthOrBaselineIsRefused) {
