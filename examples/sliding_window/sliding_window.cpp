@@ -6,10 +6,12 @@
 /// Measurements of poses that left the window before they came are dropped, as a robot without
 /// memory would have to; the batch solution has the same measurements.
 
+#include <locograph/common/deadline.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/core/marginalisation.h>
 #include <locograph/core/optimiser.h>
 #include <locograph/solvers/linear_solvers.h>
+#include <locograph/types/slam2d/edges.h>
 #include <locograph/types/standard_types.h>
 
 #include <algorithm>
