@@ -14,6 +14,9 @@
 /// inverses). Fixed vertices count as constants: of the vertices taken out, and of the blanket, on
 /// which the prior does not depend; freeing one later does not undo that.
 ///
+/// The prior holds its vertices in the world, not to each other: what turns far away from x₀ is
+/// pulled back, so marginalise what will not move much any more (examples/sliding_window).
+///
 /// Dense in the vertices taken out and their blanket: meant for a few at a time.
 
 #include <locograph/core/graph.h>

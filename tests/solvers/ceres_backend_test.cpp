@@ -145,7 +145,8 @@ TEST(CeresBackend, AgreesUnderASchurComplement) {
       poses.set_eliminate(point.slot, true);
       for (const VertexId<VertexSE2> pose : ids) {
         EdgeSE2XY edge;
-        edge.measurement << i + 0.4 - 1.1 * pose.slot, 2.1 + 0.1 * i;
+        edge.measurement << i + 0.4 - 1.1 * pose.slot,
+            2.1 + 0.1 * std::sin(3.0 * i + 5.0 * pose.slot);
         poses.add_edge(edge, pose, point);
       }
     }
@@ -156,7 +157,8 @@ TEST(CeresBackend, AgreesUnderASchurComplement) {
     EXPECT_TRUE(theirs.converged) << theirs.reason_text();
     disturb(poses, 1e-2);
     const OptimiserResult ours = run(poses, options, "block-cholesky");
-    EXPECT_NEAR(theirs.final.chi2, ours.final.chi2, 1e-8 * ours.final.chi2 + 1e-15);
+    EXPECT_GT(ours.final.chi2, 1e-3);
+    EXPECT_NEAR(theirs.final.chi2, ours.final.chi2, 1e-8 * ours.final.chi2);
   }
 }
 
