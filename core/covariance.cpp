@@ -20,7 +20,7 @@ Covariance::Covariance(Graph& graph, LinearSolver& solver) : graph_(graph), solv
     return;
   }
   workspace_.linearise();
-  solver.analyse(problem_.pattern());
+  problem_.analyse(solver);
   const bool good = solver.factorise(workspace_.hessian().data(), workspace_.damping().data());
   // Rounding may hide a null space from the factorisation: look again when a solution explodes.
   if (!good || (solution_explodes() && NullSpace(workspace_).dimension() > 0)) {

@@ -8,6 +8,7 @@
 ///
 /// After analyse(), factorise() and solve() do not allocate. Not thread-safe.
 
+#include <locograph/common/error.h>
 #include <locograph/common/thread_pool.h>
 #include <locograph/core/block_matrix.h>
 
@@ -19,6 +20,23 @@
 #include <vector>
 
 namespace locograph {
+
+/// What analyse() throws when a Schur complement is to eliminate two block rows that share a block.
+/// Problem::analyse() tells their vertices instead.
+class TiedRowsError : public Error {
+ public:
+  TiedRowsError(int first_row, int second_row)
+      : Error(
+            "block rows " + std::to_string(first_row) + " and " + std::to_string(second_row) + kWhy,
+            kExpected),
+        first(first_row),
+        second(second_row) {}
+
+  static constexpr const char* kWhy = " are both marked for elimination and share an edge";
+  static constexpr const char* kExpected =
+      "no edge between two eliminated vertices in a Schur complement";
+  int first, second;
+};
 
 class LinearSolver {
  public:

@@ -79,7 +79,7 @@ void Optimiser::start(Workspace& workspace, LinearSolver& solver) {
   scaling_.assign(n, 0.0);
   newton_step_.resize(n);
   negative_gradient_.resize(n);
-  solver.analyse(workspace.problem().pattern());
+  workspace.problem().analyse(solver);
   cost_ = workspace.evaluate(workspace.state());
   result_.initial = result_.final = cost_;
   if (!std::isfinite(cost_.robust)) finish(Reason::kNotFinite);

@@ -1,3 +1,4 @@
+#include <locograph/core/linear_solver.h>
 #include <locograph/core/problem.h>
 
 #include <algorithm>
@@ -184,6 +185,16 @@ void Problem::compile_window(std::span<const int> free_vertex_slots,
     }
   }
   compile_edges(touching);
+}
+
+void Problem::analyse(LinearSolver& solver) const {
+  try {
+    solver.analyse(pattern_);
+  } catch (const TiedRowsError& tied) {
+    const auto id = [&](int row) { return std::to_string(graph_->vertex_record(free_[row]).id); };
+    throw Error("vertices " + id(tied.first) + " and " + id(tied.second) + TiedRowsError::kWhy,
+                TiedRowsError::kExpected);
+  }
 }
 
 void Problem::compile_edges(const std::vector<int>& edge_slots) {

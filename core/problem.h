@@ -31,6 +31,8 @@
 
 namespace locograph {
 
+class LinearSolver;
+
 /// One constraint edge of a compiled problem.
 struct CompiledConstraint {
   int edge = -1;           ///< slot in the graph
@@ -61,6 +63,9 @@ class Problem {
 
   /// These edges alone, with the vertices on them; free are those that the graph does not hold.
   void compile_on(Graph& graph, std::span<const int> edge_slots);
+
+  /// solver.analyse(pattern()), an error naming vertices rather than block rows.
+  void analyse(LinearSolver& solver) const;
 
   const BlockPattern& pattern() const { return pattern_; }
   int dimension() const { return pattern_.scalar_size(); }

@@ -1,8 +1,7 @@
-#include <locograph/common/error.h>
+#include <locograph/core/linear_solver.h>
 #include <locograph/solvers/schur_structure.h>
 
 #include <algorithm>
-#include <string>
 
 namespace locograph {
 namespace {
@@ -41,11 +40,7 @@ SchurColumn SchurStructure::column(int column, double* factor) const {
 
 void SchurStructure::build(const BlockPattern& pattern, bool form) {
   const TiedRows tied = tied_eliminated_rows(pattern);
-  if (tied.first >= 0) {
-    throw Error("block rows " + std::to_string(tied.first) + " and " + std::to_string(tied.second) +
-                    " are both marked for elimination and share an edge",
-                "no edge between two eliminated vertices in a Schur complement");
-  }
+  if (tied.first >= 0) throw TiedRowsError(tied.first, tied.second);
   pattern_ = pattern;
   factor_size_ = pattern.size() == 0
                      ? 0

@@ -27,8 +27,8 @@ TiedRows tied_eliminated_rows(const BlockPattern& pattern);
 
 class SchurStructure {
  public:
-  /// Throws Error naming two eliminated block rows that share an edge. Without `form` only what the
-  /// implicit product needs is built: no reduced pattern beyond the kept blocks of H.
+  /// Throws TiedRowsError when two eliminated block rows share a block. Without `form` only what
+  /// the implicit product needs is built: no reduced pattern beyond the kept blocks of H.
   void build(const BlockPattern& pattern, bool form);
 
   int eliminated() const { return static_cast<int>(kernels_.size()); }

@@ -32,6 +32,20 @@ TEST(Optimiser, AllAlgorithmsAndSolversReachTheSameOptimum) {
   }
 }
 
+TEST(Optimiser, NamesTwoEliminatedVerticesThatShareAnEdge) {
+  Graph graph = ring_2d(12);
+  graph.set_eliminate(4, true);
+  graph.set_eliminate(5, true);
+  const std::string expected = "vertices " + std::to_string(graph.vertex_record(4).id) + " and " +
+                               std::to_string(graph.vertex_record(5).id) + " are both";
+  try {
+    run(graph, {}, "schur");
+    ADD_FAILURE() << "they were eliminated";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
+  }
+}
+
 TEST(Optimiser, LeavesFixedVerticesBitForBit) {
   Graph graph = ring_2d(12);
   graph.set_fixed(4, true);
