@@ -27,7 +27,7 @@ const table = (head, rows) =>
   [head, head.map(() => '---'), ...rows].map((row) => `| ${row.join(' | ')} |`).join('\n');
 
 const kPeers = {
-  'ceres': ['Ceres'],
+  'ceres': ['ceres'],
   'g2o': ['g2o lm_var_cholmod', 'g2o lm_var', 'g2o gn_var_cholmod'],
   'gtsam': ['gtsam'],
 };
@@ -70,7 +70,6 @@ const sections = {
     return table(['graph', 'χ²', 'steps', 'locograph [ms]', 'Ceres [ms]', 'g2o [ms]', 'GTSAM [ms]',
                   'two threads'], rows);
   },
-  torus_chordal: (data) => sections.pose_graphs(data).split('\n').slice(0, 3).join('\n'),
   factorisation(data) {
     const name = (key) => (graph) => {
       const run = graph[key];
