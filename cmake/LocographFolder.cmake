@@ -53,7 +53,7 @@ function(locograph_test name)
   target_precompile_headers(${name} PRIVATE <gtest/gtest.h> <Eigen/Dense> <string> <vector>)
   # Several files in one translation unit: what they share of Eigen and the pools is compiled once.
   set_target_properties(${name} PROPERTIES
-    UNITY_BUILD ${LOCOGRAPH_UNITY_TESTS} UNITY_BUILD_BATCH_SIZE 5
+    UNITY_BUILD ${LOCOGRAPH_UNITY} UNITY_BUILD_BATCH_SIZE 5
     RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests/bin)
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600)
 endfunction()
