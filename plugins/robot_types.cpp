@@ -1,3 +1,7 @@
+#include <locograph/plugins/acceleration_limits/edge_acceleration_limits.h>
+#include <locograph/plugins/com/edge_com.h>
+#include <locograph/plugins/contact/edge_contact.h>
+#include <locograph/plugins/frame_pose/edge_frame_pose.h>
 #include <locograph/plugins/joint_limits/edge_joint_limits.h>
 #include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
@@ -11,10 +15,15 @@ namespace locograph {
 
 void add_robot_types(TypeRegistry& types) {
   types.add_parameter<RobotParameter>("PARAMS_ROBOT");
+  types.add_parameter<FrameParameter>("PARAMS_FRAME");
   types.add_parameter<WheelsParameter>("PARAMS_WHEELS");
   types.add_parameter<WorldParameter>("PARAMS_WORLD");
   types.add_parameter<ScenarioParameter>("PARAMS_SCENARIO");
   types.add_vertex<VertexConfiguration>();
+  types.add_edge<EdgeAccelerationLimits>();
+  types.add_edge<EdgeCom>();
+  types.add_edge<EdgeContact>();
+  types.add_edge<EdgeFramePose>();
   types.add_edge<EdgeJointLimits>();
   types.add_edge<EdgeObstacleDistance>();
   types.add_edge<EdgePlanTracking>();

@@ -127,21 +127,27 @@ void RobotState::add_point_gradient(int link, const Eigen::Vector3d& point_world
   }
 }
 
-// d . (omega x a) = omega . (a x d); translations do not turn the axis.
-void RobotState::add_axis_gradient(int link, const Eigen::Vector3d& axis_world,
-                                   const Eigen::Vector3d& direction_world, double scale,
-                                   double* row, int stride) const {
-  const Eigen::Vector3d lever = scale * axis_world.cross(direction_world);
+// omega . d, with d in base axes for the base.
+void RobotState::add_rotation_gradient(int link, const Eigen::Vector3d& direction_world,
+                                       double scale, double* row, int stride) const {
+  const Eigen::Vector3d direction = scale * direction_world;
   if (robot_->floating_base()) {
-    const Eigen::Vector3d angular = world_from_body_[0].linear().transpose() * lever;
+    const Eigen::Vector3d angular = world_from_body_[0].linear().transpose() * direction;
     for (int k = 0; k < 3; ++k) row[(3 + k) * stride] += angular[k];
     row += 6 * stride;
   }
   for (const int i : robot_->support(link)) {
     if (tree_->bodies[static_cast<std::size_t>(i) + 1].revolute) {
-      row[i * stride] += joint_axis(i).dot(lever);
+      row[i * stride] += joint_axis(i).dot(direction);
     }
   }
+}
+
+// d . (omega x a) = omega . (a x d); translations do not turn the axis.
+void RobotState::add_axis_gradient(int link, const Eigen::Vector3d& axis_world,
+                                   const Eigen::Vector3d& direction_world, double scale,
+                                   double* row, int stride) const {
+  add_rotation_gradient(link, axis_world.cross(direction_world), scale, row, stride);
 }
 
 void RobotState::require_mass() const {
@@ -176,6 +182,34 @@ void RobotState::center_of_mass_jacobian(
       jacobian.col(base + i) = inverse_mass * joint_axis(i).cross(moment);
     } else {
       jacobian.col(base + i) = inverse_mass * body.subtree_mass * joint_axis(i);
+    }
+  }
+}
+
+void RobotState::add_center_of_mass_gradient(const Eigen::Vector3d& direction_world, double scale,
+                                             double* row, int stride) const {
+  const Eigen::Vector3d com = center_of_mass();
+  const Eigen::Vector3d direction = scale * direction_world;
+  if (robot_->floating_base()) {
+    const Eigen::Matrix3d world_from_base = world_from_body_[0].linear();
+    const Eigen::Vector3d arm = com - world_from_body_[0].translation();
+    const Eigen::Vector3d linear = world_from_base.transpose() * direction;
+    const Eigen::Vector3d angular = world_from_base.transpose() * arm.cross(direction);
+    for (int k = 0; k < 3; ++k) {
+      row[k * stride] += linear[k];
+      row[(3 + k) * stride] += angular[k];
+    }
+    row += 6 * stride;
+  }
+  const Eigen::Vector3d share = direction / tree_->bodies[0].subtree_mass;
+  for (int i = 0; i < robot_->active_joint_count(); ++i) {
+    const KinematicTree::Body& body = tree_->bodies[static_cast<std::size_t>(i) + 1];
+    if (body.revolute) {
+      const Eigen::Vector3d moment = subtree_moment_[static_cast<std::size_t>(i) + 1].head<3>() -
+                                     body.subtree_mass * joint_origin(i);
+      row[i * stride] += joint_axis(i).dot(moment.cross(share));
+    } else {
+      row[i * stride] += body.subtree_mass * joint_axis(i).dot(share);
     }
   }
 }

@@ -58,6 +58,11 @@ class RobotState {
                           const Eigen::Vector3d& direction_world, double scale, double* row,
                           int stride = 1) const;
 
+  /// row[k * stride] += scale * direction . d(rotation)/d(tangent_k): what turns `link` about the
+  /// world direction. Touches the same columns.
+  void add_rotation_gradient(int link, const Eigen::Vector3d& direction_world, double scale,
+                             double* row, int stride = 1) const;
+
   /// row[k * stride] += scale * direction . d(axis)/d(tangent_k) for a unit vector fixed to `link`
   /// that now points along axis_world. Touches the same columns.
   void add_axis_gradient(int link, const Eigen::Vector3d& axis_world,
@@ -75,6 +80,10 @@ class RobotState {
   Eigen::Vector3d center_of_mass() const;
   /// 3 x tangent_size, overwrites all columns. Throws Error if no link has a mass.
   void center_of_mass_jacobian(Eigen::Ref<Eigen::Matrix<double, 3, Eigen::Dynamic>> jacobian) const;
+  /// row[k * stride] += scale * direction . d(center_of_mass)/d(tangent_k), all columns.
+  /// Throws Error if no link has a mass.
+  void add_center_of_mass_gradient(const Eigen::Vector3d& direction_world, double scale,
+                                   double* row, int stride = 1) const;
 
  private:
   const Robot* robot_;

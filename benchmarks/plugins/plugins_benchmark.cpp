@@ -2,6 +2,10 @@
 // linearisation, and the kinematics that all edges on a configuration share.
 #include <benchmark/benchmark.h>
 #include <locograph/core/workspace.h>
+#include <locograph/plugins/acceleration_limits/edge_acceleration_limits.h>
+#include <locograph/plugins/com/edge_com.h>
+#include <locograph/plugins/contact/edge_contact.h>
+#include <locograph/plugins/frame_pose/edge_frame_pose.h>
 #include <locograph/plugins/joint_limits/edge_joint_limits.h>
 #include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
@@ -17,7 +21,7 @@ namespace {
 
 using namespace locograph;  // NOLINT: a program, not a header
 
-constexpr int kRobot = 0, kWheels = 1, kWorld = 2, kConfigurations = 21;
+constexpr int kRobot = 0, kWheels = 1, kWorld = 2, kFrame = 3, kConfigurations = 21;
 
 /// A straight drive along x, 0.08 m for each configuration, past boxes on both sides.
 class Drive {
@@ -57,6 +61,8 @@ class Drive {
     graph_.parameters().set(kRobot, robot_);
     graph_.parameters().set(kWheels, wheels_);
     graph_.parameters().set(kWorld, world);
+    graph_.parameters().set(
+        kFrame, std::make_shared<const FrameParameter>(*robot_->robot, kRobot, "wheel_1"));
     const Robot& model = *robot_->robot;
     Eigen::VectorXd q = model.named_configuration("home");
     q[2] = 0.7188;
@@ -74,6 +80,12 @@ class Drive {
   template <class E>
   void add_binary(const E& edge) {
     for (std::size_t i = 1; i < ids_.size(); ++i) graph_.add_edge(edge, ids_[i - 1], ids_[i]);
+  }
+  template <class E>
+  void add_ternary(const E& edge) {
+    for (std::size_t i = 2; i < ids_.size(); ++i) {
+      graph_.add_edge(edge, ids_[i - 2], ids_[i - 1], ids_[i]);
+    }
   }
   void compile() {
     problem_.compile(graph_);
@@ -146,6 +158,15 @@ BENCHMARK_CAPTURE(VelocityLimits, error, false, 0.95);
 BENCHMARK_CAPTURE(VelocityLimits, linearise, true, 0.95);
 BENCHMARK_CAPTURE(VelocityLimits, linearise_all_violated, true, -1.0);
 
+void AccelerationLimits(benchmark::State& run, bool linearise, double limit) {
+  Drive drive(true);
+  drive.add_ternary(EdgeAccelerationLimits(drive.model(), limit, limit, limit, 1.0));
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(AccelerationLimits, error, false, 20.0);
+BENCHMARK_CAPTURE(AccelerationLimits, linearise, true, 20.0);
+BENCHMARK_CAPTURE(AccelerationLimits, linearise_violated_where_it_moves, true, 1e-9);
+
 void ObstacleDistance(benchmark::State& run, bool linearise, bool with_map, double margin_m) {
   Drive drive(with_map);
   drive.add_unary(EdgeObstacleDistance(drive.robot(), kWorld, margin_m, 1e4));
@@ -164,6 +185,35 @@ void WheelContact(benchmark::State& run, bool linearise) {
 }
 BENCHMARK_CAPTURE(WheelContact, error, false);
 BENCHMARK_CAPTURE(WheelContact, linearise, true);
+
+void Contact(benchmark::State& run, bool linearise, ContactKind kind) {
+  Drive drive(true);
+  drive.add_unary(EdgeContact(kFrame, kind, Eigen::Isometry3d::Identity(), 1e5));
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(Contact, surface_error, false, ContactKind::kSurface);
+BENCHMARK_CAPTURE(Contact, surface_linearise, true, ContactKind::kSurface);
+BENCHMARK_CAPTURE(Contact, surface_free_yaw_linearise, true, ContactKind::kSurfaceFreeYaw);
+BENCHMARK_CAPTURE(Contact, point_error, false, ContactKind::kPoint);
+BENCHMARK_CAPTURE(Contact, point_linearise, true, ContactKind::kPoint);
+BENCHMARK_CAPTURE(Contact, rung_linearise, true, ContactKind::kRung);
+
+void FramePose(benchmark::State& run, bool linearise) {
+  Drive drive(true);
+  drive.add_unary(
+      EdgeFramePose(kFrame, Eigen::Isometry3d::Identity(), Eigen::Matrix<double, 6, 1>::Ones()));
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(FramePose, error, false);
+BENCHMARK_CAPTURE(FramePose, linearise, true);
+
+void Com(benchmark::State& run, bool linearise) {
+  Drive drive(true);
+  drive.add_unary(EdgeCom(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones()));
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(Com, error, false);
+BENCHMARK_CAPTURE(Com, linearise, true);
 
 void Rolling(benchmark::State& run, bool linearise) {
   Drive drive(true);

@@ -86,6 +86,7 @@ TEST_F(RobotParameters, AreAllRegisteredUnderTheirTags) {
   const std::vector<std::string> tags = robot_types().tags();
   for (const char* tag :
        {"PARAMS_ROBOT", "PARAMS_WHEELS", "PARAMS_WORLD", "PARAMS_SCENARIO", "VERTEX_CONFIGURATION",
+        "PARAMS_FRAME", "EDGE_ACCELERATION_LIMITS", "EDGE_COM", "EDGE_CONTACT", "EDGE_FRAME_POSE",
         "EDGE_JOINT_LIMITS", "EDGE_VELOCITY_LIMITS", "EDGE_OBSTACLE_DISTANCE", "EDGE_WHEEL_CONTACT",
         "EDGE_ROLLING", "EDGE_PLAN_TRACKING", "EDGE_VELOCITY_TRACKING"}) {
     EXPECT_NE(std::find(tags.begin(), tags.end(), tag), tags.end()) << tag;

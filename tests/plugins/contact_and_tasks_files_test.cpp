@@ -1,0 +1,318 @@
+#include <cstring>
+
+#include "plugins/legged_cases.h"
+#include "plugins/small_robot.h"
+
+namespace locograph::test {
+namespace {
+
+class ContactsAndTasksInAFile : public LeggedTest {
+ protected:
+  template <class E, class... Ids>
+  static void add(Graph& graph, Random& random, int i, E edge, Ids... ids) {
+    if (i % 2 == 0) {
+      edge.weights.setConstant(random.uniform(0.0, 1e6));
+    } else {
+      edge.weights = random.weights(edge.weights.size());
+    }
+    graph.add_edge(std::move(edge), ids...);
+  }
+  /// Every kind, with numbers that need all their digits; weights `scalar` and `diagonal`.
+  Graph everything() const {
+    Random random(81);
+    const Robot& model = robot.model();
+    Graph graph = graph_of(robot);
+    add_frames(graph, robot, random);
+    std::vector<VertexId<VertexConfiguration>> ids;
+    for (int i = 0; i < 10; ++i) {
+      ids.push_back(add_configuration(graph, robot, i, 0.1 * i + 1.0 / 3.0,
+                                      random.configuration(model, 100.0, 0.0)));
+    }
+    for (int i = 0; i < 10; ++i) {
+      const auto id = ids[i];
+      add(graph, random, i,
+          EdgeContact(kFrame + i % 2, kContactKinds[i / 2], random_pose(random, 9.0), 1.0), id);
+      add(graph, random, i,
+          EdgeFramePose(kFrame + i % 2, random_pose(random, 9.0),
+                        Eigen::Matrix<double, 6, 1>::Ones()),
+          id);
+      add(graph, random, i, EdgeCom(random.vector(3, 1.0), Eigen::Vector3d::Ones()), id);
+      if (i < 2) continue;
+      const Eigen::VectorXd limits = random.weights(model.active_joint_count() + 2);
+      add(graph, random, i, EdgeAccelerationLimits(limits, 1.0), ids[i - 2], ids[i - 1], id);
+    }
+    return graph;
+  }
+  template <class E, class Bits>
+  static void expect_same_bits(const Graph& a, const Graph& b, Bits bits) {
+    ASSERT_GT(a.edges_of<E>().size(), 0u);
+    ASSERT_EQ(a.edges_of<E>().size(), b.edges_of<E>().size());
+    for (std::size_t i = 0; i < a.edges_of<E>().size(); ++i) {
+      const E &one = a.edges_of<E>()[i], &other = b.edges_of<E>()[i];
+      EXPECT_TRUE(one.vertices == other.vertices);
+      const Eigen::VectorXd x = bits(one), y = bits(other);
+      ASSERT_EQ(x.size(), y.size());
+      EXPECT_EQ(std::memcmp(x.data(), y.data(), sizeof(double) * x.size()), 0) << E::kTag << i;
+      ASSERT_EQ(one.weights.size(), other.weights.size());
+      EXPECT_EQ(std::memcmp(one.weights.data(), other.weights.data(),
+                            sizeof(double) * one.weights.size()),
+                0);
+    }
+  }
+  static Eigen::VectorXd numbers(const SavedPose& pose) {
+    Eigen::VectorXd all(7);
+    all << pose.position, pose.rotation.coeffs();
+    return all;
+  }
+  static double chi2(Graph& graph) {
+    Problem problem;
+    problem.compile(graph);
+    Workspace workspace;
+    workspace.allocate(problem);
+    workspace.load_state();
+    return workspace.evaluate(workspace.state()).chi2;
+  }
+};
+
+TEST_P(ContactsAndTasksInAFile, KeepEveryBit) {
+  const TemporaryFolder folder;
+  Graph graph = everything();
+  write_graph(graph, folder.file("plan.g2o"));
+  Graph again = read_graph(folder.file("plan.g2o"), robot_types());
+  EXPECT_EQ(write_graph_text(graph, folder.path()), write_graph_text(again, folder.path()));
+  expect_same_bits<EdgeContact>(graph, again,
+                                [](const EdgeContact& e) { return numbers(e.contact); });
+  expect_same_bits<EdgeFramePose>(graph, again,
+                                  [](const EdgeFramePose& e) { return numbers(e.target); });
+  expect_same_bits<EdgeCom>(graph, again,
+                            [](const EdgeCom& e) { return Eigen::VectorXd(e.target); });
+  expect_same_bits<EdgeAccelerationLimits>(
+      graph, again, [](const EdgeAccelerationLimits& e) { return e.limits; });
+  for (std::size_t i = 0; i < graph.edges_of<EdgeContact>().size(); ++i) {
+    EXPECT_EQ(graph.edges_of<EdgeContact>()[i].kind, again.edges_of<EdgeContact>()[i].kind);
+    EXPECT_EQ(graph.edges_of<EdgeContact>()[i].frame_number,
+              again.edges_of<EdgeContact>()[i].frame_number);
+  }
+  for (const int number : {kFrame, kFrame + 1}) {
+    const auto one = graph.parameters().get<FrameParameter>(number);
+    const auto other = again.parameters().get<FrameParameter>(number);
+    EXPECT_EQ(one->link, other->link);
+    EXPECT_TRUE(numbers(one->link_from_frame) == numbers(other->link_from_frame));
+  }
+  EXPECT_EQ(chi2(graph), chi2(again));
+  EXPECT_GT(chi2(graph), 0.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Plugins, ContactsAndTasksInAFile, testing::ValuesIn(legged_cases()),
+                         [](const testing::TestParamInfo<std::string>& info) {
+                           return info.param;
+                         });
+
+// Carts without a mass: three configurations of one, one of another. The bad line is line 9.
+constexpr const char* kCartsAndFrames =
+    "PARAMS_ROBOT 0 cart.urdf - floating 0\n"
+    "PARAMS_WORLD 2 - -\n"
+    "PARAMS_FRAME 3 0 arm 0 0 0.1 0 0 0 1\n"
+    "VERTEX_CONFIGURATION 0 0 0 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
+    "VERTEX_CONFIGURATION 1 0 1 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
+    "VERTEX_CONFIGURATION 2 0 3 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
+    "PARAMS_ROBOT 4 cart.urdf - floating 1 arm_joint\n"
+    "VERTEX_CONFIGURATION 3 4 0 0 0 0 0 0 0 1 0.1\n";
+
+struct BadContactOrTask {
+  const char* name;
+  const char* text;
+  const char* message;  ///< a part of it
+};
+void PrintTo(const BadContactOrTask& bad, std::ostream* out) { *out << bad.name; }
+
+const BadContactOrTask kBadContactsAndTasks[] = {
+    // PARAMS_FRAME
+    {"FrameOfAnUnknownRobot", "PARAMS_FRAME 9 5 arm 0 0 0 0 0 0 1", "unknown parameter 5"},
+    {"FrameOfAWorld", "PARAMS_FRAME 9 2 arm 0 0 0 0 0 0 1", "parameter 2 is a PARAMS_WORLD"},
+    {"FrameOnALinkThatIsNotThere", "PARAMS_FRAME 9 0 amr 0 0 0 0 0 0 1", "amr"},
+    {"FrameWithoutLink", "PARAMS_FRAME 9 0", "too few fields"},
+    {"FrameWithoutRotation", "PARAMS_FRAME 9 0 arm 0 0 0", "too few fields"},
+    {"FrameWithAZeroQuaternion", "PARAMS_FRAME 9 0 arm 0 0 0 0 0 0 0", "quaternion of length zero"},
+    {"FrameWithANaN", "PARAMS_FRAME 9 0 arm 0 nan 0 0 0 0 1", "'nan' is not finite"},
+    {"FrameWithTooManyFields", "PARAMS_FRAME 9 0 arm 0 0 0 0 0 0 1 7", "too many fields"},
+    {"FrameWithATakenNumber", "PARAMS_FRAME 3 0 arm 0 0 0 0 0 0 1", "parameter 3 is given twice"},
+    // EDGE_CONTACT
+    {"ContactOfAnUnknownFrame", "EDGE_CONTACT 0 3 8 point 0 0 0 0 0 0 1 scalar 1",
+     "unknown parameter 8"},
+    {"ContactOfARobot", "EDGE_CONTACT 0 3 0 point 0 0 0 0 0 0 1 scalar 1",
+     "parameter 0 is a PARAMS_ROBOT"},
+    {"ContactOfAnUnknownKind", "EDGE_CONTACT 0 3 3 glue 0 0 0 0 0 0 1 scalar 1",
+     "contact of kind 'glue', expected one of 'surface', 'surface_free_yaw'"},
+    {"ContactOfASurfaceWithTheRowsOfAPoint", "EDGE_CONTACT 0 3 3 surface 0 0 0 0 0 0 1 scalar 1",
+     "EDGE_CONTACT with n = 3, expected n = 6"},
+    {"ContactOfASurfaceWithFreeYawAndItsRow",
+     "EDGE_CONTACT 0 6 3 surface_free_yaw 0 0 0 0 0 0 1 scalar 1",
+     "EDGE_CONTACT with n = 6, expected n = 5"},
+    {"ContactOfAPointWithSixRows", "EDGE_CONTACT 0 6 3 point 0 0 0 0 0 0 1 scalar 1",
+     "EDGE_CONTACT with n = 6, expected n = 3"},
+    {"ContactOfASlidingRungWithFiveRows", "EDGE_CONTACT 0 5 3 sliding_rung 0 0 0 0 0 0 1 scalar 1",
+     "EDGE_CONTACT with n = 5, expected n = 4"},
+    {"ContactWithoutNormal", "EDGE_CONTACT 0 6 3 surface 0 0 0 0 0 0 0 scalar 1",
+     "quaternion of length zero"},
+    {"ContactWithANaN", "EDGE_CONTACT 0 3 3 point 0 0 nan 0 0 0 1 scalar 1", "'nan' is not finite"},
+    {"ContactAtInfinity", "EDGE_CONTACT 0 3 3 point 0 inf 0 0 0 0 1 scalar 1",
+     "'inf' is not finite"},
+    {"ContactWithANegativeWeight", "EDGE_CONTACT 0 3 3 point 0 0 0 0 0 0 1 diagonal 1 -1 1",
+     "a negative weight"},
+    {"ContactWithATruncatedPose", "EDGE_CONTACT 0 3 3 point 0 0 0 0 0 0 scalar 1",
+     "'scalar' is not a number"},
+    {"ContactOfAnUnknownVertex", "EDGE_CONTACT 8 3 3 point 0 0 0 0 0 0 1 scalar 1",
+     "unknown vertex 8"},
+    // EDGE_FRAME_POSE
+    {"FramePoseOfAnUnknownFrame", "EDGE_FRAME_POSE 0 8 0 0 0 0 0 0 1 scalar 1",
+     "unknown parameter 8"},
+    {"FramePoseOfAWorld", "EDGE_FRAME_POSE 0 2 0 0 0 0 0 0 1 scalar 1",
+     "parameter 2 is a PARAMS_WORLD"},
+    {"FramePoseWithAZeroQuaternion", "EDGE_FRAME_POSE 0 3 0 0 0 0 0 0 0 scalar 1",
+     "quaternion of length zero"},
+    {"FramePoseWithANaN", "EDGE_FRAME_POSE 0 3 nan 0 0 0 0 0 1 scalar 1", "'nan' is not finite"},
+    {"FramePoseWithTooFewWeights", "EDGE_FRAME_POSE 0 3 0 0 0 0 0 0 1 diagonal 1 1 1",
+     "too few fields"},
+    {"FramePoseWithANegativeWeight", "EDGE_FRAME_POSE 0 3 0 0 0 0 0 0 1 scalar -1",
+     "a negative weight"},
+    // EDGE_COM
+    {"ComOfARobotWithoutAMass", "EDGE_COM 0 0 0 0 scalar 1", "EDGE_COM for a robot without a mass"},
+    {"ComWithANaN", "EDGE_COM 0 0 nan 0 scalar 1", "'nan' is not finite"},
+    {"ComWithTooFewWeights", "EDGE_COM 0 0 0 0 diagonal 1 1", "too few fields"},
+    {"ComWithANegativeWeight", "EDGE_COM 0 0 0 0 diagonal 1 1 -1", "a negative weight"},
+    // EDGE_ACCELERATION_LIMITS
+    {"AccelerationLimitsWithoutTheRowsOfTheBase",
+     "EDGE_ACCELERATION_LIMITS 0 1 2 4 1 1 1 1 scalar 1",
+     "EDGE_ACCELERATION_LIMITS with n = 4, expected n = 5 or 3"},
+    {"AccelerationLimitsWithANegativeLimit", "EDGE_ACCELERATION_LIMITS 0 1 2 5 1 1 -1 1 1 scalar 1",
+     "a limit of acceleration of -1"},
+    {"AccelerationLimitsWithATruncatedLimit", "EDGE_ACCELERATION_LIMITS 0 1 2 5 1 1 1 1 scalar 1",
+     "'scalar' is not a number"},
+    {"AccelerationLimitsWithANaN", "EDGE_ACCELERATION_LIMITS 0 1 2 5 1 1 1 1 nan scalar 1",
+     "'nan' is not finite"},
+    {"AccelerationLimitsThatReturnToTheirVertex",
+     "EDGE_ACCELERATION_LIMITS 0 1 0 5 1 1 1 1 1 scalar 1", "names vertex 0 twice"},
+    {"AccelerationLimitsOnTwoVertices", "EDGE_ACCELERATION_LIMITS 0 1", "too few fields"},
+};
+
+class BadContactsAndTasks : public testing::TestWithParam<BadContactOrTask> {};
+
+TEST_P(BadContactsAndTasks, AreAnErrorWithFileAndLine) {
+  const TemporaryFolder folder;
+  folder.write("cart.urdf", kCartUrdf);
+  const std::filesystem::path plan = folder.write("plan.g2o", kCartsAndFrames);
+  ASSERT_NO_THROW(read_graph(plan, robot_types()));
+  folder.write("plan.g2o", std::string(kCartsAndFrames) + GetParam().text + "\n");
+  try {
+    read_graph(plan, robot_types());
+    FAIL() << "was read: " << GetParam().text;
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    EXPECT_NE(what.find(GetParam().message), std::string::npos) << what;
+    EXPECT_EQ(what.find(plan.string() + ":9: "), 0u) << what;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Plugins, BadContactsAndTasks, testing::ValuesIn(kBadContactsAndTasks),
+                         [](const testing::TestParamInfo<BadContactOrTask>& info) {
+                           return std::string(info.param.name);
+                         });
+
+TEST(ContactsOfTwoRobots, AreNotMixedUp) {
+  const TemporaryFolder folder;
+  folder.write("cart.urdf", kCartUrdf);
+  const struct {
+    const char *edge, *message;
+  } cases[] = {
+      {"EDGE_CONTACT 3 3 3 point 0 0 0 0 0 0 1 scalar 1", "configurations of different robots"},
+      {"EDGE_FRAME_POSE 3 3 0 0 0 0 0 0 1 scalar 1", "configurations of different robots"},
+      {"EDGE_ACCELERATION_LIMITS 0 1 3 5 1 1 1 1 1 scalar 1", "configurations of different robots"},
+      {"EDGE_ACCELERATION_LIMITS 0 1 2 3 1 1 1 scalar 1", "EDGE_ACCELERATION_LIMITS with n = 3"},
+      {"EDGE_ACCELERATION_LIMITS 2 1 0 5 1 1 1 1 1 scalar 1", "times that increase"}};
+  for (const auto& bad : cases) {
+    Graph graph = read_graph(
+        folder.write("plan.g2o", std::string(kCartsAndFrames) + bad.edge + "\n"), robot_types());
+    Problem problem;
+    problem.compile(graph);
+    Workspace workspace;
+    workspace.allocate(problem);
+    workspace.load_state();
+    try {
+      workspace.evaluate(workspace.state());
+      FAIL() << "was evaluated: " << bad.edge;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(bad.message), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(ContactPose, HasTheNormalAsZAndForwardAsXInTheSurface) {
+  Random random(82);
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d normal = random.uniform(1e-8, 10.0) * random.direction();
+    const Eigen::Vector3d forward = random.direction();
+    const Eigen::Isometry3d pose = contact_pose(Eigen::Vector3d(1.0, 2.0, 3.0), normal, forward);
+    EXPECT_TRUE(pose.translation() == Eigen::Vector3d(1.0, 2.0, 3.0));
+    EXPECT_LT((pose.linear() * pose.linear().transpose() - Eigen::Matrix3d::Identity()).norm(),
+              1e-12);
+    EXPECT_NEAR(pose.linear().determinant(), 1.0, 1e-12);
+    EXPECT_LT((pose.linear().col(2) - normal.normalized()).norm(), 1e-12);
+    EXPECT_GT(pose.linear().col(0).dot(forward), 0.0);
+    EXPECT_NEAR(pose.linear().col(1).dot(forward), 0.0, 1e-12);
+  }
+}
+
+TEST(ContactPose, IsRefusedWithoutDirections) {
+  const Eigen::Vector3d zero = Eigen::Vector3d::Zero(), x = Eigen::Vector3d::UnitX(),
+                        z = Eigen::Vector3d::UnitZ(), nan = Eigen::Vector3d::Constant(std::nan(""));
+  EXPECT_THROW(contact_pose(zero, zero, x), Error) << "a surface with zero normal";
+  EXPECT_THROW(contact_pose(zero, z, zero), Error);
+  EXPECT_THROW(contact_pose(zero, z, -2.0 * z), Error) << "forward along the normal";
+  EXPECT_THROW(contact_pose(nan, z, x), Error);
+  EXPECT_THROW(contact_pose(zero, nan, x), Error);
+  EXPECT_THROW(contact_pose(zero, z, nan), Error);
+  EXPECT_THROW(contact_pose(zero, z * HUGE_VAL, x), Error);
+  EXPECT_NO_THROW(contact_pose(zero, 1e-200 * z, 1e200 * x));
+}
+
+TEST(EdgesOfContactsAndTasks, AreRefusedWhenAddedWithWhatMakesNoSense) {
+  const RobotCase robot = centauro_lower_body();
+  const Robot& model = robot.model();
+  Graph graph = graph_of(robot);
+  Random random(83);
+  add_frames(graph, robot, random);
+  const auto a = add_configuration(graph, robot, 0, 0.0, home(robot));
+  const auto b = add_configuration(graph, robot, 1, 1.0, home(robot));
+  const auto c = add_configuration(graph, robot, 2, 2.0, home(robot));
+  const double nan = std::nan("");
+  Eigen::Isometry3d bent = Eigen::Isometry3d::Identity();
+  bent.linear()(0, 1) = 0.1;
+  Eigen::Isometry3d mirrored = Eigen::Isometry3d::Identity();
+  mirrored.linear()(2, 2) = -1.0;
+  Eigen::Isometry3d nowhere = Eigen::Isometry3d::Identity();
+  nowhere.translation()[1] = nan;
+  Eigen::Isometry3d unturned = Eigen::Isometry3d::Identity();
+  unturned.linear().setConstant(nan);
+  for (const Eigen::Isometry3d& pose : {bent, mirrored, nowhere, unturned}) {
+    EXPECT_THROW(EdgeContact(kFrame, ContactKind::kSurface, pose, 1.0), Error);
+    EXPECT_THROW(EdgeFramePose(kFrame, pose, Eigen::Matrix<double, 6, 1>::Ones()), Error);
+    EXPECT_THROW(FrameParameter(model, kRobot, "pelvis", pose), Error);
+  }
+  EXPECT_THROW(FrameParameter(model, kRobot, "left_foot"), Error);
+  EdgeContact wrong(kFrame, ContactKind::kPoint, Eigen::Isometry3d::Identity(), 1.0);
+  wrong.weights.setOnes(6);
+  EXPECT_THROW(graph.add_edge(wrong, a), Error);
+  EXPECT_THROW(graph.add_edge(EdgeCom(Eigen::Vector3d(0.0, nan, 0.0), Eigen::Vector3d::Ones()), a),
+               Error);
+  EXPECT_THROW(graph.add_edge(EdgeAccelerationLimits(model, nan, 1.0, 1.0, 1.0), a, b, c), Error);
+  EXPECT_THROW(graph.add_edge(EdgeAccelerationLimits(Eigen::VectorXd::Ones(24), 1.0), a, b, c),
+               Error);
+  EdgeAccelerationLimits torn(model, 1.0, 1.0, 1.0, 1.0);
+  torn.limits.setOnes(3);
+  EXPECT_THROW(graph.add_edge(torn, a, b, c), Error);
+  EXPECT_EQ(graph.edge_count(), 0);
+}
+
+}  // namespace
+}  // namespace locograph::test
