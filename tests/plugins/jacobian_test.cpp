@@ -1,38 +1,9 @@
+#include "plugins/jacobian_comparison.h"
+#include "plugins/kink_distance.h"
 #include "plugins/plugin_test_support.h"
 
 namespace locograph::test {
 namespace {
-
-constexpr int kStates = 120;
-constexpr double kTolerance = 1e-6;
-/// Numeric differences reach 6e-6 rad or m to either side, times an arm of a metre or two.
-constexpr double kKink = 1e-4;
-
-/// What was compared: rows with and without derivatives.
-struct Compared {
-  int rows = 0, nonzero = 0, zero = 0;
-};
-
-/// Compares the analytic Jacobian of edge k with numeric differences, in the rows that are smooth.
-template <class Smooth>
-void compare(Evaluated& evaluated, int k, int slot, Smooth smooth, Compared& compared) {
-  const Eigen::MatrixXd analytic = evaluated.jacobian(k, slot, false);
-  const Eigen::MatrixXd numeric = evaluated.jacobian(k, slot, true);
-  ASSERT_EQ(analytic.rows(), numeric.rows());
-  ASSERT_EQ(analytic.cols(), numeric.cols());
-  ASSERT_TRUE(analytic.allFinite());
-  for (int r = 0; r < analytic.rows(); ++r) {
-    if (!smooth(r)) continue;
-    const double scale = std::max(1.0, numeric.row(r).cwiseAbs().maxCoeff());
-    ASSERT_LE((analytic.row(r) - numeric.row(r)).cwiseAbs().maxCoeff(), kTolerance * scale)
-        << "edge " << k << ", slot " << slot << ", row " << r << "\nanalytic " << analytic.row(r)
-        << "\nnumeric  " << numeric.row(r);
-    ++compared.rows;
-    ++(analytic.row(r).isZero(0.0) ? compared.zero : compared.nonzero);
-  }
-}
-
-constexpr auto kEverywhere = [](int) { return true; };
 
 class JacobianOf : public testing::TestWithParam<std::string> {
  protected:
@@ -189,39 +160,6 @@ TEST_P(WheelJacobianOf, WheelContactIsThatOfNumericDifferences) {
 
 TEST_P(WheelJacobianOf, RollingIsThatOfNumericDifferences) {
   compare_pairs(EdgeRolling(*robot.wheels, kWheels, 1.0), 0.5, 0.8, 0.4);
-}
-
-/// Distance from a kink of the distance to an obstacle: where another of its faces or edges becomes
-/// the nearest. (On some of these only the curvature jumps; differences notice that, too.)
-double kink_distance(const Obstacle& obstacle, const Eigen::Vector3d& point, double time_s) {
-  const Eigen::Vector3d local = obstacle.pose_at(time_s).inverse() * point;
-  switch (obstacle.shape) {
-    case Obstacle::Shape::kSphere:
-      return local.norm();
-    case Obstacle::Shape::kBox: {
-      Eigen::Vector3d excess = local.cwiseAbs() - 0.5 * obstacle.size;
-      double nearest = std::min(excess.cwiseAbs().minCoeff(), local.cwiseAbs().minCoeff());
-      std::sort(excess.data(), excess.data() + 3);
-      return std::min({nearest, excess[2] - excess[1]});
-    }
-    case Obstacle::Shape::kCylinder: {
-      const double rho = std::hypot(local.x(), local.y());
-      const double radial = rho - obstacle.size[0];
-      const double axial = std::abs(local.z()) - 0.5 * obstacle.size[1];
-      return std::min(
-          {rho, std::abs(local.z()), std::abs(radial), std::abs(axial), std::abs(radial - axial)});
-    }
-  }
-  return 0.0;
-}
-
-double kink_distance(const DistanceField& field, const Eigen::Vector3d& point) {
-  double nearest = 1.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double cell = (point[axis] - field.lower()[axis]) / field.resolution();
-    nearest = std::min(nearest, std::abs(cell - std::round(cell)) * field.resolution());
-  }
-  return nearest;
 }
 
 void compare_distances(const RobotCase& robot, const WorldDistance& now, unsigned seed) {
