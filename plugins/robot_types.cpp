@@ -7,6 +7,8 @@
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/plugins/robot_types.h>
 #include <locograph/plugins/rolling/edge_rolling.h>
+#include <locograph/plugins/self_collision/edge_self_collision.h>
+#include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
 #include <locograph/plugins/wheel_contact/edge_wheel_contact.h>
@@ -28,6 +30,8 @@ void add_robot_types(TypeRegistry& types) {
   types.add_edge<EdgeObstacleDistance>();
   types.add_edge<EdgePlanTracking>();
   types.add_edge<EdgeRolling>();
+  types.add_edge<EdgeSelfCollision>();
+  types.add_edge<EdgeSweptObstacleDistance>();
   types.add_edge<EdgeVelocityLimits>();
   types.add_edge<EdgeVelocityTracking>();
   types.add_edge<EdgeWheelContact>();

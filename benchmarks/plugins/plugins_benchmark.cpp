@@ -10,6 +10,8 @@
 #include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/plugins/rolling/edge_rolling.h>
+#include <locograph/plugins/self_collision/edge_self_collision.h>
+#include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
 #include <locograph/plugins/wheel_contact/edge_wheel_contact.h>
@@ -177,6 +179,27 @@ BENCHMARK_CAPTURE(ObstacleDistance, map_linearise, true, true, 0.05);
 BENCHMARK_CAPTURE(ObstacleDistance, map_linearise_margin_0_5_m, true, true, 0.5);
 BENCHMARK_CAPTURE(ObstacleDistance, four_obstacles_error, false, false, 0.05);
 BENCHMARK_CAPTURE(ObstacleDistance, four_obstacles_linearise, true, false, 0.05);
+
+void SelfCollision(benchmark::State& run, bool linearise, double margin_m) {
+  Drive drive(true);
+  drive.add_unary(EdgeSelfCollision(drive.robot(), margin_m, 1e4));
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(SelfCollision, error, false, 0.01);
+BENCHMARK_CAPTURE(SelfCollision, linearise, true, 0.01);
+BENCHMARK_CAPTURE(SelfCollision, linearise_margin_0_1_m, true, 0.1);
+
+void SweptObstacleDistance(benchmark::State& run, bool linearise, bool with_map, double margin_m,
+                           int samples) {
+  Drive drive(with_map);
+  drive.add_binary(EdgeSweptObstacleDistance(drive.robot(), kWorld, margin_m, samples, 1e4));
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(SweptObstacleDistance, map_error, false, true, 0.05, 2);
+BENCHMARK_CAPTURE(SweptObstacleDistance, map_linearise, true, true, 0.05, 2);
+BENCHMARK_CAPTURE(SweptObstacleDistance, map_linearise_margin_0_5_m, true, true, 0.5, 2);
+BENCHMARK_CAPTURE(SweptObstacleDistance, map_linearise_8_samples, true, true, 0.05, 8);
+BENCHMARK_CAPTURE(SweptObstacleDistance, four_obstacles_linearise, true, false, 0.05, 2);
 
 void WheelContact(benchmark::State& run, bool linearise) {
   Drive drive(true);

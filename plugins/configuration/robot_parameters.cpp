@@ -55,6 +55,7 @@ void RobotParameter::load() {
     }
     bounds.push_back(bound);
   }
+  self_collision = SelfCollisionShapes(*this);
 }
 
 void RobotParameter::read(FieldReader& in) {

@@ -8,6 +8,7 @@
 /// Paths are relative to the graph file; `-` stands for none.
 
 #include <locograph/core/parameters.h>
+#include <locograph/plugins/configuration/self_collision_shapes.h>
 #include <locograph/robots/collision_model.h>
 #include <locograph/robots/robot.h>
 #include <locograph/world/distance_field.h>
@@ -39,6 +40,7 @@ struct RobotParameter final : Parameter {
     int begin, end;  ///< its spheres
   };
   std::vector<LinkBound> bounds;
+  SelfCollisionShapes self_collision;
 
   RobotParameter() = default;
   /// Loads the robot. Throws Error for unusable files.

@@ -20,7 +20,8 @@ ConfigurationState::ConfigurationState(std::shared_ptr<const RobotParameter> par
     : robot(known(std::move(parameter))),
       kinematics(*robot->robot),
       q(robot->robot->configuration_size()),
-      sphere_centres(robot->spheres.size()) {}
+      sphere_centres(robot->spheres.size()),
+      bound_centres(robot->bounds.size()) {}
 
 void ConfigurationState::update(const double* configuration) {
   std::copy_n(configuration, q.size(), q.data());
@@ -28,6 +29,10 @@ void ConfigurationState::update(const double* configuration) {
   for (std::size_t i = 0; i < sphere_centres.size(); ++i) {
     const CollisionSphere& sphere = robot->spheres[i];
     sphere_centres[i] = kinematics.world_from_link(sphere.link) * sphere.center;
+  }
+  for (std::size_t i = 0; i < bound_centres.size(); ++i) {
+    const RobotParameter::LinkBound& bound = robot->bounds[i];
+    bound_centres[i] = kinematics.world_from_link(bound.link) * bound.center;
   }
 }
 

@@ -25,6 +25,7 @@ struct ConfigurationState {
   Eigen::VectorXd q;
   double time_s = 0.0;
   std::vector<Eigen::Vector3d> sphere_centres;  ///< world frame, as RobotParameter::spheres
+  std::vector<Eigen::Vector3d> bound_centres;   ///< world frame, as RobotParameter::bounds
 
   explicit ConfigurationState(std::shared_ptr<const RobotParameter> parameter);
   void update(const double* configuration);

@@ -16,11 +16,12 @@ namespace {
 template <class F>
 void each_near_sphere(const ConfigurationState& q, const WorldDistance& world, double margin_m,
                       F&& f) {
-  for (const RobotParameter::LinkBound& bound : q.robot->bounds) {
-    const Eigen::Vector3d center = q.kinematics.world_from_link(bound.link) * bound.center;
+  for (std::size_t link = 0; link < q.bound_centres.size(); ++link) {
+    const RobotParameter::LinkBound& bound = q.robot->bounds[link];
     // The field changes by no more than the way, so nothing inside the bound can be nearer.
     const double reach = bound.radius + margin_m;
-    if (reach < world.max_distance() && world.distance(center, q.time_s) > reach) continue;
+    if (reach < world.max_distance() && world.distance(q.bound_centres[link], q.time_s) > reach)
+      continue;
     for (int i = bound.begin; i < bound.end; ++i) f(i);
   }
 }
@@ -28,6 +29,7 @@ void each_near_sphere(const ConfigurationState& q, const WorldDistance& world, d
 }  // namespace
 
 void EdgeObstacleDistance::error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const {
+  require_rows(kTag, e.size(), static_cast<long>(q.robot->spheres.size()));
   e.setZero();
   each_near_sphere(q, world->now, margin_m, [&](int i) {
     const double distance = world->now.distance(q.sphere_centres[i], q.time_s);

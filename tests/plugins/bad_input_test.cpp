@@ -112,6 +112,34 @@ const BadLine kBadLines[] = {
      "EDGE_OBSTACLE_DISTANCE with n = 1, expected n = 3"},
     {"ObstacleDistanceWithAMisspeltWord", "EDGE_OBSTACLE_DISTANCE 0 3 2 0.1 skalar 1",
      "weights begin with 'skalar'"},
+    // EDGE_SELF_COLLISION
+    {"SelfCollisionWithTooFewRows", "EDGE_SELF_COLLISION 0 2 0.1 scalar 1",
+     "EDGE_SELF_COLLISION with n = 2, expected n = 3"},
+    {"SelfCollisionWithTooManyRows", "EDGE_SELF_COLLISION 0 4 0.1 scalar 1",
+     "EDGE_SELF_COLLISION with n = 4, expected n = 3"},
+    {"SelfCollisionWithANaNMargin", "EDGE_SELF_COLLISION 0 3 nan scalar 1", "'nan' is not finite"},
+    {"SelfCollisionWithoutMargin", "EDGE_SELF_COLLISION 0 3 scalar 1", "'scalar' is not a number"},
+    {"SelfCollisionWithANegativeWeight", "EDGE_SELF_COLLISION 0 3 0.1 diagonal 1 1 -1",
+     "a negative weight"},
+    {"SelfCollisionOnAnUnknownVertex", "EDGE_SELF_COLLISION 5 3 0.1 scalar 1", "unknown vertex 5"},
+    // EDGE_SWEPT_OBSTACLE_DISTANCE
+    {"SweptObstacleDistanceInAnUnknownWorld", "EDGE_SWEPT_OBSTACLE_DISTANCE 0 1 3 6 0.1 2 scalar 1",
+     "unknown parameter 6"},
+    {"SweptObstacleDistanceInARobot", "EDGE_SWEPT_OBSTACLE_DISTANCE 0 1 3 0 0.1 2 scalar 1",
+     "parameter 0 is a PARAMS_ROBOT"},
+    {"SweptObstacleDistanceWithTooManyRows", "EDGE_SWEPT_OBSTACLE_DISTANCE 0 1 4 2 0.1 2 scalar 1",
+     "EDGE_SWEPT_OBSTACLE_DISTANCE with n = 4, expected n = 3"},
+    {"SweptObstacleDistanceWithoutSamples", "EDGE_SWEPT_OBSTACLE_DISTANCE 0 1 3 2 0.1 0 scalar 1",
+     "number of samples 0, expected 1 to 1000"},
+    {"SweptObstacleDistanceWithMillionsOfSamples",
+     "EDGE_SWEPT_OBSTACLE_DISTANCE 0 1 3 2 0.1 2000000 scalar 1", "number of samples 2000000"},
+    {"SweptObstacleDistanceWithHalfASample",
+     "EDGE_SWEPT_OBSTACLE_DISTANCE 0 1 3 2 0.1 0.5 scalar 1", "0.5"},
+    {"SweptObstacleDistanceWithANegativeMargin",
+     "EDGE_SWEPT_OBSTACLE_DISTANCE 0 1 3 2 -0.1 2 scalar 1", "expected 0 m or more"},
+    {"SweptObstacleDistanceFromAVertexToItself",
+     "EDGE_SWEPT_OBSTACLE_DISTANCE 0 0 3 2 0.1 2 scalar 1", "names vertex 0 twice"},
+    {"SweptObstacleDistanceWithOneVertex", "EDGE_SWEPT_OBSTACLE_DISTANCE 0", "too few fields"},
     // EDGE_WHEEL_CONTACT and EDGE_ROLLING
     {"WheelContactOfUnknownWheels", "EDGE_WHEEL_CONTACT 0 2 6 scalar 1", "unknown parameter 6"},
     {"WheelContactOfAWorld", "EDGE_WHEEL_CONTACT 0 2 2 scalar 1", "parameter 2 is a PARAMS_WORLD"},
@@ -221,12 +249,14 @@ TEST(GoodInput, OfEveryKindIsRead) {
                                    "EDGE_JOINT_LIMITS 0 3 0.1 scalar 1\n"
                                    "EDGE_VELOCITY_LIMITS 0 1 5 1 0.5 0.5 scalar 1\n"
                                    "EDGE_OBSTACLE_DISTANCE 0 3 2 0.1 diagonal 1 2 3\n"
+                                   "EDGE_SELF_COLLISION 0 3 0.05 diagonal 1 2 3\n"
+                                   "EDGE_SWEPT_OBSTACLE_DISTANCE 0 1 3 2 0.1 4 scalar 1\n"
                                    "EDGE_WHEEL_CONTACT 0 2 1 scalar 1\n"
                                    "EDGE_ROLLING 0 1 2 1 scalar 1\n"
                                    "EDGE_PLAN_TRACKING 0 9 0 0 0 0 0 0 2 0 0 -.5 scalar 1\n"
                                    "EDGE_VELOCITY_TRACKING 0 1 9 1 2 3 4 5 6 7 8 9 scalar 0\n");
   const Graph graph = read_graph(plan, robot_types());
-  EXPECT_EQ(graph.edge_count(), 7);
+  EXPECT_EQ(graph.edge_count(), 9);
   Eigen::VectorXd reference(10);
   reference << 0, 0, 0, 0, 0, 0, 1, 0, 0, -0.5;
   EXPECT_TRUE(graph.edges_of<EdgePlanTracking>()[0].reference == reference)
@@ -266,6 +296,8 @@ TEST_F(TwoRobots, AreNotMixedUpByAnEdgeThatFitsTheOtherOne) {
   expect_refused("EDGE_JOINT_LIMITS 2 3 0.1 scalar 1", "EDGE_JOINT_LIMITS with n = 3");
   expect_refused("EDGE_JOINT_LIMITS 0 1 0.1 scalar 1", "EDGE_JOINT_LIMITS with n = 1");
   expect_refused("EDGE_VELOCITY_LIMITS 2 3 5 1 0 0 scalar 1", "EDGE_VELOCITY_LIMITS with n = 5");
+  expect_refused("EDGE_SELF_COLLISION 2 3 0.1 scalar 1", "EDGE_SELF_COLLISION with n = 3");
+  expect_refused("EDGE_SELF_COLLISION 0 2 0.1 scalar 1", "EDGE_SELF_COLLISION with n = 2");
   expect_refused("EDGE_PLAN_TRACKING 2 9 0 0 0 0 0 0 1 0 0 0 scalar 1",
                  "EDGE_PLAN_TRACKING with n = 9");
   expect_refused("EDGE_PLAN_TRACKING 0 7 0 0 0 0 0 0 1 0 scalar 1",
@@ -280,6 +312,7 @@ TEST_F(TwoRobots, AreNotTiedTogether) {
   expect_refused("EDGE_VELOCITY_LIMITS 2 0 3 1 0 0 scalar 1", message);
   expect_refused("EDGE_VELOCITY_TRACKING 0 2 9 0 0 0 0 0 0 0 0 0 scalar 1", message);
   expect_refused("EDGE_ROLLING 0 2 2 1 scalar 1", message);
+  expect_refused("EDGE_SWEPT_OBSTACLE_DISTANCE 0 2 3 2 0.1 2 scalar 1", message);
 }
 
 TEST_F(TwoRobots, KeepTheirOwnWheels) {
@@ -316,6 +349,12 @@ TEST(EdgesInAGraph, AreRefusedWhenAddedWithTheWrongSize) {
   };
   EXPECT_THROW(graph.add_edge(wrong(EdgeJointLimits(model, 0.1, 1.0)), a), Error);
   EXPECT_THROW(graph.add_edge(wrong(EdgeObstacleDistance(*robot.robot, kWorld, 0.1, 1.0)), a),
+               Error);
+  EXPECT_THROW(graph.add_edge(wrong(EdgeSelfCollision(*robot.robot, 0.1, 1.0)), a), Error);
+  EXPECT_THROW(
+      graph.add_edge(wrong(EdgeSweptObstacleDistance(*robot.robot, kWorld, 0.1, 2, 1.0)), a, b),
+      Error);
+  EXPECT_THROW(graph.add_edge(EdgeSweptObstacleDistance(*robot.robot, kWorld, 0.1, 0, 1.0), a, b),
                Error);
   EXPECT_THROW(graph.add_edge(wrong(EdgeWheelContact(*robot.wheels, kWheels, 1.0)), a), Error);
   EXPECT_THROW(graph.add_edge(wrong(EdgePlanTracking(home(robot), Eigen::VectorXd::Ones(30))), a),

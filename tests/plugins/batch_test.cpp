@@ -36,6 +36,7 @@ Graph plan_with_everything(const RobotCase& robot, const WorldDistance& now, boo
   for (std::size_t i = 0; i < ids.size(); ++i) {
     graph.add_edge(dress(EdgeJointLimits(model, 0.5, 1.0)), ids[i]);
     graph.add_edge(dress(EdgeObstacleDistance(*robot.robot, kWorld, 0.1, 1.0)), ids[i]);
+    graph.add_edge(dress(EdgeSelfCollision(*robot.robot, 0.05, 1.0)), ids[i]);
     graph.add_edge(dress(EdgeWheelContact(*robot.wheels, kWheels, 1.0)), ids[i]);
     graph.add_edge(dress(EdgePlanTracking(random.configuration(model, 1.0, 0.0),
                                           Eigen::VectorXd::Ones(tangent))),
@@ -43,6 +44,7 @@ Graph plan_with_everything(const RobotCase& robot, const WorldDistance& now, boo
     if (i == 0) continue;
     const bool swap = backwards && i % 2 == 0;
     const auto a = ids[swap ? i : i - 1], b = ids[swap ? i - 1 : i];
+    graph.add_edge(dress(EdgeSweptObstacleDistance(*robot.robot, kWorld, 0.1, 3, 1.0)), a, b);
     graph.add_edge(dress(EdgeRolling(*robot.wheels, kWheels, 1.0)), a, b);
     graph.add_edge(
         dress(EdgeVelocityTracking(random.vector(tangent, 0.1), Eigen::VectorXd::Ones(tangent))), a,
@@ -66,7 +68,7 @@ TEST_P(Batch, IsTheSumOverItsEdgesOneByOne) {
   const RobotCase robot = robot_case(GetParam());
   for (const bool kernels : {false, true}) {
     Graph graph = plan_with_everything(robot, everything_around(), true, kernels);
-    ASSERT_EQ(graph.edge_pools().size(), 7u);
+    ASSERT_EQ(graph.edge_pools().size(), 9u);
     Problem problem;
     problem.compile(graph);
     ASSERT_EQ(problem.dimension(), 18 * robot.model().tangent_size());

@@ -60,6 +60,7 @@ class RoundTrip : public testing::TestWithParam<std::string> {
     for (int i = 0; i < 5; ++i) {
       add(graph, random, i, EdgeJointLimits(model, 0.1 / 3.0, 1.0), ids[i]);
       add(graph, random, i, EdgeObstacleDistance(*robot.robot, kWorld, 0.2 / 3.0, 1.0), ids[i]);
+      add(graph, random, i, EdgeSelfCollision(*robot.robot, 0.1 / 3.0, 1.0), ids[i]);
       add(graph, random, i,
           EdgePlanTracking(random.configuration(model, 3.0, 0.0),
                            random.weights(model.tangent_size())),
@@ -68,6 +69,8 @@ class RoundTrip : public testing::TestWithParam<std::string> {
         add(graph, random, i, EdgeWheelContact(*robot.wheels, kWheels, 1.0), ids[i]);
       }
       if (i == 0) continue;
+      add(graph, random, i, EdgeSweptObstacleDistance(*robot.robot, kWorld, 0.2 / 3.0, 1 + i, 1.0),
+          ids[i - 1], ids[i]);
       add(graph, random, i, EdgeVelocityLimits(model, 0.7 / 3.0, 0.1 / 3.0, 1e-17, 1.0), ids[i - 1],
           ids[i]);
       add(graph, random, i,
@@ -123,6 +126,11 @@ class RoundTrip : public testing::TestWithParam<std::string> {
         a, b, [](const auto& x, const auto& y) { return x.margin == y.margin; });
     expect_same_edges<EdgeObstacleDistance>(a, b, [](const auto& x, const auto& y) {
       return x.margin_m == y.margin_m && x.world_number == y.world_number;
+    });
+    expect_same_edges<EdgeSelfCollision>(
+        a, b, [](const auto& x, const auto& y) { return x.margin_m == y.margin_m; });
+    expect_same_edges<EdgeSweptObstacleDistance>(a, b, [](const auto& x, const auto& y) {
+      return x.margin_m == y.margin_m && x.world_number == y.world_number && x.samples == y.samples;
     });
     expect_same_edges<EdgePlanTracking>(a, b, [](const auto& x, const auto& y) {
       expect_same_bits(x.reference, y.reference);

@@ -1,0 +1,125 @@
+#include <locograph/plugins/self_collision/edge_self_collision.h>
+#include <locograph/plugins/self_collision/nearest_points.h>
+
+namespace locograph {
+
+template class TypedEdgePool<EdgeSelfCollision>;
+
+EdgeSelfCollision::EdgeSelfCollision(const RobotParameter& robot, double margin, double weight)
+    : margin_m(margin) {
+  weights.setConstant(static_cast<Eigen::Index>(robot.self_collision.pairs.size()), weight);
+}
+
+namespace {
+
+using Capsule = SelfCollisionShapes::Capsule;
+
+struct Nearest {
+  double distance;           ///< signed; where nothing is nearer, the limit that was asked for
+  Eigen::Vector3d on_first;  ///< on the axes of the two capsules
+  Eigen::Vector3d on_second;
+  Eigen::Vector3d direction;  ///< unit, from the first to the second
+};
+
+/// Unit vector between the axes of two capsules; any normal to both where they meet.
+Eigen::Vector3d direction_between(const SegmentPoints& points, const Capsule& a, const Capsule& b) {
+  const Eigen::Vector3d way = points.on_second - points.on_first;
+  constexpr double kMeet_m = 1e-12;
+  if (const double length = way.norm(); length > kMeet_m) return way / length;
+  const Eigen::Vector3d along = a.to - a.from, other = b.to - b.from;
+  const Eigen::Vector3d normal = along.cross(other);
+  if (normal.squaredNorm() > 1e-18) return normal.normalized();
+  const Eigen::Vector3d axis = along.squaredNorm() > other.squaredNorm() ? along : other;
+  if (axis.squaredNorm() < 1e-18) return Eigen::Vector3d::UnitZ();
+  return axis.unitOrthogonal();
+}
+
+bool near(const ConfigurationState& q, const SelfCollisionShapes::Pair& pair, double limit) {
+  const double reach = pair.reach + limit;
+  return reach > 0.0 &&
+         (q.bound_centres[pair.second] - q.bound_centres[pair.first]).squaredNorm() < reach * reach;
+}
+
+/// The nearest capsules of two links that are nearer than `limit`, in the frame of the first link.
+Nearest nearest(const ConfigurationState& q, const SelfCollisionShapes::Pair& pair, double limit) {
+  const RobotParameter& robot = *q.robot;
+  const SelfCollisionShapes& shapes = robot.self_collision;
+  const RobotParameter::LinkBound& bound = robot.bounds[pair.first];
+  const SelfCollisionShapes::OfBound& first = shapes.of_bound[pair.first];
+  const SelfCollisionShapes::OfBound& second = shapes.of_bound[pair.second];
+  const Eigen::Isometry3d& world_from_first = q.kinematics.world_from_link(bound.link);
+  const Eigen::Isometry3d& world_from_second =
+      q.kinematics.world_from_link(robot.bounds[pair.second].link);
+  const Eigen::Matrix3d turn = world_from_first.linear().transpose() * world_from_second.linear();
+  const Eigen::Vector3d shift = world_from_first.linear().transpose() *
+                                (world_from_second.translation() - world_from_first.translation());
+
+  Nearest best{limit, {}, {}, {}};
+  for (int j = second.begin; j < second.end; ++j) {
+    const Capsule& own = shapes.capsules[j];
+    const Capsule b{turn * own.from + shift, turn * own.to + shift, own.radius};
+    const Eigen::Vector3d middle = 0.5 * (b.from + b.to);
+    const double half = 0.5 * (b.to - b.from).norm() + b.radius;
+    if ((middle - bound.center).norm() - half - first.radius >= best.distance) continue;
+    for (int i = first.begin; i < first.end; ++i) {
+      const Capsule& a = shapes.capsules[i];
+      const SegmentPoints points = nearest_points(a.from, a.to, b.from, b.to);
+      const double distance = (points.on_second - points.on_first).norm() - a.radius - b.radius;
+      if (distance >= best.distance) continue;
+      best = {distance, points.on_first, points.on_second, direction_between(points, a, b)};
+    }
+  }
+  return best;
+}
+
+/// row += d(direction · point)/dq for the joints in `support` from the `common`-th on.
+void add_slope(const RobotState& kinematics, std::span<const int> support, std::size_t common,
+               const Eigen::Vector3d& point, const Eigen::Vector3d& direction, double* row) {
+  const Robot& robot = kinematics.robot();
+  const Eigen::Vector3d moment = point.cross(direction);
+  for (std::size_t k = common; k < support.size(); ++k) {
+    const int i = support[k];
+    const Eigen::Vector3d& axis = kinematics.joint_axis(i);
+    // axis · ((p − o) × d) for a joint that turns, axis · d for one that slides
+    row[robot.base_tangent_size() + i] +=
+        robot.active_joint(i).type == JointType::kPrismatic
+            ? axis.dot(direction)
+            : axis.dot(moment - kinematics.joint_origin(i).cross(direction));
+  }
+}
+
+}  // namespace
+
+void EdgeSelfCollision::error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const {
+  const std::vector<SelfCollisionShapes::Pair>& pairs = q.robot->self_collision.pairs;
+  require_rows(kTag, e.size(), static_cast<long>(pairs.size()));
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    e[static_cast<Eigen::Index>(p)] =
+        near(q, pairs[p], margin_m) ? margin_m - nearest(q, pairs[p], margin_m).distance : 0.0;
+  }
+}
+
+// The nearest points move along with their links: how they slide along the shapes does not matter
+// to first order. What moves both links alike, base and common joints, does not change d.
+void EdgeSelfCollision::jacobians(const ConfigurationState& q,
+                                  JacobianRef<EdgeSelfCollision, 0> j) const {
+  const std::vector<SelfCollisionShapes::Pair>& pairs = q.robot->self_collision.pairs;
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    if (!near(q, pairs[p], margin_m)) continue;
+    const Nearest found = nearest(q, pairs[p], margin_m);
+    if (found.distance >= margin_m) continue;
+    const int a = q.robot->bounds[pairs[p].first].link, b = q.robot->bounds[pairs[p].second].link;
+    const Eigen::Isometry3d& world_from_first = q.kinematics.world_from_link(a);
+    const Eigen::Vector3d direction = world_from_first.linear() * found.direction;
+    const std::span<const int> first = q.model().support(a), second = q.model().support(b);
+    std::size_t common = 0;
+    while (common < std::min(first.size(), second.size()) && first[common] == second[common]) {
+      ++common;
+    }
+    double* row = j.row(static_cast<Eigen::Index>(p)).data();
+    add_slope(q.kinematics, first, common, world_from_first * found.on_first, direction, row);
+    add_slope(q.kinematics, second, common, world_from_first * found.on_second, -direction, row);
+  }
+}
+
+}  // namespace locograph

@@ -1,0 +1,40 @@
+#pragma once
+/// EDGE_SELF_COLLISION: keeps the links of a robot a margin away from each other.
+///
+///     EDGE_SELF_COLLISION id  n margin  weights
+///
+/// Error (pairs of links, RobotParameter::self_collision.pairs) [m]: max(0, margin − d), d the
+/// signed distance of the two links' nearest capsules: that of their axes less both radii, so that
+/// it goes on growing while the axes approach. Capsules and spheres of the URDF are exact; of other
+/// shapes d is never above the distance, and below it by at most kSelfOvershoot_m for each (more
+/// where a shape would need too many spheres; a mesh is its bounding box).
+///
+/// Pairs whose bounding spheres are further apart than the margin cost one comparison. Where the
+/// nearest capsules change, d has a kink; where axes meet, one of the possible gradients is taken.
+
+#include <locograph/core/typed_edge_pool.h>
+#include <locograph/plugins/configuration/edge_fit.h>
+
+namespace locograph {
+
+struct EdgeSelfCollision : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
+  static constexpr bool kOneSided = true;
+  static constexpr std::string_view kTag = "EDGE_SELF_COLLISION";
+  double margin_m = 0.01;
+  auto fields() { return std::tie(margin_m); }
+  void bind(const Parameters& parameters) {
+    require_fitting_robot(parameters, kTag, dimension(), [](const RobotParameter& p) {
+      return static_cast<long>(p.self_collision.pairs.size());
+    });
+  }
+
+  EdgeSelfCollision() = default;
+  EdgeSelfCollision(const RobotParameter& robot, double margin_m, double weight);
+
+  void error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const;
+  void jacobians(const ConfigurationState& q, JacobianRef<EdgeSelfCollision, 0> j) const;
+};
+LOCOGRAPH_REGISTER_EDGE(EdgeSelfCollision::kTag, EdgeSelfCollision)
+extern template class TypedEdgePool<EdgeSelfCollision>;
+
+}  // namespace locograph
