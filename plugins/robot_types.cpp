@@ -8,6 +8,10 @@
 #include <locograph/plugins/robot_types.h>
 #include <locograph/plugins/rolling/edge_rolling.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
+#include <locograph/plugins/static_balance/edge_balance.h>
+#include <locograph/plugins/static_balance/edge_contact_wrench.h>
+#include <locograph/plugins/static_balance/edge_torque_limits.h>
+#include <locograph/plugins/static_balance/edge_wrench_norm.h>
 #include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
@@ -21,10 +25,14 @@ void add_robot_types(TypeRegistry& types) {
   types.add_parameter<WheelsParameter>("PARAMS_WHEELS");
   types.add_parameter<WorldParameter>("PARAMS_WORLD");
   types.add_parameter<ScenarioParameter>("PARAMS_SCENARIO");
+  types.add_parameter<ContactParameter>("PARAMS_CONTACT");
   types.add_vertex<VertexConfiguration>();
+  types.add_vertex<VertexWrenches>();
   types.add_edge<EdgeAccelerationLimits>();
+  types.add_edge<EdgeBalance>();
   types.add_edge<EdgeCom>();
   types.add_edge<EdgeContact>();
+  types.add_edge<EdgeContactWrench>();
   types.add_edge<EdgeFramePose>();
   types.add_edge<EdgeJointLimits>();
   types.add_edge<EdgeObstacleDistance>();
@@ -32,9 +40,11 @@ void add_robot_types(TypeRegistry& types) {
   types.add_edge<EdgeRolling>();
   types.add_edge<EdgeSelfCollision>();
   types.add_edge<EdgeSweptObstacleDistance>();
+  types.add_edge<EdgeTorqueLimits>();
   types.add_edge<EdgeVelocityLimits>();
   types.add_edge<EdgeVelocityTracking>();
   types.add_edge<EdgeWheelContact>();
+  types.add_edge<EdgeWrenchNorm>();
 }
 
 }  // namespace locograph

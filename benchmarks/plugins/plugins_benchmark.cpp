@@ -11,6 +11,10 @@
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/plugins/rolling/edge_rolling.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
+#include <locograph/plugins/static_balance/edge_balance.h>
+#include <locograph/plugins/static_balance/edge_contact_wrench.h>
+#include <locograph/plugins/static_balance/edge_torque_limits.h>
+#include <locograph/plugins/static_balance/edge_wrench_norm.h>
 #include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
@@ -89,6 +93,34 @@ class Drive {
       graph_.add_edge(edge, ids_[i - 2], ids_[i - 1], ids_[i]);
     }
   }
+  /// Each configuration stands on its four feet: surfaces, the wheels braked.
+  void add_wrenches() {
+    std::vector<int> numbers;
+    for (int i = 0; i < 4; ++i) {
+      ContactDescription contact;
+      contact.link = wheels_->wheels[static_cast<std::size_t>(i)].link_name;
+      contact.half_x_m = contact.half_y_m = 0.02;
+      contact.mu = 0.5;
+      contact.max_force_N = 1000.0;
+      numbers.push_back(10 + i);
+      graph_.parameters().set(numbers.back(), std::make_shared<const ContactParameter>(
+                                                  robot_, kRobot, std::move(contact)));
+    }
+    for (int i = 0; i < kConfigurations; ++i) {
+      VertexWrenches wrenches(graph_.parameters(), numbers);
+      for (int c = 0; c < 4; ++c) wrenches.state.segment<3>(6 * c) << 20.0, 5.0, 270.0;
+      wrenches_.push_back(graph_.add_vertex(1000 + i, std::move(wrenches)));
+    }
+  }
+  const VertexWrenches& wrenches() const { return graph_.vertex(wrenches_[0]); }
+  template <class E>
+  void add_to_wrenches(const E& edge) {
+    for (const auto& id : wrenches_) graph_.add_edge(edge, id);
+  }
+  template <class E>
+  void add_with_wrenches(const E& edge) {
+    for (std::size_t i = 0; i < ids_.size(); ++i) graph_.add_edge(edge, ids_[i], wrenches_[i]);
+  }
   void compile() {
     problem_.compile(graph_);
     workspace_.allocate(problem_);
@@ -106,6 +138,7 @@ class Drive {
   std::shared_ptr<const WheelsParameter> wheels_;
   Graph graph_;
   std::vector<VertexId<VertexConfiguration>> ids_;
+  std::vector<VertexId<VertexWrenches>> wrenches_;
   Problem problem_;
   Workspace workspace_;
 };
@@ -265,6 +298,43 @@ void VelocityTracking(benchmark::State& run, bool linearise) {
 }
 BENCHMARK_CAPTURE(VelocityTracking, error, false);
 BENCHMARK_CAPTURE(VelocityTracking, linearise, true);
+
+void Balance(benchmark::State& run, bool linearise) {
+  Drive drive(true);
+  drive.add_wrenches();
+  drive.add_with_wrenches(EdgeBalance(1.0, 100.0));
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(Balance, error, false);
+BENCHMARK_CAPTURE(Balance, linearise, true);
+
+void TorqueLimits(benchmark::State& run, bool linearise, double fraction) {
+  Drive drive(true);
+  drive.add_wrenches();
+  drive.add_with_wrenches(EdgeTorqueLimits(drive.model(), fraction, 1.0));
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(TorqueLimits, error, false, 1.0);
+BENCHMARK_CAPTURE(TorqueLimits, linearise, true, 1.0);
+BENCHMARK_CAPTURE(TorqueLimits, linearise_all_violated, true, 1e-6);
+
+void ContactWrench(benchmark::State& run, bool linearise) {
+  Drive drive(true);
+  drive.add_wrenches();
+  drive.add_to_wrenches(EdgeContactWrench(*drive.wrenches().contacts, 1.0));
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(ContactWrench, error, false);
+BENCHMARK_CAPTURE(ContactWrench, linearise, true);
+
+void WrenchNorm(benchmark::State& run, bool linearise) {
+  Drive drive(true);
+  drive.add_wrenches();
+  drive.add_to_wrenches(EdgeWrenchNorm(drive.wrenches(), 1e-6));
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(WrenchNorm, error, false);
+BENCHMARK_CAPTURE(WrenchNorm, linearise, true);
 
 /// Kinematics and sphere centres of one configuration.
 void Derive(benchmark::State& run) {

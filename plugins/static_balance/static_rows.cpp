@@ -1,0 +1,214 @@
+#include <locograph/plugins/static_balance/static_rows.h>
+#include <locograph/robots/kinematic_tree.h>
+#include <locograph/robots/statics.h>
+
+#include <algorithm>
+
+namespace locograph {
+namespace {
+
+Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+bool revolute(const RobotState& state, int i) {
+  return state.robot().tree().bodies[static_cast<std::size_t>(i) + 1].revolute;
+}
+/// Of the active joint above joint i, -1 when there is none.
+int above(const RobotState& state, int i) {
+  return state.robot().tree().bodies[static_cast<std::size_t>(i) + 1].parent - 1;
+}
+
+/// How joint i moves a point behind it.
+Eigen::Vector3d point_column(const RobotState& state, int i, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d& axis = state.joint_axis(i);
+  if (!revolute(state, i)) return axis;
+  return axis.cross(point - state.joint_origin(i));
+}
+
+/// How it moves the mass moment of everything behind it [kg m].
+Eigen::Vector3d moment_column(const RobotState& state, int i) {
+  const Eigen::Vector4d& moment = state.subtree_moment(i + 1);
+  const Eigen::Vector3d& axis = state.joint_axis(i);
+  if (!revolute(state, i)) return moment[3] * axis;
+  return axis.cross(moment.head<3>() - moment[3] * state.joint_origin(i));
+}
+
+Eigen::Matrix3d base_from_world(const RobotState& state) {
+  return state.world_from_link(0).linear().transpose();
+}
+
+/// What turning the base does to a wrench fixed in the world, all along the base axes.
+void add_turning(const Eigen::Vector3d& arm, const Eigen::Vector3d& force,
+                 const Eigen::Vector3d& moment, BaseWrenchGradient gradient) {
+  const Eigen::Matrix3d turning = skew(force);
+  gradient.block<3, 3>(0, 3) += turning;
+  gradient.block<3, 3>(3, 3).noalias() += skew(arm) * turning;
+  gradient.block<3, 3>(3, 3) += skew(moment);
+}
+
+}  // namespace
+
+AppliedWrench::AppliedWrench(const RobotState& state, const ContactParameter& c,
+                             const double* components)
+    : contact(&c) {
+  const Eigen::Isometry3d& world_from_link = state.world_from_link(c.link);
+  point = world_from_link * c.given.point;
+  if (c.given.axes_in_world) {
+    axes = c.axes;
+  } else {
+    axes.noalias() = world_from_link.linear() * c.axes;
+  }
+  force.setZero();
+  moment.setZero();
+  for (const int component : c.components()) {
+    (component < 3 ? force : moment) += *components * axes.col(component % 3);
+    ++components;
+  }
+}
+
+void add_gravity_on_base(const RobotState& state, BaseWrench wrench) {
+  state.require_mass();
+  const Eigen::Isometry3d& world_from_base = state.world_from_link(0);
+  const Eigen::Vector4d& moment = state.subtree_moment(0);
+  const Eigen::Vector3d arm = moment.head<3>() - moment[3] * world_from_base.translation();
+  const Eigen::Vector3d gravity = standard_gravity();
+  wrench.head<3>().noalias() += moment[3] * (base_from_world(state) * gravity);
+  wrench.tail<3>().noalias() += base_from_world(state) * arm.cross(gravity);
+}
+
+void add_gravity_on_base_gradient(const RobotState& state, BaseWrenchGradient gradient) {
+  state.require_mass();
+  const Eigen::Matrix3d base = base_from_world(state);
+  const Eigen::Vector4d& moment = state.subtree_moment(0);
+  const Eigen::Vector3d gravity = standard_gravity();
+  const Eigen::Vector3d arm =
+      base * (moment.head<3>() - moment[3] * state.world_from_link(0).translation());
+  const Eigen::Matrix3d turning = skew(base * gravity);
+  gradient.block<3, 3>(0, 3) += moment[3] * turning;
+  gradient.block<3, 3>(3, 3).noalias() += skew(arm) * turning;
+  for (int i = 0; i < state.robot().active_joint_count(); ++i) {
+    gradient.block<3, 1>(3, 6 + i).noalias() += base * moment_column(state, i).cross(gravity);
+  }
+}
+
+void add_wrench_on_base(const RobotState& state, const AppliedWrench& applied, BaseWrench wrench) {
+  const Eigen::Vector3d arm = applied.point - state.world_from_link(0).translation();
+  const Eigen::Matrix3d base = base_from_world(state);
+  wrench.head<3>().noalias() += base * applied.force;
+  wrench.tail<3>().noalias() += base * (arm.cross(applied.force) + applied.moment);
+}
+
+void add_wrench_on_base_gradient(const RobotState& state, const AppliedWrench& applied,
+                                 BaseWrenchGradient gradient) {
+  const bool turns = !applied.contact->given.axes_in_world;
+  const Eigen::Matrix3d base = base_from_world(state);
+  const Eigen::Vector3d arm = applied.point - state.world_from_link(0).translation();
+  if (!turns) add_turning(base * arm, base * applied.force, base * applied.moment, gradient);
+  for (const int k : state.robot().support(applied.contact->link)) {
+    Eigen::Vector3d moment = point_column(state, k, applied.point).cross(applied.force);
+    if (turns && revolute(state, k)) {
+      const Eigen::Vector3d force = state.joint_axis(k).cross(applied.force);
+      moment += arm.cross(force) + state.joint_axis(k).cross(applied.moment);
+      gradient.block<3, 1>(0, 6 + k).noalias() += base * force;
+    }
+    gradient.block<3, 1>(3, 6 + k).noalias() += base * moment;
+  }
+}
+
+void add_wrench_on_base_by_components(const RobotState& state, const AppliedWrench& applied,
+                                      int first, BaseWrenchGradient gradient) {
+  const Eigen::Matrix3d directions = base_from_world(state) * applied.axes;
+  const Eigen::Vector3d arm =
+      base_from_world(state) * (applied.point - state.world_from_link(0).translation());
+  for (const int component : applied.contact->components()) {
+    const Eigen::Vector3d direction = directions.col(component % 3);
+    if (component < 3) {
+      gradient.block<3, 1>(0, first) += direction;
+      gradient.block<3, 1>(3, first) += arm.cross(direction);
+    } else {
+      gradient.block<3, 1>(3, first) += direction;
+    }
+    ++first;
+  }
+}
+
+double gravity_torque(const RobotState& state, int i) {
+  return -standard_gravity().dot(moment_column(state, i));
+}
+
+void add_gravity_gradient(const RobotState& state, int i, double scale, double* row) {
+  const Robot& robot = state.robot();
+  const Eigen::Vector3d gravity = -scale * standard_gravity();
+  const Eigen::Vector3d own = moment_column(state, i).cross(gravity);
+  const int base = robot.base_tangent_size();
+  if (base > 0) {
+    Eigen::Map<Eigen::Vector3d>(row + 3).noalias() += base_from_world(state) * own;
+  }
+  double* joints = row + base;
+  for (int k = i; k >= 0; k = above(state, k)) {
+    if (revolute(state, k)) joints[k] += state.joint_axis(k).dot(own);
+  }
+  if (!revolute(state, i)) return;
+  // Joints are numbered depth first: those behind joint i follow it without a gap.
+  for (int k = i + 1; k < robot.active_joint_count() && above(state, k) >= i; ++k) {
+    joints[k] += state.joint_axis(i).dot(moment_column(state, k).cross(gravity));
+  }
+}
+
+double wrench_torque(const RobotState& state, const AppliedWrench& applied, int i) {
+  const double torque = point_column(state, i, applied.point).dot(applied.force);
+  return revolute(state, i) ? torque + state.joint_axis(i).dot(applied.moment) : torque;
+}
+
+void add_wrench_gradient(const RobotState& state, const AppliedWrench& applied, int i, double scale,
+                         double* row) {
+  const Robot& robot = state.robot();
+  const bool turns = !applied.contact->given.axes_in_world;
+  const int base = robot.base_tangent_size();
+  double* joints = row + base;
+  const Eigen::Vector3d axis = scale * state.joint_axis(i);
+  if (!turns) {
+    Eigen::Vector3d back = scale * point_column(state, i, applied.point).cross(applied.force);
+    if (revolute(state, i)) back += axis.cross(applied.moment);
+    if (base > 0) Eigen::Map<Eigen::Vector3d>(row + 3).noalias() += base_from_world(state) * back;
+    for (int k = i; k >= 0; k = above(state, k)) {
+      if (revolute(state, k)) joints[k] += state.joint_axis(k).dot(back);
+    }
+  }
+  const Eigen::Vector3d arm = applied.point - state.joint_origin(i);
+  for (const int k : robot.support(applied.contact->link)) {
+    if (k <= i) continue;
+    const bool turned = turns && revolute(state, k);
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    if (turned) force = state.joint_axis(k).cross(applied.force);
+    if (!revolute(state, i)) {
+      joints[k] += axis.dot(force);
+      continue;
+    }
+    Eigen::Vector3d moment =
+        point_column(state, k, applied.point).cross(applied.force) + arm.cross(force);
+    if (turned) moment += state.joint_axis(k).cross(applied.moment);
+    joints[k] += axis.dot(moment);
+  }
+}
+
+void add_wrench_gradient_by_components(const RobotState& state, const AppliedWrench& applied, int i,
+                                       double scale, double* row) {
+  const Eigen::Vector3d by_force = scale * point_column(state, i, applied.point);
+  Eigen::Vector3d by_moment = Eigen::Vector3d::Zero();
+  if (revolute(state, i)) by_moment = scale * state.joint_axis(i);
+  for (const int component : applied.contact->components()) {
+    const Eigen::Vector3d& direction = component < 3 ? by_force : by_moment;
+    *row++ += applied.axes.col(component % 3).dot(direction);
+  }
+}
+
+bool supports(const Robot& robot, int i, int link) {
+  const std::span<const int> joints = robot.support(link);
+  return std::find(joints.begin(), joints.end(), i) != joints.end();
+}
+
+}  // namespace locograph

@@ -1,0 +1,65 @@
+#pragma once
+/// What gravity and contact wrenches do to the base and to single joints, and the derivatives.
+///
+///     const AppliedWrench wrench(q.kinematics, contact, components);
+///     add_wrench_on_base(q.kinematics, wrench, e);                 // 6 rows, base axes
+///     add_wrench_gradient(q.kinematics, wrench, i, -1.0, row);     // one joint's row
+///
+/// The quantities of robots/statics.h in rows, for edges that want the base's six or a few joints'
+/// and have no n × n memory; what is added here is that the axes of a wrench may turn with its
+/// link.
+///
+/// Derivation. A joint k with axis a_k moves the contact point by d_k = a_k × (p − o_k), or a_k if
+/// it slides, and turns axes fixed in the link: df = a_k × f, dm = a_k × m. The torque of joint i
+/// is t_i = a_i · ((p − o_i) × f + m), or a_i · f. A joint below i changes it by
+/// a_i · (d_k × f + (p − o_i) × df + dm), or a_i · df. The joint itself, one above it and the base
+/// carry the whole chain along: seen from the chain only a wrench fixed in the world turns, back by
+/// a_k, and t_i changes by a_k · (j_i × f + a_i × m), j_i = a_i × (p − o_i), or j_i = a_i without
+/// the moment if i slides.
+
+#include <locograph/plugins/configuration/vertex_configuration.h>
+#include <locograph/plugins/static_balance/contact_parameter.h>
+
+#include <Eigen/Core>
+
+namespace locograph {
+
+/// Force and moment on the base, along the base axes, about its origin.
+using BaseWrench = Eigen::Ref<Eigen::Matrix<double, 6, 1>>;
+/// Their derivatives: a column for each coordinate of the tangent or of the wrench.
+using BaseWrenchGradient = Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>>;
+
+/// A contact's wrench where the robot now stands; world frame and axes.
+struct AppliedWrench {
+  AppliedWrench(const RobotState& state, const ContactParameter& contact, const double* components);
+
+  const ContactParameter* contact;
+  Eigen::Matrix3d axes;
+  Eigen::Vector3d point, force, moment;
+};
+
+/// The six rows of the base. Only for robots with a floating base.
+void add_gravity_on_base(const RobotState& state, BaseWrench wrench);
+void add_gravity_on_base_gradient(const RobotState& state, BaseWrenchGradient gradient);
+void add_wrench_on_base(const RobotState& state, const AppliedWrench& applied, BaseWrench wrench);
+void add_wrench_on_base_gradient(const RobotState& state, const AppliedWrench& applied,
+                                 BaseWrenchGradient gradient);
+/// By the components of the wrench: columns first … first + contact.components().size() − 1.
+void add_wrench_on_base_by_components(const RobotState& state, const AppliedWrench& applied,
+                                      int first, BaseWrenchGradient gradient);
+
+/// The torque [N m] or force [N] of active joint i that gravity asks for, entry i of g(q), and its
+/// derivative by the tangent: row += scale · gradient.
+double gravity_torque(const RobotState& state, int i);
+void add_gravity_gradient(const RobotState& state, int i, double scale, double* row);
+/// Entry i of Jᵀw; i must be in the support of the contact's link.
+double wrench_torque(const RobotState& state, const AppliedWrench& applied, int i);
+void add_wrench_gradient(const RobotState& state, const AppliedWrench& applied, int i, double scale,
+                         double* row);
+void add_wrench_gradient_by_components(const RobotState& state, const AppliedWrench& applied, int i,
+                                       double scale, double* row);
+
+/// Whether active joint i moves a link.
+bool supports(const Robot& robot, int i, int link);
+
+}  // namespace locograph

@@ -1,0 +1,300 @@
+// Static balance with contact wrenches: what statics.h says, and the four tests of each vertex and
+// edge.
+#include <locograph/robots/statics.h>
+
+#include <cstring>
+
+#include "common/allocation_counter.h"
+#include "plugins/static_balance_test_support.h"
+
+namespace locograph::test::balance {
+namespace {
+
+constexpr int kStates = 110;
+constexpr double kTolerance = 1e-6;
+RobotCase balance_case(const std::string& name) {
+  return name == "ComanPlus" ? coman_plus() : robot_case(name);
+}
+
+/// A contact of each kind, with axes in the link and in the world, far out on different limbs.
+std::vector<ContactDescription> some_contacts(const RobotCase& robot, Random& random) {
+  const std::vector<std::string> links =
+      robot.name == "ComanPlus"
+          ? std::vector<std::string>{"l_sole", "TCP_R", "l_ball_tip_d", "r_sole", "TCP_L"}
+      : robot.wheels
+          ? std::vector<std::string>{"wheel_1", "wheel_2", "ankle2_3", "wheel_4", "wheel_3"}
+          : std::vector<std::string>{"FL_foot", "FR_foot", "RL_calf", "RR_foot", "base"};
+  std::vector<ContactDescription> contacts(5);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    ContactDescription& contact = contacts[i];
+    contact.link = links[i];
+    contact.point = random.vector(3, 0.1);
+    contact.normal = random.vector(3, 2.0);
+    contact.forward = random.vector(3, 2.0);
+    contact.axes_in_world = i == 1 || i == 3;
+    contact.mu = 0.2 + 0.1 * static_cast<double>(i);
+    contact.max_force_N = 150.0;
+    contact.half_x_m = 0.08;
+    contact.half_y_m = 0.035;
+  }
+  contacts[1].kind = WrenchKind::kPoint;
+  contacts[2].kind = WrenchKind::kRung;
+  contacts[2].max_moment_Nm = 20.0;
+  contacts[3].cone = FrictionCone::kInner;
+  contacts[3].facets = 8;
+  contacts[4].kind = WrenchKind::kPoint;
+  contacts[4].cone = FrictionCone::kOuter;
+  contacts[4].facets = 4;
+  return contacts;
+}
+
+/// Random configurations with random wrenches: ids 2i and 2i + 1.
+struct Standing {
+  explicit Standing(const RobotCase& robot_, unsigned seed, int count) : robot(robot_) {
+    Random random(seed);
+    graph = graph_of(robot);
+    const std::vector<int> numbers = add_contacts(graph, robot, some_contacts(robot, random));
+    for (int i = 0; i < count; ++i) {
+      // At both limits of every joint, or anywhere between.
+      Eigen::VectorXd configuration = random.configuration(robot.model(), 2.0, 0.0);
+      for (int j = 0; i % 4 == 0 && j < robot.model().active_joint_count(); ++j) {
+        const Joint& joint = robot.model().active_joint(j);
+        if (joint.type == JointType::kContinuous) continue;
+        configuration[robot.base() + j] = random.sign() < 0.0 ? joint.lower : joint.upper;
+      }
+      q.push_back(add_configuration(graph, robot, 2 * i, 0.0, configuration));
+      Eigen::VectorXd components = random.vector(23, 30.0);
+      for (const int force : {0, 1, 2, 6, 7, 8, 9, 10, 11, 14, 15, 16, 20, 21, 22}) {
+        components[force] *= 10.0;
+      }
+      w.push_back(graph.add_vertex(2 * i + 1, wrenches_at(graph, numbers, components)));
+    }
+  }
+  const ContactList& contacts() const { return *graph.vertex(w[0]).contacts; }
+
+  RobotCase robot;
+  Graph graph;
+  std::vector<VertexId<VertexConfiguration>> q;
+  std::vector<VertexId<VertexWrenches>> w;
+};
+
+/// What statics.h makes of the same wrenches: g(q) − Σ Jᵀw, all entries of the tangent.
+Eigen::VectorXd torques_by_statics(const Standing& standing, std::size_t i) {
+  const Robot& robot = standing.robot.model();
+  RobotState state(robot);
+  state.update(standing.graph.vertex(standing.q[i]).state.data());
+  std::vector<PointWrench> wrenches;
+  const double* component = standing.graph.vertex(standing.w[i]).state.data();
+  for (const auto& contact : standing.contacts()) {
+    Eigen::Matrix3d axes = contact->axes;
+    if (!contact->given.axes_in_world) axes = state.world_from_link(contact->link).linear() * axes;
+    Eigen::Matrix<double, 6, 1> full = Eigen::Matrix<double, 6, 1>::Zero();
+    for (const int c : contact->components()) full[c] = *component++;
+    wrenches.push_back(
+        {contact->link, contact->given.point, axes * full.head<3>(), axes * full.tail<3>()});
+  }
+  Eigen::VectorXd torques(robot.tangent_size());
+  static_torques(state, standard_gravity(), wrenches, torques);
+  return torques;
+}
+
+struct Compared {
+  int nonzero = 0, zero = 0;
+};
+
+template <class Smooth>
+void compare(Evaluated& evaluated, int k, int slot, Smooth smooth, Compared& compared) {
+  const Eigen::MatrixXd analytic = evaluated.jacobian(k, slot, false);
+  const Eigen::MatrixXd numeric = evaluated.jacobian(k, slot, true);
+  ASSERT_TRUE(analytic.allFinite());
+  for (int r = 0; r < analytic.rows(); ++r) {
+    if (!smooth(r)) continue;
+    const double scale = std::max(1.0, numeric.row(r).cwiseAbs().maxCoeff());
+    ASSERT_LE((analytic.row(r) - numeric.row(r)).cwiseAbs().maxCoeff(), kTolerance * scale)
+        << "edge " << k << ", slot " << slot << ", row " << r << "\nanalytic " << analytic.row(r)
+        << "\nnumeric  " << numeric.row(r);
+    ++(analytic.row(r).isZero(0.0) ? compared.zero : compared.nonzero);
+  }
+}
+
+constexpr auto kEverywhere = [](int) { return true; };
+
+class StaticBalance : public testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    if (GetParam() != "ComanPlus" && !available(GetParam())) {
+      GTEST_SKIP() << go2_urdf() << " is not on this machine";
+    }
+    robot = balance_case(GetParam());
+  }
+  RobotCase robot;
+};
+
+/// Robots that can lose their balance.
+class FloatingBalance : public StaticBalance {};
+
+TEST_P(FloatingBalance, IsWhatStaticsSayOfTheBase) {
+  Standing standing(robot, 1, 20);
+  for (std::size_t i = 0; i < standing.q.size(); ++i) {
+    standing.graph.add_edge(EdgeBalance(1.0, 1.0), standing.q[i], standing.w[i]);
+  }
+  Evaluated evaluated(standing.graph);
+  for (int k = 0; k < 20; ++k) {
+    const Eigen::VectorXd expected = -torques_by_statics(standing, std::size_t(k)).head<6>();
+    EXPECT_LT((evaluated.error(k) - expected).norm(), 1e-12 * expected.norm());
+  }
+}
+
+TEST_P(FloatingBalance, HasTheJacobianOfNumericDifferences) {
+  Standing standing(robot, 2, kStates);
+  for (std::size_t i = 0; i < standing.q.size(); ++i) {
+    standing.graph.add_edge(EdgeBalance(1.0, 1.0), standing.q[i], standing.w[i]);
+  }
+  Evaluated evaluated(standing.graph);
+  Compared compared;
+  for (int k = 0; k < kStates; ++k) {
+    for (const int slot : {0, 1}) compare(evaluated, k, slot, kEverywhere, compared);
+  }
+  EXPECT_EQ(compared.nonzero, 2 * 6 * kStates);
+}
+
+TEST(FixedBase, HasNoBalance) {
+  Standing standing(robot_case("CentauroFixedBase"), 3, 1);
+  standing.graph.add_edge(EdgeBalance(1.0, 1.0), standing.q[0], standing.w[0]);
+  Evaluated evaluated(standing.graph);
+  EXPECT_THROW(evaluated.error(0), Error);
+}
+
+TEST_P(StaticBalance, HasTorqueLimitsThatAgreeWithStaticsAndWithNumericDifferences) {
+  const Robot& model = robot.model();
+  const int n = model.active_joint_count();
+  for (const double fraction : {1.0, 1e-6}) {
+    Standing standing(robot, 4, kStates);
+    for (std::size_t i = 0; i < standing.q.size(); ++i) {
+      standing.graph.add_edge(EdgeTorqueLimits(model, fraction, 1.0), standing.q[i], standing.w[i]);
+    }
+    Evaluated evaluated(standing.graph);
+    Compared compared;
+    for (int k = 0; k < kStates; ++k) {
+      const Eigen::VectorXd torques = torques_by_statics(standing, std::size_t(k)).tail(n);
+      const Eigen::VectorXd e = evaluated.error(k);
+      for (int r = 0; r < n; ++r) {
+        const double beyond = std::abs(torques[r]) - fraction * model.active_joint(r).max_effort;
+        EXPECT_NEAR(e[r], std::max(0.0, beyond), 1e-10);
+      }
+      const auto smooth = [&](int r) {
+        const double limit = fraction * model.active_joint(r).max_effort;
+        return std::isinf(limit) || std::abs(std::abs(torques[r]) - limit) > 0.1;
+      };
+      for (const int slot : {0, 1}) compare(evaluated, k, slot, smooth, compared);
+    }
+    EXPECT_GT(compared.nonzero, fraction < 1.0 ? kStates * n / 2 : kStates);
+    if (fraction == 1.0) {
+      EXPECT_GT(compared.zero, kStates);
+    }
+  }
+}
+
+TEST_P(StaticBalance, HasContactLimitsWithTheJacobianOfNumericDifferences) {
+  Standing standing(robot, 5, kStates);
+  for (std::size_t i = 0; i < standing.w.size(); ++i) {
+    standing.graph.add_edge(EdgeContactWrench(standing.contacts(), 1.0), standing.w[i]);
+    standing.graph.add_edge(EdgeWrenchNorm(standing.graph.vertex(standing.w[i]), 1.0),
+                            standing.w[i]);
+  }
+  Evaluated evaluated(standing.graph);
+  Compared limits, norm;
+  for (int k = 0; k < kStates; ++k) {
+    compare(evaluated, k, 0, kEverywhere, limits);
+    EXPECT_TRUE(evaluated.jacobian(k, 0, false, 1).isIdentity(0.0));
+    EXPECT_EQ(evaluated.error(k, 1), standing.graph.vertex(standing.w[std::size_t(k)]).state);
+  }
+  EXPECT_GT(limits.nonzero, 1000);
+  EXPECT_GT(limits.zero, 1000);
+}
+
+TEST_P(StaticBalance, IsInABatchWhatItIsEdgeByEdge) {
+  Standing standing(robot, 6, 12);
+  Random random(7);
+  Graph& graph = standing.graph;
+  graph.set_fixed(standing.q[3], true);
+  graph.set_fixed(standing.w[5], true);
+  const auto dress = [&](auto edge) {
+    edge.weights = random.weights(edge.weights.size());
+    return edge;
+  };
+  for (std::size_t i = 0; i < standing.w.size(); ++i) {
+    const auto q = standing.q[i];
+    const auto w = standing.w[i];
+    if (robot.model().floating_base()) graph.add_edge(dress(EdgeBalance(1.0, 1.0)), q, w);
+    graph.add_edge(dress(EdgeTorqueLimits(robot.model(), 0.01, 1.0)), q, w);
+    graph.add_edge(dress(EdgeContactWrench(standing.contacts(), 1.0)), w);
+    graph.add_edge(dress(EdgeWrenchNorm(graph.vertex(w), 1.0)), w);
+  }
+  Problem problem;
+  problem.compile(graph);
+  Workspace workspace;
+  workspace.allocate(problem);
+  workspace.load_state();
+  const long before = allocation_count();
+  const Cost evaluated = workspace.evaluate(workspace.state());
+  const Cost linearised = workspace.linearise();
+  const long allocations = allocation_count() - before;
+  if (allocations_are_counted()) {
+    EXPECT_EQ(allocations, 0);
+  }
+  const DenseSystem reference = one_by_one(problem, workspace.state());
+  EXPECT_LT(relative_difference(reference.hessian, dense_hessian(workspace)), 1e-12);
+  EXPECT_LT(relative_difference(reference.gradient, dense_gradient(workspace)), 1e-12);
+  EXPECT_EQ(linearised.chi2, evaluated.chi2);
+  EXPECT_NEAR(linearised.chi2, reference.cost.chi2, 1e-12 * reference.cost.chi2);
+}
+
+TEST_P(StaticBalance, KeepsEveryBitInAFile) {
+  Standing standing(robot, 8, 4);
+  Random random(9);
+  Graph& graph = standing.graph;
+  for (std::size_t i = 0; i < standing.w.size(); ++i) {
+    if (robot.model().floating_base()) {
+      graph.add_edge(EdgeBalance(1.0 / 3.0, 2.0 / 3.0), standing.q[i], standing.w[i]);
+    }
+    graph.add_edge(EdgeTorqueLimits(robot.model(), 0.7 / 3.0, 0.1), standing.q[i], standing.w[i]);
+    EdgeContactWrench limits(standing.contacts(), 1.0);
+    limits.weights = random.weights(limits.weights.size());
+    graph.add_edge(limits, standing.w[i]);
+    graph.add_edge(EdgeWrenchNorm(graph.vertex(standing.w[i]), 1e-17), standing.w[i]);
+  }
+  const TemporaryFolder folder;
+  write_graph(graph, folder.path() / "balance.g2o");
+  Graph again = read_graph(folder.path() / "balance.g2o", robot_types());
+  EXPECT_EQ(write_graph_text(graph, folder.path()), write_graph_text(again, folder.path()));
+  ASSERT_EQ(again.vertices_of<VertexWrenches>().size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const VertexWrenches &one = graph.vertices_of<VertexWrenches>()[i],
+                         &other = again.vertices_of<VertexWrenches>()[i];
+    EXPECT_EQ(one.contact_numbers, other.contact_numbers);
+    ASSERT_EQ(one.state.size(), other.state.size());
+    EXPECT_EQ(std::memcmp(one.state.data(), other.state.data(), 8 * std::size_t(one.state.size())),
+              0);
+    EXPECT_EQ(graph.edges_of<EdgeContactWrench>()[i].weights,
+              again.edges_of<EdgeContactWrench>()[i].weights);
+    EXPECT_EQ(graph.edges_of<EdgeTorqueLimits>()[i].fraction,
+              again.edges_of<EdgeTorqueLimits>()[i].fraction);
+  }
+  Evaluated a(graph), b(again);
+  for (std::size_t p = 0; p < graph.edge_pools().size(); ++p) {
+    for (int k = 0; k < 4; ++k) EXPECT_EQ(a.error(k, int(p)), b.error(k, int(p)));
+  }
+}
+
+const auto name_of = [](const testing::TestParamInfo<std::string>& info) { return info.param; };
+INSTANTIATE_TEST_SUITE_P(Plugins, StaticBalance,
+                         testing::Values("CentauroAllJoints", "CentauroFixedBase", "ComanPlus",
+                                         "Go2FloatingBase"),
+                         name_of);
+INSTANTIATE_TEST_SUITE_P(Plugins, FloatingBalance,
+                         testing::Values("CentauroAllJoints", "ComanPlus", "Go2FloatingBase"),
+                         name_of);
+
+}  // namespace
+}  // namespace locograph::test::balance
