@@ -287,14 +287,14 @@ TEST_P(StaticBalance, KeepsEveryBitInAFile) {
   }
 }
 
-const auto name_of = [](const testing::TestParamInfo<std::string>& info) { return info.param; };
+const auto case_name = [](const testing::TestParamInfo<std::string>& info) { return info.param; };
 INSTANTIATE_TEST_SUITE_P(Plugins, StaticBalance,
                          testing::Values("CentauroAllJoints", "CentauroFixedBase", "ComanPlus",
                                          "Go2FloatingBase"),
-                         name_of);
+                         case_name);
 INSTANTIATE_TEST_SUITE_P(Plugins, FloatingBalance,
                          testing::Values("CentauroAllJoints", "ComanPlus", "Go2FloatingBase"),
-                         name_of);
+                         case_name);
 
 }  // namespace
 }  // namespace locograph::test::balance
