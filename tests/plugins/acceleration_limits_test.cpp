@@ -165,7 +165,7 @@ TEST_P(AccelerationLimits, AreRefusedWhereTimeDoesNotIncrease) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Plugins, AccelerationLimits, testing::ValuesIn(legged_cases()),
+INSTANTIATE_TEST_SUITE_P(Plugins, AccelerationLimits, testing::ValuesIn(all_cases_and_coman_plus()),
                          [](const testing::TestParamInfo<std::string>& info) {
                            return info.param;
                          });

@@ -8,22 +8,6 @@
 namespace locograph::test {
 namespace {
 
-RobotCase collision_case(const std::string& name) {
-  if (name != "ComanPlus") return robot_case(name);
-  const std::filesystem::path folder =
-      std::filesystem::path(LOCOGRAPH_SOURCE_DIR) / "robots/models/coman_plus";
-  return {name,
-          std::make_shared<const RobotParameter>(folder / "coman_plus.urdf",
-                                                 folder / "coman_plus.srdf", RobotOptions()),
-          nullptr};
-}
-
-std::vector<std::string> collision_cases() {
-  std::vector<std::string> names = all_cases();
-  names.push_back("ComanPlus");
-  return names;
-}
-
 ConfigurationState state_of(const RobotCase& robot, const Eigen::VectorXd& q, double time_s = 0.0) {
   ConfigurationState state(robot.robot);
   state.time_s = time_s;
@@ -34,10 +18,8 @@ ConfigurationState state_of(const RobotCase& robot, const Eigen::VectorXd& q, do
 class CollisionEdges : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
-    if (GetParam() != "ComanPlus" && !available(GetParam())) {
-      GTEST_SKIP() << go2_urdf() << " is not on this machine";
-    }
-    robot = collision_case(GetParam());
+    if (!available(GetParam())) GTEST_SKIP() << go2_urdf() << " is not on this machine";
+    robot = robot_case(GetParam());
   }
   RobotCase robot;
 };
@@ -207,7 +189,7 @@ TEST_P(CollisionEdges, SweptDistanceToAMapHasTheJacobianOfNumericDifferences) {
   compare_sweeps(robot, now, 55);
 }
 
-INSTANTIATE_TEST_SUITE_P(Plugins, CollisionEdges, testing::ValuesIn(collision_cases()),
+INSTANTIATE_TEST_SUITE_P(Plugins, CollisionEdges, testing::ValuesIn(all_cases_and_coman_plus()),
                          [](const testing::TestParamInfo<std::string>& info) {
                            return info.param;
                          });

@@ -103,7 +103,8 @@ TEST_P(ContactsAndTasksInAFile, KeepEveryBit) {
   EXPECT_GT(chi2(graph), 0.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Plugins, ContactsAndTasksInAFile, testing::ValuesIn(legged_cases()),
+INSTANTIATE_TEST_SUITE_P(Plugins, ContactsAndTasksInAFile,
+                         testing::ValuesIn(all_cases_and_coman_plus()),
                          [](const testing::TestParamInfo<std::string>& info) {
                            return info.param;
                          });

@@ -306,7 +306,7 @@ INSTANTIATE_TEST_SUITE_P(Plugins, ContactsAndTasksTogether,
                          [](const testing::TestParamInfo<std::string>& info) {
                            return info.param;
                          });
-INSTANTIATE_TEST_SUITE_P(Plugins, ContactsAndTasks, testing::ValuesIn(legged_cases()),
+INSTANTIATE_TEST_SUITE_P(Plugins, ContactsAndTasks, testing::ValuesIn(all_cases_and_coman_plus()),
                          [](const testing::TestParamInfo<std::string>& info) {
                            return info.param;
                          });

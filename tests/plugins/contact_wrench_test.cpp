@@ -10,7 +10,7 @@ namespace {
 
 /// Error of the limits on one contact's wrench.
 Eigen::VectorXd limits_of(const ContactDescription& contact, const Eigen::VectorXd& components) {
-  const RobotCase robot = coman_plus();
+  const RobotCase robot = robot_case("ComanPlus");
   Graph graph = graph_of(robot);
   const auto w =
       graph.add_vertex(0, wrenches_at(graph, add_contacts(graph, robot, {contact}), components));
@@ -102,7 +102,7 @@ TEST(ContactWrenchCone, HasACircleOrAPyramidInsideOrAroundIt) {
 
 TEST(ContactLimits, HaveAGradientJustBeyondThem) {
   constexpr double kBeyond = 1e-9;
-  const RobotCase robot = coman_plus();
+  const RobotCase robot = robot_case("ComanPlus");
   Graph graph = graph_of(robot);
   ContactDescription rung = sole();
   rung.kind = WrenchKind::kRung;

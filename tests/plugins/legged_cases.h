@@ -1,7 +1,7 @@
 #pragma once
 /// Robots with limbs, and frames at the ends of two of them, for the tests of contacts and tasks.
 ///
-///     const RobotCase robot = legged_case("ComanPlus");
+///     const RobotCase robot = robot_case("ComanPlus");
 ///     Graph graph = graph_of(robot);
 ///     add_frames(graph, robot, random);               // PARAMS_FRAME kFrame and kFrame + 1
 ///     Eigen::Isometry3d pose = frame_pose(graph, kFrame, robot, q);
@@ -21,32 +21,11 @@ inline constexpr ContactKind kContactKinds[] = {ContactKind::kSurface, ContactKi
                                                 ContactKind::kPoint, ContactKind::kRung,
                                                 ContactKind::kSlidingRung};
 
-inline std::filesystem::path coman_plus_urdf() {
-  return std::filesystem::path(LOCOGRAPH_SOURCE_DIR) / "robots/models/coman_plus/coman_plus.urdf";
-}
-
-inline RobotCase legged_case(const std::string& name) {
-  if (name != "ComanPlus") return robot_case(name);
-  std::filesystem::path srdf = coman_plus_urdf();
-  srdf.replace_extension(".srdf");
-  return {name, std::make_shared<const RobotParameter>(coman_plus_urdf(), srdf, RobotOptions()),
-          nullptr};
-}
-
-inline std::vector<std::string> legged_cases() {
-  std::vector<std::string> names = all_cases();
-  names.push_back("ComanPlus");
-  return names;
-}
-
 class LeggedTest : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
-    const bool coman = GetParam() == "ComanPlus";
-    if (coman ? !std::filesystem::exists(coman_plus_urdf()) : !available(GetParam())) {
-      GTEST_SKIP() << (coman ? coman_plus_urdf() : go2_urdf()) << " is not on this machine";
-    }
-    robot = legged_case(GetParam());
+    if (!available(GetParam())) GTEST_SKIP() << go2_urdf() << " is not on this machine";
+    robot = robot_case(GetParam());
   }
   RobotCase robot;
 };

@@ -23,6 +23,7 @@
 #include <locograph/plugins/wheel_contact/edge_wheel_contact.h>
 #include <locograph/world/octree.h>
 
+#include <map>
 #include <random>
 
 #include "common/temporary_folder.h"
@@ -83,13 +84,30 @@ inline RobotCase go2(const std::string& name, bool floating_base) {
   return {name, std::make_shared<const RobotParameter>(go2_urdf(), srdf, options), nullptr};
 }
 
-inline RobotCase robot_case(const std::string& name) {
+inline RobotCase coman_plus(const std::string& name) {
+  const std::filesystem::path folder =
+      std::filesystem::path(LOCOGRAPH_SOURCE_DIR) / "robots/models/coman_plus";
+  return {name,
+          std::make_shared<const RobotParameter>(folder / "coman_plus.urdf",
+                                                 folder / "coman_plus.srdf", RobotOptions()),
+          nullptr};
+}
+
+inline RobotCase load_robot_case(const std::string& name) {
   if (name == "CentauroLowerBody") return centauro_lower_body();
   if (name == "CentauroAllJoints") return centauro(name, {});
   if (name == "CentauroFixedBase") return centauro(name, {.floating_base = false});
+  if (name == "ComanPlus") return coman_plus(name);
   if (name == "Go2FloatingBase") return go2(name, true);
   if (name == "Go2FixedBase") return go2(name, false);
   throw std::runtime_error("no robot case " + name);
+}
+/// Loaded once: covering a robot with spheres takes longer than most tests.
+inline const RobotCase& robot_case(const std::string& name) {
+  static std::map<std::string, RobotCase> loaded;
+  const auto found = loaded.find(name);
+  return found != loaded.end() ? found->second
+                               : loaded.emplace(name, load_robot_case(name)).first->second;
 }
 inline const std::vector<std::string>& wheeled_cases() {
   static const std::vector<std::string> names = {"CentauroLowerBody", "CentauroAllJoints",
@@ -102,8 +120,14 @@ inline const std::vector<std::string>& all_cases() {
                                                  "Go2FixedBase"};
   return names;
 }
+/// These and COMAN+, which has limbs all round and no wheels.
+inline std::vector<std::string> all_cases_and_coman_plus() {
+  std::vector<std::string> names = all_cases();
+  names.push_back("ComanPlus");
+  return names;
+}
 inline bool available(const std::string& name) {
-  return name.starts_with("Centauro") || std::filesystem::exists(go2_urdf());
+  return !name.starts_with("Go2") || std::filesystem::exists(go2_urdf());
 }
 
 /// CENTAURO standing on its wheels at the origin, heading along x.

@@ -9,7 +9,7 @@ namespace locograph::test::balance {
 namespace {
 
 TEST(Wrenches, AreEliminatedWithoutChangingTheSolution) {
-  const RobotCase robot = coman_plus();
+  const RobotCase robot = robot_case("ComanPlus");
   const ComanPosture posture = coman_postures()[1];
   const auto solve = [&](const char* solver, bool eliminate, Eigen::MatrixXd& result) {
     Graph graph = graph_of(robot);
@@ -91,7 +91,7 @@ ContactDescription published(const ComanContact& at, double hand_mu, const Robot
 class PublishedPosture : public testing::TestWithParam<std::string> {};
 
 TEST_P(PublishedPosture, HasThePublishedWrenchesOfLeastNorm) {
-  const RobotCase robot = coman_plus();
+  const RobotCase robot = robot_case("ComanPlus");
   const std::vector<ComanPosture> all = coman_postures();
   const ComanPosture& posture = *std::find_if(
       all.begin(), all.end(), [](const ComanPosture& p) { return p.name == GetParam(); });

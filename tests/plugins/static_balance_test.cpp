@@ -12,9 +12,6 @@ namespace {
 
 constexpr int kStates = 110;
 constexpr double kTolerance = 1e-6;
-RobotCase balance_case(const std::string& name) {
-  return name == "ComanPlus" ? coman_plus() : robot_case(name);
-}
 
 /// A contact of each kind, with axes in the link and in the world, far out on different limbs.
 std::vector<ContactDescription> some_contacts(const RobotCase& robot, Random& random) {
@@ -122,10 +119,8 @@ constexpr auto kEverywhere = [](int) { return true; };
 class StaticBalance : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
-    if (GetParam() != "ComanPlus" && !available(GetParam())) {
-      GTEST_SKIP() << go2_urdf() << " is not on this machine";
-    }
-    robot = balance_case(GetParam());
+    if (!available(GetParam())) GTEST_SKIP() << go2_urdf() << " is not on this machine";
+    robot = robot_case(GetParam());
   }
   RobotCase robot;
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of static balance share: COMAN+ and vertices with wrenches at given contacts.
+/// What the tests of static balance share: vertices with wrenches at given contacts.
 ///
 ///     Graph graph = graph_of(robot);
 ///     const std::vector<int> numbers = add_contacts(graph, robot, {sole()});
@@ -15,15 +15,6 @@
 namespace locograph::test::balance {
 
 inline constexpr int kContact = 10;  // number of the first contact
-
-inline RobotCase coman_plus() {
-  const std::filesystem::path folder =
-      std::filesystem::path(LOCOGRAPH_SOURCE_DIR) / "robots/models/coman_plus";
-  return {"ComanPlus",
-          std::make_shared<const RobotParameter>(folder / "coman_plus.urdf",
-                                                 folder / "coman_plus.srdf", RobotOptions()),
-          nullptr};
-}
 
 inline std::vector<int> add_contacts(Graph& graph, const RobotCase& robot,
                                      const std::vector<ContactDescription>& contacts) {
