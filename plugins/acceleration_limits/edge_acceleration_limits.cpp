@@ -31,12 +31,6 @@ struct SecondDifference {
   }
 };
 
-/// Rotation vector of aᵀ b, in either frame (a rotation leaves its own axis alone).
-Eigen::Vector3d relative_rotation(const ConfigurationState& a, const ConfigurationState& b) {
-  const Eigen::AngleAxisd rotation(a.base_rotation().conjugate() * b.base_rotation());
-  return rotation.angle() * rotation.axis();
-}
-
 Eigen::Vector3d linear_acceleration(const ConfigurationState& a, const ConfigurationState& b,
                                     const ConfigurationState& c, const SecondDifference& d) {
   return d.step_2 * (c.base_position() - b.base_position()) -
@@ -95,7 +89,7 @@ void EdgeAccelerationLimits::error(const ConfigurationState& a, const Configurat
   }
   if (limits[n + 1] > 0.0) {
     const Eigen::Vector3d angular =
-        d.step_2 * relative_rotation(b, c) - d.step_1 * relative_rotation(a, b);
+        d.step_2 * relative_base_rotation(b, c) - d.step_1 * relative_base_rotation(a, b);
     e[n + 1] = std::max(0.0, angular.norm() - limits[n + 1]);
   }
 }
@@ -128,7 +122,8 @@ void EdgeAccelerationLimits::jacobians(const ConfigurationState& a, const Config
     }
   }
   if (limits[n + 1] > 0.0) {
-    const Eigen::Vector3d before = relative_rotation(a, b), after = relative_rotation(b, c);
+    const Eigen::Vector3d before = relative_base_rotation(a, b),
+                          after = relative_base_rotation(b, c);
     const Eigen::Vector3d acceleration = d.step_2 * after - d.step_1 * before;
     if (acceleration.norm() > limits[n + 1]) {
       // log(AᵀB): turning B by δ adds J_r⁻¹ δ, turning A by δ takes J_l⁻¹ δ = J_r⁻¹(−log) δ away.

@@ -36,6 +36,11 @@ void ConfigurationState::update(const double* configuration) {
   }
 }
 
+Eigen::Vector3d relative_base_rotation(const ConfigurationState& a, const ConfigurationState& b) {
+  const Eigen::AngleAxisd rotation(a.base_rotation().conjugate() * b.base_rotation());
+  return rotation.angle() * rotation.axis();
+}
+
 VertexConfiguration::VertexConfiguration(int number,
                                          std::shared_ptr<const RobotParameter> parameter,
                                          double time, const Eigen::VectorXd& q)

@@ -37,6 +37,10 @@ struct ConfigurationState {
   Eigen::Quaterniond base_rotation() const { return Eigen::Quaterniond(q.segment<4>(3).data()); }
 };
 
+/// Rotation vector of Aᵀ B, A and B the bases' axes: in either base frame, as a rotation leaves its
+/// own axis alone.
+Eigen::Vector3d relative_base_rotation(const ConfigurationState& a, const ConfigurationState& b);
+
 struct VertexConfiguration : Vertex<Eigen::Dynamic, Eigen::Dynamic> {
   using Derived = ConfigurationState;
 

@@ -6,16 +6,6 @@ namespace locograph {
 
 template class TypedEdgePool<EdgeVelocityLimits>;
 
-namespace {
-
-/// Rotation vector of qaᵀ qb, in either frame (a rotation leaves its own axis alone).
-Eigen::Vector3d relative_rotation(const ConfigurationState& a, const ConfigurationState& b) {
-  const Eigen::AngleAxisd rotation(a.base_rotation().conjugate() * b.base_rotation());
-  return rotation.angle() * rotation.axis();
-}
-
-}  // namespace
-
 EdgeVelocityLimits::EdgeVelocityLimits(const Robot& robot, double fraction_, double base_linear,
                                        double base_angular, double weight)
     : fraction(fraction_), base_linear_m_s(base_linear), base_angular_rad_s(base_angular) {
@@ -39,7 +29,7 @@ void EdgeVelocityLimits::error(const ConfigurationState& a, const ConfigurationS
     e[n] = std::max(0.0, (b.base_position() - a.base_position()).norm() - base_linear_m_s * dt);
   }
   if (base_angular_rad_s > 0.0) {
-    e[n + 1] = std::max(0.0, relative_rotation(a, b).norm() - base_angular_rad_s * dt);
+    e[n + 1] = std::max(0.0, relative_base_rotation(a, b).norm() - base_angular_rad_s * dt);
   }
 }
 
@@ -66,7 +56,7 @@ void EdgeVelocityLimits::jacobians(const ConfigurationState& a, const Configurat
   }
   if (base_angular_rad_s > 0.0) {
     // d|log(AᵀB)| = axis · (δb − δa): the axis has the same coordinates in both base frames.
-    const Eigen::Vector3d turned = relative_rotation(a, b);
+    const Eigen::Vector3d turned = relative_base_rotation(a, b);
     if (turned.norm() > base_angular_rad_s * dt) {
       ja.row(n + 1).segment<3>(3) = -turned.normalized().transpose();
       jb.row(n + 1).segment<3>(3) = turned.normalized().transpose();
