@@ -41,19 +41,20 @@ function(locograph_folder name)
           PATTERN models EXCLUDE PATTERN scenarios EXCLUDE)
 endfunction()
 
-# locograph_test(NAME SOURCES... LINK targets...): one GoogleTest program, its cases listed in ctest.
+# locograph_test(NAME SOURCES... LINK targets... [PRECOMPILE headers...]): one GoogleTest program,
+# its cases listed in ctest. Name the headers that most of its files need, so that their templates
+# are instantiated once.
 function(locograph_test name)
-  cmake_parse_arguments(arg "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(arg "" "" "SOURCES;LINK;PRECOMPILE" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_LINK} locograph_private_options GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE
     LOCOGRAPH_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data"
     LOCOGRAPH_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
-  target_precompile_headers(${name} PRIVATE <gtest/gtest.h> <Eigen/Dense> <string> <vector>)
-  # Several files in one translation unit: what they share of Eigen and the pools is compiled once.
+  target_precompile_headers(${name} PRIVATE <gtest/gtest.h> <Eigen/Dense> <string> <vector>
+    ${arg_PRECOMPILE})
   set_target_properties(${name} PROPERTIES
-    UNITY_BUILD ${LOCOGRAPH_UNITY} UNITY_BUILD_BATCH_SIZE 5
     RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests/bin)
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600)
 endfunction()

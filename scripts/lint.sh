@@ -6,7 +6,7 @@
 install_missing clang-tidy
 # A folder of its own: clang cannot read the precompiled headers of GCC.
 configure build-lint -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON \
-  -DLOCOGRAPH_BENCHMARKS=ON -DLOCOGRAPH_UNITY=OFF
+  -DLOCOGRAPH_BENCHMARKS=ON
 if [ $# -gt 0 ]; then
   realpath "$@"
 else
