@@ -365,6 +365,31 @@ TEST_F(SweptObstacleDistance, IsTheKnownOneForASphereThatPassesABall) {
               std::hypot(r + 0.05, 0.15) - (std::hypot(0.2 + r + 0.04, 0.15) - 0.2), 1e-12);
 }
 
+TEST_F(SweptObstacleDistance, HasAGradientJustInsideTheMargin) {
+  constexpr double kBeyond = 1e-9, kHalfGap = 0.3;
+  const ConfigurationState middle = state_of(robot, moved(0.0));
+  const double needed = std::hypot(robot.robot->spheres[0].radius + 0.05, kHalfGap);
+  Obstacle ball;
+  ball.shape = Obstacle::Shape::kSphere;
+  ball.size << 0.2, 0.0, 0.0;
+  ball.world_from_obstacle.translation() =
+      middle.sphere_centres[0] + (0.2 + needed - kBeyond) * Eigen::Vector3d::UnitZ();
+  world->now.obstacles = {ball};
+  Graph graph = graph_of(robot);
+  graph.parameters().set(kWorld, world);
+  graph.add_edge(EdgeSweptObstacleDistance(*robot.robot, kWorld, 0.05, 1, 1.0),
+                 add_configuration(graph, robot, 0, 0.0, moved(-kHalfGap)),
+                 add_configuration(graph, robot, 1, 1.0, moved(kHalfGap)));
+  Evaluated evaluated(graph);
+  EXPECT_NEAR(evaluated.error(0)[0], kBeyond, 1e-14);
+  for (const int slot : {0, 1}) {
+    // Half of the way up, and the padding √(ρ² + h²) by the length of the step.
+    const Eigen::MatrixXd j = evaluated.jacobian(0, slot, false);
+    EXPECT_NEAR(j(0, 2), 0.5, 1e-9);
+    EXPECT_NEAR(j(0, 0), (slot == 0 ? -0.5 : 0.5) * kHalfGap / needed, 1e-9);
+  }
+}
+
 TEST_F(SweptObstacleDistance, MeetsMovingObstaclesAtTheRightTime) {
   Obstacle cart = box({0.0, -4.0, 0.7}, {0.2, 0.2, 0.2});
   KeyFrame there;
