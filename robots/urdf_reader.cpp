@@ -86,10 +86,12 @@ class UrdfStructure {
     if (xml_.numbers(*mass, "value", 1)[0] < 0.0) {
       throw xml_.error(*mass, "link '" + link + "' has a negative mass", "0 kg or more");
     }
+    // Read before it is filled: Eigen aborts where an exception leaves a matrix half filled.
     const auto entry = [&](const char* name) { return xml_.numbers(*inertia, name, 1)[0]; };
+    const double xx = entry("ixx"), xy = entry("ixy"), xz = entry("ixz"), yy = entry("iyy"),
+                 yz = entry("iyz"), zz = entry("izz");
     Eigen::Matrix3d matrix;
-    matrix << entry("ixx"), entry("ixy"), entry("ixz"), entry("ixy"), entry("iyy"), entry("iyz"),
-        entry("ixz"), entry("iyz"), entry("izz");
+    matrix << xx, xy, xz, xy, yy, yz, xz, yz, zz;
     const Eigen::Vector3d principal =
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix, Eigen::EigenvaluesOnly)
             .eigenvalues();
