@@ -1,3 +1,4 @@
+#include <locograph/common/skew.h>
 #include <locograph/robots/dynamics.h>
 #include <locograph/robots/kinematic_tree.h>
 
@@ -71,8 +72,7 @@ void RobotDynamics::mass_matrix(const RobotState& state, Eigen::Ref<Eigen::Matri
   if (base > 0) {
     const Composite& whole = composites_[0];
     const Eigen::Vector3d moment = world_from_base.linear().transpose() * whole.moment;
-    Eigen::Matrix3d cross;
-    cross << 0, -moment.z(), moment.y(), moment.z(), 0, -moment.x(), -moment.y(), moment.x(), 0;
+    const Eigen::Matrix3d cross = skew(moment);
     mass.block<3, 3>(0, 0).diagonal().setConstant(whole.mass);
     mass.block<3, 3>(0, 3) = -cross;
     mass.block<3, 3>(3, 0) = cross;

@@ -1,14 +1,9 @@
+#include <locograph/common/skew.h>
 #include <locograph/robots/kinematic_tree.h>
 #include <locograph/robots/robot.h>
 
 namespace locograph {
 namespace {
-
-Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
 
 KinematicTree::Body moving_body(const Joint& joint, const Eigen::Isometry3d& body_from_parent_link,
                                 int parent) {

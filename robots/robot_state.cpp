@@ -98,21 +98,27 @@ void RobotState::point_jacobian(
   }
 }
 
-// d . (axis x (p - o)) = axis . ((p - o) x d) for a joint; for the base, with d in base axes,
-// d . (v + omega x r) = v . d + omega . (r x d).
+// d . (v + omega x r) = v . d + omega . (r x d), with d in base axes.
+void RobotState::add_base_gradient(const Eigen::Vector3d& point_world,
+                                   const Eigen::Vector3d& direction_world, double* row,
+                                   int stride) const {
+  const Eigen::Matrix3d world_from_base = world_from_body_[0].linear();
+  const Eigen::Vector3d arm = point_world - world_from_body_[0].translation();
+  const Eigen::Vector3d linear = world_from_base.transpose() * direction_world;
+  const Eigen::Vector3d angular = world_from_base.transpose() * arm.cross(direction_world);
+  for (int k = 0; k < 3; ++k) {
+    row[k * stride] += linear[k];
+    row[(3 + k) * stride] += angular[k];
+  }
+}
+
+// d . (axis x (p - o)) = axis . ((p - o) x d) for a joint.
 void RobotState::add_point_gradient(int link, const Eigen::Vector3d& point_world,
                                     const Eigen::Vector3d& direction_world, double scale,
                                     double* row, int stride) const {
   const Eigen::Vector3d direction = scale * direction_world;
   if (robot_->floating_base()) {
-    const Eigen::Matrix3d world_from_base = world_from_body_[0].linear();
-    const Eigen::Vector3d arm = point_world - world_from_body_[0].translation();
-    const Eigen::Vector3d linear = world_from_base.transpose() * direction;
-    const Eigen::Vector3d angular = world_from_base.transpose() * arm.cross(direction);
-    for (int k = 0; k < 3; ++k) {
-      row[k * stride] += linear[k];
-      row[(3 + k) * stride] += angular[k];
-    }
+    add_base_gradient(point_world, direction, row, stride);
     row += 6 * stride;
   }
   const int* support = tree_->support.data();
@@ -163,6 +169,13 @@ Eigen::Vector3d RobotState::center_of_mass() const {
 }
 
 // Moving joint i moves the subtree behind it: sum_k m_k axis x (c_k - o) = axis x (S - M_i o).
+Eigen::Vector3d RobotState::moment_column(int i) const {
+  const Eigen::Vector4d& moment = subtree_moment(i + 1);
+  const Eigen::Vector3d& axis = joint_axis(i);
+  if (!tree_->bodies[static_cast<std::size_t>(i) + 1].revolute) return moment[3] * axis;
+  return axis.cross(moment.head<3>() - moment[3] * joint_origin(i));
+}
+
 void RobotState::center_of_mass_jacobian(
     Eigen::Ref<Eigen::Matrix<double, 3, Eigen::Dynamic>> jacobian) const {
   const Eigen::Vector3d com = center_of_mass();
@@ -175,14 +188,7 @@ void RobotState::center_of_mass_jacobian(
     for (int k = 0; k < 3; ++k) jacobian.col(3 + k) = rotation.col(k).cross(arm);
   }
   for (int i = 0; i < robot_->active_joint_count(); ++i) {
-    const KinematicTree::Body& body = tree_->bodies[static_cast<std::size_t>(i) + 1];
-    if (body.revolute) {
-      const Eigen::Vector3d moment = subtree_moment_[static_cast<std::size_t>(i) + 1].head<3>() -
-                                     body.subtree_mass * joint_origin(i);
-      jacobian.col(base + i) = inverse_mass * joint_axis(i).cross(moment);
-    } else {
-      jacobian.col(base + i) = inverse_mass * body.subtree_mass * joint_axis(i);
-    }
+    jacobian.col(base + i) = inverse_mass * moment_column(i);
   }
 }
 
@@ -191,26 +197,12 @@ void RobotState::add_center_of_mass_gradient(const Eigen::Vector3d& direction_wo
   const Eigen::Vector3d com = center_of_mass();
   const Eigen::Vector3d direction = scale * direction_world;
   if (robot_->floating_base()) {
-    const Eigen::Matrix3d world_from_base = world_from_body_[0].linear();
-    const Eigen::Vector3d arm = com - world_from_body_[0].translation();
-    const Eigen::Vector3d linear = world_from_base.transpose() * direction;
-    const Eigen::Vector3d angular = world_from_base.transpose() * arm.cross(direction);
-    for (int k = 0; k < 3; ++k) {
-      row[k * stride] += linear[k];
-      row[(3 + k) * stride] += angular[k];
-    }
+    add_base_gradient(com, direction, row, stride);
     row += 6 * stride;
   }
   const Eigen::Vector3d share = direction / tree_->bodies[0].subtree_mass;
   for (int i = 0; i < robot_->active_joint_count(); ++i) {
-    const KinematicTree::Body& body = tree_->bodies[static_cast<std::size_t>(i) + 1];
-    if (body.revolute) {
-      const Eigen::Vector3d moment = subtree_moment_[static_cast<std::size_t>(i) + 1].head<3>() -
-                                     body.subtree_mass * joint_origin(i);
-      row[i * stride] += joint_axis(i).dot(moment.cross(share));
-    } else {
-      row[i * stride] += body.subtree_mass * joint_axis(i).dot(share);
-    }
+    row[i * stride] += moment_column(i).dot(share);
   }
 }
 

@@ -76,6 +76,8 @@ class RobotState {
   const Eigen::Vector4d& subtree_moment(int body) const {
     return subtree_moment_[static_cast<std::size_t>(body)];
   }
+  /// How the mass moment of everything behind an active joint moves with it [kg m].
+  Eigen::Vector3d moment_column(int active_joint) const;
   /// Throws Error if no link has a mass.
   Eigen::Vector3d center_of_mass() const;
   /// 3 x tangent_size, overwrites all columns. Throws Error if no link has a mass.
@@ -86,6 +88,10 @@ class RobotState {
                                    double* row, int stride = 1) const;
 
  private:
+  /// The columns of the base in the gradient of a point that moves with it.
+  void add_base_gradient(const Eigen::Vector3d& point_world, const Eigen::Vector3d& direction_world,
+                         double* row, int stride) const;
+
   const Robot* robot_;
   const KinematicTree* tree_;
   std::vector<Eigen::Isometry3d> world_from_body_;

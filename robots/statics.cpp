@@ -1,25 +1,12 @@
+#include <locograph/common/skew.h>
 #include <locograph/robots/kinematic_tree.h>
 #include <locograph/robots/statics.h>
 
 namespace locograph {
 namespace {
 
-Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
 const KinematicTree::Body& body_of_joint(const RobotState& state, int active) {
   return state.robot().tree().bodies[static_cast<std::size_t>(active) + 1];
-}
-
-/// How the mass moment of everything behind a joint moves with it [kg m].
-Eigen::Vector3d moment_column(const RobotState& state, int active) {
-  const Eigen::Vector4d& moment = state.subtree_moment(active + 1);
-  const Eigen::Vector3d& axis = state.joint_axis(active);
-  if (!body_of_joint(state, active).revolute) return moment[3] * axis;
-  return axis.cross(moment.head<3>() - moment[3] * state.joint_origin(active));
 }
 
 }  // namespace
@@ -36,7 +23,7 @@ void gravity_torques(const RobotState& state, const Eigen::Vector3d& gravity,
     torques.segment<3>(3).noalias() = -(world_from_base.linear().transpose() * arm.cross(gravity));
   }
   for (int i = 0; i < state.robot().active_joint_count(); ++i) {
-    torques[base + i] = -gravity.dot(moment_column(state, i));
+    torques[base + i] = -gravity.dot(state.moment_column(i));
   }
 }
 
@@ -55,7 +42,7 @@ void gravity_torque_derivative(const RobotState& state, const Eigen::Vector3d& g
     derivative.block<3, 3>(3, 3).noalias() = -skew(arm) * turning;
   }
   for (int i = 0; i < state.robot().active_joint_count(); ++i) {
-    const Eigen::Vector3d u = moment_column(state, i).cross(gravity);
+    const Eigen::Vector3d u = state.moment_column(i).cross(gravity);
     for (int j = i; j >= 0; j = body_of_joint(state, j).parent - 1) {
       if (!body_of_joint(state, j).revolute) continue;
       const double value = -state.joint_axis(j).dot(u);

@@ -1,5 +1,5 @@
 #include <locograph/plugins/acceleration_limits/edge_acceleration_limits.h>
-#include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
+#include <locograph/plugins/configuration/orientation_error.h>
 
 #include <cmath>
 

@@ -1,10 +1,19 @@
+#include <locograph/common/skew.h>
 #include <locograph/plugins/configuration/orientation_error.h>
-#include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 
 namespace locograph {
+
+Eigen::Matrix3d inverse_right_jacobian(const Eigen::Vector3d& v) {
+  const double squared = v.squaredNorm(), angle = std::sqrt(squared);
+  // (1 − (θ/2) cot(θ/2)) / θ², and its series near zero.
+  const double factor = angle < 1e-4 ? 1.0 / 12.0 + squared / 720.0
+                                     : (1.0 - 0.5 * angle / std::tan(0.5 * angle)) / squared;
+  const Eigen::Matrix3d cross = skew(v);
+  return Eigen::Matrix3d::Identity() + 0.5 * cross + factor * cross * cross;
+}
 
 OrientationError::OrientationError(const Eigen::Matrix3d& world_from_target,
                                    const Eigen::Matrix3d& world_from_frame)

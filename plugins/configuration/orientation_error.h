@@ -17,6 +17,10 @@
 
 namespace locograph {
 
+/// Inverse of the right Jacobian of SO(3): log(R exp(δ)) ≈ log R + J δ (Chirikjian 2012,
+/// eq. 10.86).
+Eigen::Matrix3d inverse_right_jacobian(const Eigen::Vector3d& rotation_vector);
+
 struct OrientationError {
   Eigen::Vector3d vector;
 

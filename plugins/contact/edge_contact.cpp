@@ -1,4 +1,5 @@
 #include <locograph/plugins/configuration/orientation_error.h>
+#include <locograph/plugins/configuration/surface_axes.h>
 #include <locograph/plugins/contact/edge_contact.h>
 
 #include <array>
@@ -66,25 +67,10 @@ void write_field(FieldWriter& out, ContactKind kind) { out.word(contact_name(kin
 
 Eigen::Isometry3d contact_pose(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                                const Eigen::Vector3d& forward) {
-  // stableNorm() neither overflows nor vanishes on the way. Comparisons that NaN fails, too.
-  const double length = normal.stableNorm(), way = forward.stableNorm();
   if (!point.allFinite()) throw Error("a contact whose point is not finite", "a point");
-  if (!(length > 0.0 && std::isfinite(length))) {
-    throw Error("a contact whose normal is zero or not finite", "a direction out of the surface");
-  }
-  if (!(way > 0.0 && std::isfinite(way))) {
-    throw Error("a contact whose forward direction is zero or not finite", "a direction");
-  }
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation() = point;
-  pose.linear().col(2) = normal / length;
-  const Eigen::Vector3d across = pose.linear().col(2).cross(forward / way);
-  if (!(across.norm() > 1e-9)) {
-    throw Error("a contact whose forward direction is along its normal",
-                "a direction in the surface");
-  }
-  pose.linear().col(1) = across.normalized();
-  pose.linear().col(0) = pose.linear().col(1).cross(pose.linear().col(2));
+  pose.linear() = surface_axes("a contact", normal, forward);
   return pose;
 }
 

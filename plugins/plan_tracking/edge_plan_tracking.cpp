@@ -1,20 +1,9 @@
+#include <locograph/plugins/configuration/orientation_error.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
-
-#include <cmath>
 
 namespace locograph {
 
 template class TypedEdgePool<EdgePlanTracking>;
-
-Eigen::Matrix3d inverse_right_jacobian(const Eigen::Vector3d& v) {
-  const double squared = v.squaredNorm(), angle = std::sqrt(squared);
-  // (1 − (θ/2) cot(θ/2)) / θ², and its series near zero.
-  const double factor = angle < 1e-4 ? 1.0 / 12.0 + squared / 720.0
-                                     : (1.0 - 0.5 * angle / std::tan(0.5 * angle)) / squared;
-  Eigen::Matrix3d cross;
-  cross << 0.0, -v[2], v[1], v[2], 0.0, -v[0], -v[1], v[0], 0.0;
-  return Eigen::Matrix3d::Identity() + 0.5 * cross + factor * cross * cross;
-}
 
 void ReferenceConfiguration::read(FieldReader& in) {
   for (Eigen::Index i = 0; i < size(); ++i) (*this)[i] = in.number();

@@ -45,8 +45,4 @@ struct EdgePlanTracking : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
 LOCOGRAPH_REGISTER_EDGE(EdgePlanTracking::kTag, EdgePlanTracking)
 extern template class TypedEdgePool<EdgePlanTracking>;
 
-/// Inverse of the right Jacobian of SO(3): log(R exp(δ)) ≈ log R + J δ (Chirikjian 2012,
-/// eq. 10.86).
-Eigen::Matrix3d inverse_right_jacobian(const Eigen::Vector3d& rotation_vector);
-
 }  // namespace locograph

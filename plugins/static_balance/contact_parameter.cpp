@@ -1,3 +1,4 @@
+#include <locograph/plugins/configuration/surface_axes.h>
 #include <locograph/plugins/static_balance/contact_parameter.h>
 
 #include <array>
@@ -28,18 +29,7 @@ ContactParameter::ContactParameter(std::shared_ptr<const RobotParameter> paramet
     : robot_number(number), given(std::move(description)), robot(std::move(parameter)) {
   link = robot->robot->link_index(given.link);
   const std::string contact = "contact of " + given.link;
-  if (!(given.normal.norm() > 0.0)) {
-    throw Error(contact + " has a normal of length zero", "a direction out of the surface");
-  }
-  const Eigen::Vector3d z = given.normal.normalized();
-  const Eigen::Vector3d across = z.cross(given.forward);
-  if (!(across.norm() > 1e-6 * given.forward.norm())) {
-    throw Error(contact + " has a forward direction that is zero or along its normal",
-                "a direction in the surface");
-  }
-  axes.col(2) = z;
-  axes.col(1) = across.normalized();
-  axes.col(0) = axes.col(1).cross(z);
+  axes = surface_axes(contact, given.normal, given.forward);
 
   require_positive(contact, "a force limit of", given.max_force_N);
   if (given.kind == WrenchKind::kRung) {

@@ -1,3 +1,4 @@
+#include <locograph/common/skew.h>
 #include <locograph/plugins/static_balance/static_rows.h>
 #include <locograph/robots/kinematic_tree.h>
 #include <locograph/robots/statics.h>
@@ -6,12 +7,6 @@
 
 namespace locograph {
 namespace {
-
-Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
 
 bool revolute(const RobotState& state, int i) {
   return state.robot().tree().bodies[static_cast<std::size_t>(i) + 1].revolute;
@@ -26,14 +21,6 @@ Eigen::Vector3d point_column(const RobotState& state, int i, const Eigen::Vector
   const Eigen::Vector3d& axis = state.joint_axis(i);
   if (!revolute(state, i)) return axis;
   return axis.cross(point - state.joint_origin(i));
-}
-
-/// How it moves the mass moment of everything behind it [kg m].
-Eigen::Vector3d moment_column(const RobotState& state, int i) {
-  const Eigen::Vector4d& moment = state.subtree_moment(i + 1);
-  const Eigen::Vector3d& axis = state.joint_axis(i);
-  if (!revolute(state, i)) return moment[3] * axis;
-  return axis.cross(moment.head<3>() - moment[3] * state.joint_origin(i));
 }
 
 Eigen::Matrix3d base_from_world(const RobotState& state) {
@@ -90,7 +77,7 @@ void add_gravity_on_base_gradient(const RobotState& state, BaseWrenchGradient gr
   gradient.block<3, 3>(0, 3) += moment[3] * turning;
   gradient.block<3, 3>(3, 3).noalias() += skew(arm) * turning;
   for (int i = 0; i < state.robot().active_joint_count(); ++i) {
-    gradient.block<3, 1>(3, 6 + i).noalias() += base * moment_column(state, i).cross(gravity);
+    gradient.block<3, 1>(3, 6 + i).noalias() += base * state.moment_column(i).cross(gravity);
   }
 }
 
@@ -136,13 +123,13 @@ void add_wrench_on_base_by_components(const RobotState& state, const AppliedWren
 }
 
 double gravity_torque(const RobotState& state, int i) {
-  return -standard_gravity().dot(moment_column(state, i));
+  return -standard_gravity().dot(state.moment_column(i));
 }
 
 void add_gravity_gradient(const RobotState& state, int i, double scale, double* row) {
   const Robot& robot = state.robot();
   const Eigen::Vector3d gravity = -scale * standard_gravity();
-  const Eigen::Vector3d own = moment_column(state, i).cross(gravity);
+  const Eigen::Vector3d own = state.moment_column(i).cross(gravity);
   const int base = robot.base_tangent_size();
   if (base > 0) {
     Eigen::Map<Eigen::Vector3d>(row + 3).noalias() += base_from_world(state) * own;
@@ -154,7 +141,7 @@ void add_gravity_gradient(const RobotState& state, int i, double scale, double* 
   if (!revolute(state, i)) return;
   // Joints are numbered depth first: those behind joint i follow it without a gap.
   for (int k = i + 1; k < robot.active_joint_count() && above(state, k) >= i; ++k) {
-    joints[k] += state.joint_axis(i).dot(moment_column(state, k).cross(gravity));
+    joints[k] += state.joint_axis(i).dot(state.moment_column(k).cross(gravity));
   }
 }
 

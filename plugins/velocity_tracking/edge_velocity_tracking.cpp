@@ -1,4 +1,4 @@
-#include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
+#include <locograph/plugins/configuration/orientation_error.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
 
 namespace locograph {

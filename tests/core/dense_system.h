@@ -4,6 +4,8 @@
 ///
 ///     const DenseSystem reference = one_by_one(problem, workspace.state());
 ///     EXPECT_LT(relative_difference(reference.hessian, dense_hessian(workspace)), 1e-12);
+///
+///     expect_batch_equals_one_by_one(workspace, 1e-13);   // that, the gradient and the costs
 
 #include <locograph/core/workspace.h>
 
@@ -15,14 +17,7 @@ namespace locograph::test {
 /// The evaluation of a state, with derived quantities and scratch memory of its own.
 class StateEvaluation {
  public:
-  StateEvaluation(const Problem& problem, const std::vector<double>& state) : state_(state) {
-    scratch_.reserve(problem.scratch_bytes());
-    for (std::size_t p = 0; p < problem.active().size(); ++p) {
-      const VertexPool& pool = *problem.graph().vertex_pools()[p];
-      derived_.push_back(pool.make_derived(problem.active()[p]));
-      if (derived_.back()) pool.derive(problem.active()[p], state_.data(), *derived_.back());
-    }
-  }
+  StateEvaluation(const Problem& problem, const std::vector<double>& state);
   Evaluation get() { return {state_.data(), derived_, &scratch_}; }
 
  private:
@@ -37,75 +32,19 @@ struct DenseSystem {
   Cost cost;
 };
 
-inline DenseSystem one_by_one(const Problem& problem, const std::vector<double>& state,
-                              bool numeric = false) {
-  const int n = problem.dimension();
-  DenseSystem system{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), {}};
-  StateEvaluation evaluation(problem, state);
-  const Evaluation x = evaluation.get();
-  for (std::size_t p = 0; p < problem.edges().size(); ++p) {
-    EdgePool& pool = *problem.graph().edge_pools()[p];
-    const CompiledEdges& edges = problem.edges()[p];
-    for (int k = 0; k < static_cast<int>(edges.edges.size()); ++k) {
-      Eigen::VectorXd e(pool.dimension(edges.edges[k]));
-      pool.error(edges, k, x, e.data());
-      const Eigen::MatrixXd information = pool.information(edges.edges[k]);
-      const double chi2 = e.dot(information * e);
-      const RobustKernel& kernel = pool.kernel(edges.edges[k]);
-      const RobustKernel::Weights robust = kernel.weights(chi2);
-      const double beta = pool.has_weights() ? 0.0 : kernel.correction(chi2, robust);
-      const Eigen::VectorXd along = information * e;
-      const Eigen::MatrixXd bent = information + beta * along * along.transpose();
-      system.cost += {robust.cost, chi2};
-      const int begin = edges.slot_begin[k], count = edges.slot_begin[k + 1] - begin;
-      for (int i = 0; i < count; ++i) {
-        const int at_i = edges.slots[begin + i].tangent_offset;
-        if (at_i < 0) continue;
-        const Eigen::MatrixXd ji = pool.jacobian(edges, k, i, x, numeric);
-        system.gradient.segment(at_i, ji.cols()) +=
-            robust.weight * ji.transpose() * information * e;
-        for (int j = 0; j < count; ++j) {
-          const int at_j = edges.slots[begin + j].tangent_offset;
-          if (at_j < 0) continue;
-          const Eigen::MatrixXd jj = pool.jacobian(edges, k, j, x, numeric);
-          system.hessian.block(at_i, at_j, ji.cols(), jj.cols()) +=
-              robust.weight * ji.transpose() * bent * jj;
-        }
-      }
-    }
-  }
-  return system;
-}
+DenseSystem one_by_one(const Problem& problem, const std::vector<double>& state,
+                       bool numeric = false);
 
 /// The full symmetric matrix whose upper triangle the values are.
-inline Eigen::MatrixXd dense(const BlockPattern& pattern, std::span<const double> values) {
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(pattern.scalar_size(), pattern.scalar_size());
-  for (int c = 0; c < pattern.size(); ++c) {
-    for (int k = pattern.column_begin[c]; k < pattern.column_begin[c + 1]; ++k) {
-      const int r = pattern.row[k];
-      const Eigen::Map<const Eigen::MatrixXd> block(values.data() + pattern.value_offset[k],
-                                                    pattern.dimension[r], pattern.dimension[c]);
-      matrix.block(pattern.scalar_begin[r], pattern.scalar_begin[c], block.rows(), block.cols()) =
-          block;
-      matrix.block(pattern.scalar_begin[c], pattern.scalar_begin[r], block.cols(), block.rows()) =
-          block.transpose();
-    }
-  }
-  return matrix;
-}
-inline Eigen::MatrixXd dense_hessian(Workspace& workspace) {
-  return dense(workspace.problem().pattern(), workspace.hessian());
-}
-inline Eigen::VectorXd dense_gradient(Workspace& workspace) {
-  return Eigen::Map<Eigen::VectorXd>(workspace.gradient().data(),
-                                     static_cast<Eigen::Index>(workspace.gradient().size()));
-}
+Eigen::MatrixXd dense(const BlockPattern& pattern, std::span<const double> values);
+Eigen::MatrixXd dense_hessian(Workspace& workspace);
+Eigen::VectorXd dense_gradient(Workspace& workspace);
 
 /// Largest difference relative to the largest entry (at least 1).
-inline double relative_difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  if (a.size() == 0 && b.size() == 0) return 0.0;
-  const double scale = std::max({1.0, a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff()});
-  return (a - b).cwiseAbs().maxCoeff() / scale;
-}
+double relative_difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+/// Evaluates and linearises at the state of the workspace. The costs agree to 1e-12 of themselves.
+/// Returns the reference.
+DenseSystem expect_batch_equals_one_by_one(Workspace& workspace, double tolerance);
 
 }  // namespace locograph::test

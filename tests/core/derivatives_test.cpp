@@ -153,17 +153,6 @@ void expect_same_system(Compiled& a, Compiled& b, double tolerance) {
   EXPECT_NEAR(a.linearised.robust, b.linearised.robust, 1e-12 * a.linearised.robust);
 }
 
-void expect_batch_equals_one_by_one(Compiled& c, double tolerance) {
-  const DenseSystem reference = one_by_one(c.problem, c.workspace.state());
-  ASSERT_GT(reference.hessian.norm(), 0.1);
-  EXPECT_LE(relative_difference(reference.hessian, dense_hessian(c.workspace)), tolerance);
-  EXPECT_LE(relative_difference(reference.gradient, dense_gradient(c.workspace)), tolerance);
-  EXPECT_NEAR(c.linearised.robust, reference.cost.robust, 1e-12 * reference.cost.robust);
-  EXPECT_NEAR(c.linearised.chi2, reference.cost.chi2, 1e-12 * reference.cost.chi2);
-  EXPECT_NEAR(c.evaluated.robust, reference.cost.robust, 1e-12 * reference.cost.robust);
-  EXPECT_NEAR(c.evaluated.chi2, reference.cost.chi2, 1e-12 * reference.cost.chi2);
-}
-
 /// Jacobians as used against central differences, edge by edge and slot by slot.
 void expect_jacobians_equal_differences(Compiled& c) {
   StateEvaluation evaluation(c.problem, c.workspace.state());
@@ -216,20 +205,20 @@ TEST_P(EverySeed, JacobiansEqualDifferences) {
 TEST_P(EverySeed, BatchEqualsEdgesOneByOne) {
   Compiled hand(planar_graph<kByHand>(GetParam())), dual(planar_graph<kDual>(GetParam())),
       numeric(planar_graph<kNumeric>(GetParam()));
-  expect_batch_equals_one_by_one(hand, 1e-13);
-  expect_batch_equals_one_by_one(dual, 1e-13);
-  expect_batch_equals_one_by_one(numeric, 1e-13);
+  EXPECT_GT(expect_batch_equals_one_by_one(hand.workspace, 1e-13).hessian.norm(), 0.1);
+  EXPECT_GT(expect_batch_equals_one_by_one(dual.workspace, 1e-13).hessian.norm(), 0.1);
+  EXPECT_GT(expect_batch_equals_one_by_one(numeric.workspace, 1e-13).hessian.norm(), 0.1);
 }
 
 TEST_P(EverySeed, BatchEqualsEdgesOneByOneWithDerivedQuantities) {
   Compiled hand(arms_graph<kByHand>(GetParam())), numeric(arms_graph<kNumeric>(GetParam()));
-  expect_batch_equals_one_by_one(hand, 1e-13);
-  expect_batch_equals_one_by_one(numeric, 1e-13);
+  EXPECT_GT(expect_batch_equals_one_by_one(hand.workspace, 1e-13).hessian.norm(), 0.1);
+  EXPECT_GT(expect_batch_equals_one_by_one(numeric.workspace, 1e-13).hessian.norm(), 0.1);
 }
 
 TEST_P(EverySeed, BatchEqualsEdgesOneByOneWithSizesKnownAtRunTime) {
   Compiled sized(run_time_sized_graph(GetParam()));
-  expect_batch_equals_one_by_one(sized, 1e-13);
+  EXPECT_GT(expect_batch_equals_one_by_one(sized.workspace, 1e-13).hessian.norm(), 0.1);
 }
 
 TEST(Derivatives, DifferencesOfKnownFunctionsAreRight) {

@@ -6,7 +6,7 @@ namespace {
 
 constexpr double kBefore_s = 0.2, kAfter_s = 0.35;
 
-class AccelerationLimits : public LeggedTest {
+class AccelerationLimits : public RobotCaseTest {
  protected:
   /// What is asked of every row: the acceleration of joint, base and rotation.
   struct Wanted {
@@ -166,9 +166,7 @@ TEST_P(AccelerationLimits, AreRefusedWhereTimeDoesNotIncrease) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Plugins, AccelerationLimits, testing::ValuesIn(all_cases_and_coman_plus()),
-                         [](const testing::TestParamInfo<std::string>& info) {
-                           return info.param;
-                         });
+                         robot_case_name);
 
 }  // namespace
 }  // namespace locograph::test

@@ -1,16 +1,8 @@
-#include "plugins/plugin_test_support.h"
+#include "plugins/bad_line.h"
 #include "plugins/small_robot.h"
 
 namespace locograph::test {
 namespace {
-
-struct BadLine {
-  const char* name;
-  const char* text;
-  const char* message;  ///< a part of it
-};
-
-void PrintTo(const BadLine& bad, std::ostream* out) { *out << bad.name; }
 
 // A good plan: parameters 0 to 2 and vertices 0 and 1; the bad line is line 6.
 constexpr const char* kGood =
@@ -195,26 +187,9 @@ class BadInput : public testing::TestWithParam<BadLine> {
   TemporaryFolder folder;
 };
 
-TEST_P(BadInput, IsAnErrorWithFileAndLine) {
-  const std::filesystem::path plan = folder.write("plan.g2o", kGood);
-  ASSERT_NO_THROW(read_graph(plan, robot_types()));
-  folder.write("plan.g2o", std::string(kGood) + GetParam().text + "\n");
-  try {
-    read_graph(plan, robot_types());
-    FAIL() << "was read: " << GetParam().text;
-  } catch (const Error& error) {
-    const std::string what = error.what();
-    EXPECT_NE(what.find(GetParam().message), std::string::npos) << what;
-    EXPECT_EQ(what.find(plan.string() + ":6: "), 0u) << what;
-    EXPECT_EQ(error.file(), plan.string());
-    EXPECT_EQ(error.line(), 6);
-  }
-}
+TEST_P(BadInput, IsAnErrorWithFileAndLine) { expect_bad_line(folder, kGood, GetParam()); }
 
-INSTANTIATE_TEST_SUITE_P(Plugins, BadInput, testing::ValuesIn(kBadLines),
-                         [](const testing::TestParamInfo<BadLine>& info) {
-                           return std::string(info.param.name);
-                         });
+INSTANTIATE_TEST_SUITE_P(Plugins, BadInput, testing::ValuesIn(kBadLines), bad_line_name);
 
 TEST(BadFiles, NamedByAPlanAreBlamedThemselves) {
   const TemporaryFolder folder;

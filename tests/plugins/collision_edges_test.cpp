@@ -15,14 +15,7 @@ ConfigurationState state_of(const RobotCase& robot, const Eigen::VectorXd& q, do
   return state;
 }
 
-class CollisionEdges : public testing::TestWithParam<std::string> {
- protected:
-  void SetUp() override {
-    if (!available(GetParam())) GTEST_SKIP() << go2_urdf() << " is not on this machine";
-    robot = robot_case(GetParam());
-  }
-  RobotCase robot;
-};
+class CollisionEdges : public RobotCaseTest {};
 
 TEST_P(CollisionEdges, SelfCollisionIsWhatTheMarginLacksForEveryPair) {
   Random random(51);
@@ -61,8 +54,8 @@ TEST_P(CollisionEdges, SelfCollisionHasTheJacobianOfNumericDifferences) {
     compare(
         evaluated, k, 0, [&](int row) { return distances[k][row].smooth(kMargin); }, compared);
   }
-  EXPECT_GT(compared.nonzero, 100);
-  EXPECT_GT(compared.zero, 1000);
+  EXPECT_GT(compared.nonzero, kStates);
+  EXPECT_GT(compared.zero, 9 * kStates);
 }
 
 TEST_P(CollisionEdges, SelfCollisionHasAGradientJustInsideTheMargin) {
@@ -173,8 +166,8 @@ void compare_sweeps(const RobotCase& robot, const WorldDistance& now, unsigned s
           evaluated, k, slot, [&](int row) { return reference[row].smooth; }, compared);
     }
   }
-  EXPECT_GT(compared.nonzero, 500);
-  EXPECT_GT(compared.zero, 500);
+  EXPECT_GT(compared.nonzero, 5 * kStates);
+  EXPECT_GT(compared.zero, 5 * kStates);
 }
 
 TEST_P(CollisionEdges, SweptDistanceToPrimitivesHasTheJacobianOfNumericDifferences) {
@@ -190,9 +183,7 @@ TEST_P(CollisionEdges, SweptDistanceToAMapHasTheJacobianOfNumericDifferences) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Plugins, CollisionEdges, testing::ValuesIn(all_cases_and_coman_plus()),
-                         [](const testing::TestParamInfo<std::string>& info) {
-                           return info.param;
-                         });
+                         robot_case_name);
 
 /// Two capsules: one upright in the base, one along y that slides along x.
 constexpr const char* kTwoCapsules = R"(<robot name="slider">
@@ -299,29 +290,18 @@ class SweptObstacleDistance : public testing::Test {
     Graph graph = graph_of(robot);
     graph.parameters().set(kWorld, world);
     graph.add_edge(EdgeSweptObstacleDistance(*robot.robot, kWorld, margin, samples, 1.0),
-                   add_configuration(graph, robot, 0, from_s, moved(from_x)),
-                   add_configuration(graph, robot, 1, to_s, moved(to_x)));
+                   add_configuration(graph, robot, 0, from_s, home(robot, from_x, 0.0)),
+                   add_configuration(graph, robot, 1, to_s, home(robot, to_x, 0.0)));
     return Evaluated(graph).error(0);
   }
   Eigen::VectorXd at(double x, double time_s = 0.0) const {
-    return error_of(robot, EdgeObstacleDistance(*robot.robot, kWorld, 0.05, 1.0), moved(x), time_s,
-                    world);
-  }
-  Eigen::VectorXd moved(double x) const {
-    Eigen::VectorXd q = home(robot);
-    q[0] += x;
-    return q;
-  }
-  static Obstacle box(const Eigen::Vector3d& centre, const Eigen::Vector3d& size) {
-    Obstacle obstacle;
-    obstacle.world_from_obstacle.translation() = centre;
-    obstacle.size = size;
-    return obstacle;
+    return error_of(robot, EdgeObstacleDistance(*robot.robot, kWorld, 0.05, 1.0),
+                    home(robot, x, 0.0), time_s, world);
   }
 };
 
 TEST_F(SweptObstacleDistance, NoticesAThinWallThoughBothEndsAreFree) {
-  world->now.obstacles = {box({0.0, 0.0, 1.0}, {0.01, 6.0, 4.0})};
+  world->now.obstacles = {box_obstacle({0.0, 0.0, 1.0}, {0.01, 6.0, 4.0})};
   ASSERT_TRUE(at(-1.4).isZero(0.0));
   ASSERT_TRUE(at(1.4).isZero(0.0));
   for (const int samples : {1, 2, 3, 7, 40}) {
@@ -344,13 +324,13 @@ TEST_F(SweptObstacleDistance, NoticesAThinWallThoughBothEndsAreFree) {
 TEST_F(SweptObstacleDistance, IsZeroWhereThereIsRoom) {
   EXPECT_TRUE(between(-1.0, 1.0).isZero(0.0)) << "an empty world";
   EXPECT_TRUE(between(-1.0, 1.0, 0.05, 1).isZero(0.0)) << "an empty world, one sample";
-  world->now.obstacles = {box({0.0, 2.5, 0.5}, {8.0, 0.3, 1.0}),
-                          box({0.0, -2.5, 0.5}, {8.0, 0.3, 1.0})};
+  world->now.obstacles = {box_obstacle({0.0, 2.5, 0.5}, {8.0, 0.3, 1.0}),
+                          box_obstacle({0.0, -2.5, 0.5}, {8.0, 0.3, 1.0})};
   EXPECT_TRUE(between(-0.5, 0.5, 0.05, 2).isZero(0.0));
 }
 
 TEST_F(SweptObstacleDistance, IsTheKnownOneForASphereThatPassesABall) {
-  const ConfigurationState middle = state_of(robot, moved(0.0));
+  const ConfigurationState middle = state_of(robot, home(robot, 0.0, 0.0));
   const double r = robot.robot->spheres[0].radius;
   Obstacle ball;
   ball.shape = Obstacle::Shape::kSphere;
@@ -367,7 +347,7 @@ TEST_F(SweptObstacleDistance, IsTheKnownOneForASphereThatPassesABall) {
 
 TEST_F(SweptObstacleDistance, HasAGradientJustInsideTheMargin) {
   constexpr double kBeyond = 1e-9, kHalfGap = 0.3;
-  const ConfigurationState middle = state_of(robot, moved(0.0));
+  const ConfigurationState middle = state_of(robot, home(robot, 0.0, 0.0));
   const double needed = std::hypot(robot.robot->spheres[0].radius + 0.05, kHalfGap);
   Obstacle ball;
   ball.shape = Obstacle::Shape::kSphere;
@@ -378,8 +358,8 @@ TEST_F(SweptObstacleDistance, HasAGradientJustInsideTheMargin) {
   Graph graph = graph_of(robot);
   graph.parameters().set(kWorld, world);
   graph.add_edge(EdgeSweptObstacleDistance(*robot.robot, kWorld, 0.05, 1, 1.0),
-                 add_configuration(graph, robot, 0, 0.0, moved(-kHalfGap)),
-                 add_configuration(graph, robot, 1, 1.0, moved(kHalfGap)));
+                 add_configuration(graph, robot, 0, 0.0, home(robot, -kHalfGap, 0.0)),
+                 add_configuration(graph, robot, 1, 1.0, home(robot, kHalfGap, 0.0)));
   Evaluated evaluated(graph);
   EXPECT_NEAR(evaluated.error(0)[0], kBeyond, 1e-14);
   for (const int slot : {0, 1}) {
@@ -391,7 +371,7 @@ TEST_F(SweptObstacleDistance, HasAGradientJustInsideTheMargin) {
 }
 
 TEST_F(SweptObstacleDistance, MeetsMovingObstaclesAtTheRightTime) {
-  Obstacle cart = box({0.0, -4.0, 0.7}, {0.2, 0.2, 0.2});
+  Obstacle cart = box_obstacle({0.0, -4.0, 0.7}, {0.2, 0.2, 0.2});
   KeyFrame there;
   there.time_s = 10.0;
   there.pose.translation() << 0.0, 4.0, 0.7;

@@ -1,12 +1,13 @@
 #include <cstring>
 
+#include "plugins/bad_line.h"
 #include "plugins/legged_cases.h"
 #include "plugins/small_robot.h"
 
 namespace locograph::test {
 namespace {
 
-class ContactsAndTasksInAFile : public LeggedTest {
+class ContactsAndTasksInAFile : public RobotCaseTest {
  protected:
   template <class E, class... Ids>
   static void add(Graph& graph, Random& random, int i, E edge, Ids... ids) {
@@ -104,12 +105,9 @@ TEST_P(ContactsAndTasksInAFile, KeepEveryBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Plugins, ContactsAndTasksInAFile,
-                         testing::ValuesIn(all_cases_and_coman_plus()),
-                         [](const testing::TestParamInfo<std::string>& info) {
-                           return info.param;
-                         });
+                         testing::ValuesIn(all_cases_and_coman_plus()), robot_case_name);
 
-// Carts without a mass: three configurations of one, one of another. The bad line is line 9.
+// Carts without a mass: three configurations of one, one of another.
 constexpr const char* kCartsAndFrames =
     "PARAMS_ROBOT 0 cart.urdf - floating 0\n"
     "PARAMS_WORLD 2 - -\n"
@@ -120,14 +118,7 @@ constexpr const char* kCartsAndFrames =
     "PARAMS_ROBOT 4 cart.urdf - floating 1 arm_joint\n"
     "VERTEX_CONFIGURATION 3 4 0 0 0 0 0 0 0 1 0.1\n";
 
-struct BadContactOrTask {
-  const char* name;
-  const char* text;
-  const char* message;  ///< a part of it
-};
-void PrintTo(const BadContactOrTask& bad, std::ostream* out) { *out << bad.name; }
-
-const BadContactOrTask kBadContactsAndTasks[] = {
+const BadLine kBadContactsAndTasks[] = {
     // PARAMS_FRAME
     {"FrameOfAnUnknownRobot", "PARAMS_FRAME 9 5 arm 0 0 0 0 0 0 1", "unknown parameter 5"},
     {"FrameOfAWorld", "PARAMS_FRAME 9 2 arm 0 0 0 0 0 0 1", "parameter 2 is a PARAMS_WORLD"},
@@ -197,28 +188,16 @@ const BadContactOrTask kBadContactsAndTasks[] = {
     {"AccelerationLimitsOnTwoVertices", "EDGE_ACCELERATION_LIMITS 0 1", "too few fields"},
 };
 
-class BadContactsAndTasks : public testing::TestWithParam<BadContactOrTask> {};
+class BadContactsAndTasks : public testing::TestWithParam<BadLine> {};
 
 TEST_P(BadContactsAndTasks, AreAnErrorWithFileAndLine) {
   const TemporaryFolder folder;
   folder.write("cart.urdf", kCartUrdf);
-  const std::filesystem::path plan = folder.write("plan.g2o", kCartsAndFrames);
-  ASSERT_NO_THROW(read_graph(plan, robot_types()));
-  folder.write("plan.g2o", std::string(kCartsAndFrames) + GetParam().text + "\n");
-  try {
-    read_graph(plan, robot_types());
-    FAIL() << "was read: " << GetParam().text;
-  } catch (const Error& error) {
-    const std::string what = error.what();
-    EXPECT_NE(what.find(GetParam().message), std::string::npos) << what;
-    EXPECT_EQ(what.find(plan.string() + ":9: "), 0u) << what;
-  }
+  expect_bad_line(folder, kCartsAndFrames, GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(Plugins, BadContactsAndTasks, testing::ValuesIn(kBadContactsAndTasks),
-                         [](const testing::TestParamInfo<BadContactOrTask>& info) {
-                           return std::string(info.param.name);
-                         });
+                         bad_line_name);
 
 TEST(ContactsOfTwoRobots, AreNotMixedUp) {
   const TemporaryFolder folder;

@@ -2,6 +2,7 @@
 // refused.
 #include <Eigen/QR>
 
+#include "plugins/bad_line.h"
 #include "plugins/small_robot.h"
 #include "plugins/static_balance_test_support.h"
 
@@ -130,13 +131,6 @@ TEST(ContactLimits, HaveAGradientJustBeyondThem) {
   }
 }
 
-struct BadLine {
-  const char* name;
-  const char* text;
-  const char* message;
-};
-void PrintTo(const BadLine& bad, std::ostream* out) { *out << bad.name; }
-
 constexpr const char* kGood =
     "PARAMS_ROBOT 0 cart.urdf cart.srdf floating 0\n"
     "PARAMS_CONTACT 1 0 arm 0 0 0 link 0 0 1 1 0 0 surface .1 .1 .5 100\n"
@@ -186,7 +180,8 @@ const BadLine kBadLines[] = {
     {"WrenchesWithTooFewComponents", "VERTEX_WRENCHES 9 2 1 2 0 0 0", "too few fields"},
     {"WrenchesWithTooManyComponents", "VERTEX_WRENCHES 9 1 3 1 2 3 4 5 6", "too many fields"},
     {"WrenchThatIsNotANumber", "VERTEX_WRENCHES 9 1 2 nan 0 0", "'nan' is not finite"},
-    {"BalanceOfTwoWrenches", "EDGE_BALANCE 1 1 scalar 1", ""},
+    {"BalanceOfTwoWrenches", "EDGE_BALANCE 1 1 scalar 1",
+     "vertex 1 is a VERTEX_WRENCHES, expected a VERTEX_CONFIGURATION"},
     {"TorqueLimitsOfAnotherSize", "EDGE_TORQUE_LIMITS 0 1 4 1 scalar 1",
      "EDGE_TORQUE_LIMITS with n = 4"},
     {"TorqueLimitsOfNothing", "EDGE_TORQUE_LIMITS 0 1 3 0 scalar 1", "fraction of 0"},
@@ -198,21 +193,10 @@ TEST_P(BadBalance, IsAnErrorWithItsLine) {
   const TemporaryFolder folder;
   folder.write("cart.urdf", kCartUrdf);
   folder.write("cart.srdf", kCartSrdf);
-  const auto plan = folder.write("plan.g2o", std::string(kGood) + GetParam().text + "\n");
-  try {
-    read_graph(plan, robot_types());
-    FAIL() << "was read: " << GetParam().text;
-  } catch (const Error& error) {
-    const std::string what = error.what();
-    EXPECT_NE(what.find("plan.g2o:7:"), std::string::npos) << what;
-    EXPECT_NE(what.find(GetParam().message), std::string::npos) << what;
-  }
+  expect_bad_line(folder, kGood, GetParam());
 }
 
-INSTANTIATE_TEST_SUITE_P(Plugins, BadBalance, testing::ValuesIn(kBadLines),
-                         [](const testing::TestParamInfo<BadLine>& info) {
-                           return std::string(info.param.name);
-                         });
+INSTANTIATE_TEST_SUITE_P(Plugins, BadBalance, testing::ValuesIn(kBadLines), bad_line_name);
 
 /// Evaluates what read well; the message of the Error.
 std::string evaluation_error(const std::string& text, const std::string& urdf = kCartUrdf) {

@@ -10,7 +10,12 @@
 
 namespace locograph::test {
 
+/// Sanitizers look for bad memory, not at accuracy, and take ten times as long.
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr int kStates = 12;
+#else
 inline constexpr int kStates = 120;
+#endif
 inline constexpr double kTolerance = 1e-6;
 /// Numeric differences reach 6e-6 rad or m to either side, times an arm of a metre or two.
 inline constexpr double kKink = 1e-4;

@@ -21,15 +21,6 @@ inline constexpr ContactKind kContactKinds[] = {ContactKind::kSurface, ContactKi
                                                 ContactKind::kPoint, ContactKind::kRung,
                                                 ContactKind::kSlidingRung};
 
-class LeggedTest : public testing::TestWithParam<std::string> {
- protected:
-  void SetUp() override {
-    if (!available(GetParam())) GTEST_SKIP() << go2_urdf() << " is not on this machine";
-    robot = robot_case(GetParam());
-  }
-  RobotCase robot;
-};
-
 inline Eigen::Isometry3d random_pose(Random& random, double reach) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation() = random.vector(3, reach);

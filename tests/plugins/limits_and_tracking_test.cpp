@@ -3,12 +3,8 @@
 namespace locograph::test {
 namespace {
 
-class LimitsOf : public testing::TestWithParam<std::string> {
+class LimitsOf : public RobotCaseTest {
  protected:
-  void SetUp() override {
-    if (!available(GetParam())) GTEST_SKIP() << go2_urdf() << " is not on this machine";
-    robot = robot_case(GetParam());
-  }
   Eigen::VectorXd mid_range() const {
     Eigen::VectorXd q = robot.model().neutral_configuration();
     for (int i = 0; i < robot.model().active_joint_count(); ++i) {
@@ -19,7 +15,6 @@ class LimitsOf : public testing::TestWithParam<std::string> {
     }
     return q;
   }
-  RobotCase robot;
 };
 
 TEST_P(LimitsOf, JointsAreZeroInsideAndGrowLinearlyOutside) {
@@ -129,10 +124,7 @@ TEST_P(LimitsOf, VelocityTrackingIsZeroAtThePlansStepWhereverItStarts) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Plugins, LimitsOf, testing::ValuesIn(all_cases()),
-                         [](const testing::TestParamInfo<std::string>& info) {
-                           return info.param;
-                         });
+INSTANTIATE_TEST_SUITE_P(Plugins, LimitsOf, testing::ValuesIn(all_cases()), robot_case_name);
 
 }  // namespace
 }  // namespace locograph::test

@@ -12,24 +12,12 @@ class ObstacleDistance : public testing::Test {
   EdgeObstacleDistance edge{*robot.robot, kWorld, kMargin, 1.0};
 
   Eigen::VectorXd at(double x, double y, double time_s = 0.0) const {
-    Eigen::VectorXd q = home(robot);
-    q[0] += x;
-    q[1] += y;
-    return error_of(robot, edge, q, time_s, world);
+    return error_of(robot, edge, home(robot, x, y), time_s, world);
   }
   ConfigurationState state(double x, double y) const {
     ConfigurationState result(robot.robot);
-    Eigen::VectorXd q = home(robot);
-    q[0] += x;
-    q[1] += y;
-    result.update(q.data());
+    result.update(home(robot, x, y).data());
     return result;
-  }
-  static Obstacle box(const Eigen::Vector3d& centre, const Eigen::Vector3d& size) {
-    Obstacle obstacle;
-    obstacle.world_from_obstacle.translation() = centre;
-    obstacle.size = size;
-    return obstacle;
   }
 };
 
@@ -59,7 +47,7 @@ TEST_F(ObstacleDistance, IsWhatTheMarginLacksForEverySphere) {
 
 TEST_F(ObstacleDistance, GrowsWithTheDepthInsideAndPointsOutwards) {
   // A wall far wider than the robot, its face at x = 2: the way out is -x, however deep.
-  world->now.obstacles = {box({4.0, 0.0, 0.0}, {4.0, 20.0, 20.0})};
+  world->now.obstacles = {box_obstacle({4.0, 0.0, 0.0}, {4.0, 20.0, 20.0})};
   const Eigen::VectorXd touching = at(1.5, 0.0);
   Eigen::VectorXd before = touching;
   for (double x = 1.6; x < 3.25; x += 0.1) {
@@ -108,7 +96,7 @@ TEST_F(ObstacleDistance, GrowsWithTheDepthInsideAMapToo) {
 }
 
 TEST_F(ObstacleDistance, SeesMovingObstaclesAtTheTimeOfTheConfiguration) {
-  Obstacle cart = box({5.0, 0.0, 0.7}, {0.2, 0.2, 0.2});
+  Obstacle cart = box_obstacle({5.0, 0.0, 0.7}, {0.2, 0.2, 0.2});
   KeyFrame here;
   here.time_s = 10.0;
   here.pose.translation() << 0.0, 0.0, 0.7;
@@ -156,7 +144,7 @@ TEST_F(ObstacleDistance, FollowsAWorldThatIsReplacedWhileThePlanRuns) {
   graph.add_edge(edge, add_configuration(graph, robot, 0, 0.0, home(robot)));
   Evaluated evaluated(graph);
   EXPECT_TRUE(evaluated.error(0).isZero(0.0));
-  world->now.obstacles = {box({0.0, 0.0, 0.7}, {0.3, 0.3, 0.3})};
+  world->now.obstacles = {box_obstacle({0.0, 0.0, 0.7}, {0.3, 0.3, 0.3})};
   EXPECT_GT(evaluated.error(0).maxCoeff(), kMargin);
 }
 

@@ -250,13 +250,13 @@ TEST_P(FloatingRoundTrip, NormalisesAQuaternionOnceAndThenKeepsItsBits) {
   expect_same_bits(state, twice.vertices_of<VertexConfiguration>()[0].state);
 }
 
-const auto name_of = [](const testing::TestParamInfo<std::string>& info) { return info.param; };
-INSTANTIATE_TEST_SUITE_P(Plugins, RoundTrip, testing::ValuesIn(all_cases()), name_of);
-INSTANTIATE_TEST_SUITE_P(Plugins, ProjectRoundTrip, testing::ValuesIn(wheeled_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(Plugins, RoundTrip, testing::ValuesIn(all_cases()), robot_case_name);
+INSTANTIATE_TEST_SUITE_P(Plugins, ProjectRoundTrip, testing::ValuesIn(wheeled_cases()),
+                         robot_case_name);
 INSTANTIATE_TEST_SUITE_P(Plugins, FloatingRoundTrip,
                          testing::Values("CentauroLowerBody", "CentauroAllJoints",
                                          "Go2FloatingBase"),
-                         name_of);
+                         robot_case_name);
 
 }  // namespace
 }  // namespace locograph::test

@@ -113,7 +113,6 @@ TEST_P(Dynamics, AreLinearInTheAcceleration) {
 
 TEST_P(Dynamics, AreStaticAtRest) {
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(size);
-  std::uniform_int_distribution<int> link(0, static_cast<int>(robot->links().size()) - 1);
   for (int sample = 0; sample < 5; ++sample) {
     state->update(random_configuration(*robot, random).data());
     gravity_torques(*state, gravity, torques);
@@ -122,13 +121,7 @@ TEST_P(Dynamics, AreStaticAtRest) {
     dynamics->bias_forces(*state, zero, bias);
     EXPECT_LT((bias - torques).norm(), 1e-12 * torques.norm());
 
-    std::vector<PointWrench> wrenches(3);
-    for (PointWrench& wrench : wrenches) {
-      wrench.link = link(random);
-      wrench.point = random_vector(3, 0.3, random);
-      wrench.force = random_vector(3, 300.0, random);
-      wrench.moment = random_vector(3, 30.0, random);
-    }
+    const std::vector<PointWrench> wrenches = random_wrenches(*robot, 3, random);
     static_torques(*state, gravity, wrenches, torques);
     EXPECT_LT((inverse_dynamics(zero, zero, wrenches) - torques).norm(), 1e-12 * torques.norm());
   }
@@ -198,10 +191,7 @@ std::vector<DynamicsCase> dynamics_cases() {
 
 INSTANTIATE_TEST_SUITE_P(All, Dynamics,
                          testing::Combine(testing::ValuesIn(dynamics_cases()), testing::Bool()),
-                         [](const testing::TestParamInfo<Dynamics::ParamType>& info) {
-                           return std::get<0>(info.param).name +
-                                  (std::get<1>(info.param) ? "_floating" : "_fixed");
-                         });
+                         floating_or_fixed<DynamicsCase>);
 
 TEST(BodyInertias, TakeFixedAndFrozenLinksTogether) {
   const Robot robot = Robot::load(model("centauro/centauro.urdf"), model("centauro/centauro.srdf"),

@@ -102,7 +102,7 @@ class KdlDynamics {
   std::map<std::string, int> entry_;
 };
 
-class DynamicsOfKdl : public testing::TestWithParam<std::tuple<RobotFile, bool>> {
+class DynamicsOfKdl : public ComparedTest<std::tuple<RobotFile, bool>> {
  protected:
   void SetUp() override {
     const std::filesystem::path& file = std::get<0>(GetParam()).urdf;
@@ -123,12 +123,8 @@ class DynamicsOfKdl : public testing::TestWithParam<std::tuple<RobotFile, bool>>
   }
 
   void compare(const Eigen::MatrixXd& ours, const Eigen::MatrixXd& theirs) {
-    const double error = (ours - theirs).cwiseAbs().maxCoeff() / theirs.cwiseAbs().maxCoeff();
-    EXPECT_LT(error, kKdlTolerance);
-    largest_error = std::max(largest_error, error);
+    ComparedTest::compare(ours, theirs, kKdlTolerance);
   }
-
-  void TearDown() override { RecordProperty("largest_error", scientific(largest_error)); }
 
   // Tilted, so that a base that stands upright feels every component.
   const Eigen::Vector3d gravity = Eigen::Vector3d(1.3, -2.1, -9.4);
@@ -137,7 +133,6 @@ class DynamicsOfKdl : public testing::TestWithParam<std::tuple<RobotFile, bool>>
   std::unique_ptr<RobotState> state;
   std::unique_ptr<RobotDynamics> dynamics;
   int size = 0;
-  double largest_error = 0.0;
 };
 
 TEST_P(DynamicsOfKdl, HaveOurGravityTorques) {
@@ -186,17 +181,11 @@ TEST_P(DynamicsOfKdl, HaveOurInverseDynamics) {
 TEST_P(DynamicsOfKdl, HaveOurInverseDynamicsWithWrenches) {
   std::mt19937 random(23);
   Eigen::VectorXd torques(size);
-  const int link_count = static_cast<int>(robot->links().size());
-  std::uniform_int_distribution<int> any_link(0, link_count - 1);
   for (int sample = 0; sample < 8; ++sample) {
     const KdlDynamics kdl = place(random_configuration(*robot, random));
-    std::vector<PointWrench> wrenches(3);
+    const std::vector<PointWrench> wrenches = random_wrenches(*robot, 3, random);
     KDL::WrenchMap theirs;
-    for (PointWrench& wrench : wrenches) {
-      wrench.link = any_link(random);
-      wrench.point = random_vector(3, 0.3, random);
-      wrench.force = random_vector(3, 300.0, random);
-      wrench.moment = random_vector(3, 30.0, random);
+    for (const PointWrench& wrench : wrenches) {
       const Link& link = robot->links()[static_cast<std::size_t>(wrench.link)];
       const Eigen::Matrix3d link_from_world =
           state->world_from_link(wrench.link).linear().transpose();
@@ -215,10 +204,7 @@ TEST_P(DynamicsOfKdl, HaveOurInverseDynamicsWithWrenches) {
 INSTANTIATE_TEST_SUITE_P(All, DynamicsOfKdl,
                          testing::Combine(testing::ValuesIn(public_and_own_robots()),
                                           testing::Bool()),
-                         [](const testing::TestParamInfo<DynamicsOfKdl::ParamType>& info) {
-                           return std::get<0>(info.param).name +
-                                  (std::get<1>(info.param) ? "_floating" : "_fixed");
-                         });
+                         floating_or_fixed<RobotFile>);
 
 }  // namespace
 }  // namespace locograph::test

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <locograph/robots/robot.h>
+#include <locograph/robots/statics.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -99,6 +100,42 @@ inline std::string scientific(double value) {
   std::ostringstream text;
   text << std::scientific << value;
   return text.str();
+}
+
+/// A test of values against others that keeps the largest error, for its report.
+template <class Parameter>
+class ComparedTest : public testing::TestWithParam<Parameter> {
+ protected:
+  /// tolerance: of the largest entry.
+  void compare(const Eigen::MatrixXd& ours, const Eigen::MatrixXd& expected, double tolerance) {
+    const double error = (ours - expected).cwiseAbs().maxCoeff() / expected.cwiseAbs().maxCoeff();
+    EXPECT_LT(error, tolerance);
+    largest_error_ = std::max(largest_error_, error);
+  }
+  void TearDown() override { this->RecordProperty("largest_error", scientific(largest_error_)); }
+
+ private:
+  double largest_error_ = 0.0;
+};
+
+/// Of a test of a named robot with (true) and without a floating base.
+template <class Named>
+std::string floating_or_fixed(const testing::TestParamInfo<std::tuple<Named, bool>>& info) {
+  return std::get<0>(info.param).name + (std::get<1>(info.param) ? "_floating" : "_fixed");
+}
+
+/// Wrenches of up to 300 N and 30 N m anywhere on the robot.
+inline std::vector<PointWrench> random_wrenches(const Robot& robot, int count,
+                                                std::mt19937& random) {
+  std::uniform_int_distribution<int> link(0, static_cast<int>(robot.links().size()) - 1);
+  std::vector<PointWrench> wrenches(static_cast<std::size_t>(count));
+  for (PointWrench& wrench : wrenches) {
+    wrench.link = link(random);
+    wrench.point = random_vector(3, 0.3, random);
+    wrench.force = random_vector(3, 300.0, random);
+    wrench.moment = random_vector(3, 30.0, random);
+  }
+  return wrenches;
 }
 
 /// One revolute, one prismatic and one fixed joint; a mass on each link.

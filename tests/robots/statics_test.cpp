@@ -10,7 +10,7 @@ namespace {
 constexpr double kStaticsStep = 1e-5;
 constexpr double kStaticsTolerance = 1e-6;  // of the largest entry
 
-class Statics : public testing::TestWithParam<std::tuple<RobotFile, bool>> {
+class Statics : public ComparedTest<std::tuple<RobotFile, bool>> {
  protected:
   void SetUp() override {
     const RobotFile& file = std::get<0>(GetParam());
@@ -27,18 +27,6 @@ class Statics : public testing::TestWithParam<std::tuple<RobotFile, bool>> {
   Eigen::VectorXd configuration(int sample) {
     return sample % 2 == 0 ? random_configuration(*robot, random)
                            : configuration_at_limits(*robot, random);
-  }
-
-  std::vector<PointWrench> random_wrenches(int count) {
-    std::uniform_int_distribution<int> link(0, static_cast<int>(robot->links().size()) - 1);
-    std::vector<PointWrench> wrenches(static_cast<std::size_t>(count));
-    for (PointWrench& wrench : wrenches) {
-      wrench.link = link(random);
-      wrench.point = random_vector(3, 0.3, random);
-      wrench.force = random_vector(3, 300.0, random);
-      wrench.moment = random_vector(3, 30.0, random);
-    }
-    return wrenches;
   }
 
   /// d f / d q by central differences; f maps a state to a vector of `rows` entries.
@@ -59,12 +47,8 @@ class Statics : public testing::TestWithParam<std::tuple<RobotFile, bool>> {
   }
 
   void compare(const Eigen::MatrixXd& ours, const Eigen::MatrixXd& expected) {
-    const double error = (ours - expected).cwiseAbs().maxCoeff() / expected.cwiseAbs().maxCoeff();
-    EXPECT_LT(error, kStaticsTolerance);
-    largest_error = std::max(largest_error, error);
+    ComparedTest::compare(ours, expected, kStaticsTolerance);
   }
-
-  void TearDown() override { RecordProperty("largest_error", scientific(largest_error)); }
 
   TemporaryFolder folder;
   std::mt19937 random{30};
@@ -72,7 +56,6 @@ class Statics : public testing::TestWithParam<std::tuple<RobotFile, bool>> {
   std::unique_ptr<Robot> robot;
   std::unique_ptr<RobotState> state, moved;
   int size = 0;
-  double largest_error = 0.0;
 };
 
 TEST_P(Statics, GravityTorquesAreTheGradientOfThePotentialEnergy) {
@@ -107,7 +90,7 @@ TEST_P(Statics, GravityTorqueDerivativeIsTheirDifference) {
 
 TEST_P(Statics, WrenchTorquesAreTheTransposedJacobianTimesTheWrench) {
   Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(6, size);
-  for (const PointWrench& wrench : random_wrenches(20)) {
+  for (const PointWrench& wrench : random_wrenches(*robot, 20, random)) {
     state->update(random_configuration(*robot, random).data());
     Eigen::Isometry3d link_from_point = Eigen::Isometry3d::Identity();
     link_from_point.translation() = wrench.point;
@@ -124,7 +107,7 @@ TEST_P(Statics, WrenchTorquesAreTheTransposedJacobianTimesTheWrench) {
 
 TEST_P(Statics, WrenchTorqueDerivativeIsTheirDifference) {
   int sample = 0;
-  for (PointWrench wrench : random_wrenches(12)) {
+  for (PointWrench wrench : random_wrenches(*robot, 12, random)) {
     const Eigen::VectorXd q = configuration(++sample);
     if (sample % 3 == 1) wrench.moment.setZero();
     if (sample % 3 == 2) wrench.force.setZero();
@@ -144,7 +127,7 @@ TEST_P(Statics, WrenchTorqueDerivativeIsTheirDifference) {
 }
 
 TEST_P(Statics, WrenchTorqueDerivativeIsAddedAndScaled) {
-  for (const PointWrench& wrench : random_wrenches(5)) {
+  for (const PointWrench& wrench : random_wrenches(*robot, 5, random)) {
     state->update(random_configuration(*robot, random).data());
     Eigen::MatrixXd once = Eigen::MatrixXd::Zero(size, size);
     Eigen::MatrixXd added = Eigen::MatrixXd::Constant(size, size, 100.0);
@@ -163,7 +146,7 @@ TEST_P(Statics, WrenchTorqueDerivativeIsAddedAndScaled) {
 }
 
 TEST_P(Statics, StaticTorquesAreGravityLessWrenches) {
-  const std::vector<PointWrench> wrenches = random_wrenches(4);
+  const std::vector<PointWrench> wrenches = random_wrenches(*robot, 4, random);
   for (int sample = 0; sample < 4; ++sample) {
     const Eigen::VectorXd q = configuration(sample);
     state->update(q.data());
@@ -183,7 +166,7 @@ TEST_P(Statics, StaticTorquesAreGravityLessWrenches) {
 }
 
 TEST_P(Statics, WritesIntoABlockOfALargerMatrix) {
-  const std::vector<PointWrench> wrenches = random_wrenches(2);
+  const std::vector<PointWrench> wrenches = random_wrenches(*robot, 2, random);
   state->update(random_configuration(*robot, random).data());
   Eigen::MatrixXd alone(size, size);
   Eigen::MatrixXd larger = Eigen::MatrixXd::Constant(size + 3, size + 2, 4.0);
@@ -197,7 +180,7 @@ TEST_P(Statics, WritesIntoABlockOfALargerMatrix) {
 
 TEST_P(Statics, AllocatesNothing) {
   if (!allocations_are_counted()) GTEST_SKIP() << "a sanitizer brings its own malloc";
-  const std::vector<PointWrench> wrenches = random_wrenches(4);
+  const std::vector<PointWrench> wrenches = random_wrenches(*robot, 4, random);
   state->update(random_configuration(*robot, random).data());
   Eigen::VectorXd torques(size);
   Eigen::MatrixXd derivative(size, size);
@@ -217,10 +200,7 @@ std::vector<RobotFile> with_small_robot() {
 
 INSTANTIATE_TEST_SUITE_P(All, Statics,
                          testing::Combine(testing::ValuesIn(with_small_robot()), testing::Bool()),
-                         [](const testing::TestParamInfo<Statics::ParamType>& info) {
-                           return std::get<0>(info.param).name +
-                                  (std::get<1>(info.param) ? "_floating" : "_fixed");
-                         });
+                         floating_or_fixed<RobotFile>);
 
 }  // namespace
 }  // namespace locograph::test

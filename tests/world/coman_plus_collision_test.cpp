@@ -1,8 +1,7 @@
 // The shipped COMAN+ model against itself: exact distances between its collision shapes.
 #include <gtest/gtest.h>
-#include <locograph/common/error.h>
 #include <locograph/robots/robot_state.h>
-#include <locograph/world/convex_shape.h>
+#include <locograph/world/link_solid.h>
 
 #include <algorithm>
 #include <limits>
@@ -12,22 +11,6 @@
 
 namespace locograph::test {
 namespace {
-
-ConvexShape convex(const CollisionShape& shape) {
-  switch (shape.type) {
-    case ShapeType::kSphere:
-      return ConvexShape::sphere(shape.radius);
-    case ShapeType::kCapsule:
-      return ConvexShape::capsule(shape.radius, shape.length);
-    case ShapeType::kCylinder:
-      return ConvexShape::cylinder(shape.radius, shape.length);
-    case ShapeType::kBox:
-      return ConvexShape::box(shape.size);
-    case ShapeType::kMesh:
-      break;
-  }
-  throw Error("a mesh", "a primitive");
-}
 
 class ComanPlusCollision : public testing::Test {
  protected:
@@ -39,7 +22,9 @@ class ComanPlusCollision : public testing::Test {
     state.update(home.data());
     for (const Link& link : robot.links()) {
       solids.emplace_back();
-      for (const CollisionShape& shape : link.collision) solids.back().push_back(convex(shape));
+      for (const CollisionShape& shape : link.collision) {
+        solids.back().push_back(link_solid(robot, shape));
+      }
     }
   }
 

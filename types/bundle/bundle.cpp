@@ -1,3 +1,4 @@
+#include <locograph/common/skew.h>
 #include <locograph/types/bundle/camera_bal.h>
 #include <locograph/types/bundle/camera_view.h>
 #include <locograph/types/bundle/inverse_depth.h>

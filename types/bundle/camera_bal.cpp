@@ -1,3 +1,4 @@
+#include <locograph/common/skew.h>
 #include <locograph/types/bundle/camera_bal.h>
 
 #include <cmath>

@@ -89,11 +89,4 @@ inline Eigen::Vector3d quaternion_log(const Eigen::Quaterniond& q) {
   return sign * factor * q.vec();
 }
 
-/// The matrix [v]× with [v]× w = v × w.
-inline Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0.0, -v[2], v[1], v[2], 0.0, -v[0], -v[1], v[0], 0.0;
-  return m;
-}
-
 }  // namespace locograph

@@ -1,3 +1,4 @@
+#include <locograph/common/skew.h>
 #include <locograph/types/slam3d/edges.h>
 #include <locograph/types/standard_types.h>
 
