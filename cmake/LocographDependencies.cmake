@@ -31,7 +31,6 @@ endif()
 
 if(LOCOGRAPH_TESTS)
   find_package(GTest REQUIRED)
-  include(GoogleTest)
   if(LOCOGRAPH_PLANNING)
     pkg_check_modules(orocos_kdl IMPORTED_TARGET orocos-kdl)
   endif()

@@ -1,10 +1,14 @@
 # One library target per folder of the house, all built alike.
 
-# locograph_folder(NAME [INTERFACE] SOURCES... [PUBLIC deps...] [PRIVATE deps...])
+# What nearly every source includes, read once for each target.
+set(locograph_precompiled <Eigen/Dense> <algorithm> <filesystem> <memory> <span> <string> <vector>)
+
+# locograph_folder(NAME [INTERFACE] SOURCES... [PUBLIC deps...] [PRIVATE deps...]
+#                  [PRECOMPILE headers...])
 # makes locograph::NAME out of the folder it is called in. Headers are included as
 # <locograph/NAME/...>, in the build tree through a link, after installation for real.
 function(locograph_folder name)
-  cmake_parse_arguments(arg "INTERFACE" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(arg "INTERFACE" "" "SOURCES;PUBLIC;PRIVATE;PRECOMPILE" ${ARGN})
   file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include/locograph)
   file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/include/locograph/${name}
        SYMBOLIC)
@@ -17,6 +21,7 @@ function(locograph_folder name)
     set(scope PUBLIC)
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:locograph_private_options>)
+    target_precompile_headers(${target} PRIVATE ${locograph_precompiled} ${arg_PRECOMPILE})
     if(arg_PRIVATE)
       target_link_libraries(${target} PRIVATE ${arg_PRIVATE})
     endif()
@@ -41,22 +46,35 @@ function(locograph_folder name)
           PATTERN models EXCLUDE PATTERN scenarios EXCLUDE)
 endfunction()
 
-# locograph_test(NAME SOURCES... LINK targets... [PRECOMPILE headers...]): one GoogleTest program,
-# its cases listed in ctest. Name the headers that most of its files need, so that their templates
-# are instantiated once.
+# locograph_test(NAME SOURCES... LINK targets... [PRECOMPILE headers...] [SHARDS n]): one GoogleTest
+# program. Name the headers that most of its files need, so that their templates are instantiated
+# once. For ctest it is one test, a long one n of them, not one for each case: a process for each of
+# thousands of cases takes longer than the cases.
 function(locograph_test name)
-  cmake_parse_arguments(arg "" "" "SOURCES;LINK;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(arg "" "SHARDS" "SOURCES;LINK;PRECOMPILE" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_LINK} locograph_private_options GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE
     LOCOGRAPH_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data"
     LOCOGRAPH_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
-  target_precompile_headers(${name} PRIVATE <gtest/gtest.h> <Eigen/Dense> <string> <vector>
+  target_precompile_headers(${name} PRIVATE <gtest/gtest.h> ${locograph_precompiled}
     ${arg_PRECOMPILE})
   set_target_properties(${name} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests/bin)
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600)
+  if(NOT arg_SHARDS)
+    set(arg_SHARDS 1)
+  endif()
+  foreach(shard RANGE 1 ${arg_SHARDS})
+    math(EXPR index "${shard} - 1")
+    set(test ${name})
+    if(arg_SHARDS GREATER 1)
+      set(test ${name}_${shard}_of_${arg_SHARDS})
+    endif()
+    add_test(NAME ${test} COMMAND ${name} --gtest_brief=1)
+    set_tests_properties(${test} PROPERTIES TIMEOUT 1800
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${index}")
+  endforeach()
 endfunction()
 
 # locograph_benchmark(NAME SOURCES... LINK targets...): one Google Benchmark program.
@@ -92,5 +110,10 @@ target_compile_options(locograph_private_options INTERFACE -fno-math-errno)
 if(LOCOGRAPH_SANITIZE)
   add_compile_options(-fsanitize=${LOCOGRAPH_SANITIZE} -fno-omit-frame-pointer
                       -fno-sanitize-recover=all)
+  # Three of UBSan's checks stand before every access in every inlined Eigen expression and make a
+  # third of the build. AddressSanitizer sees such accesses, and Eigen asserts its alignment.
+  if(LOCOGRAPH_SANITIZE MATCHES "undefined")
+    add_compile_options(-fno-sanitize=null,alignment,object-size)
+  endif()
   add_link_options(-fsanitize=${LOCOGRAPH_SANITIZE})
 endif()

@@ -4,6 +4,13 @@
 
 . "$(dirname "$0")/setup.sh"
 
+# run_tests FOLDER [ctest options…]
+run_tests() {
+  local folder=$1
+  shift
+  ctest --test-dir "$root/$folder" --output-on-failure --no-tests=error --parallel "$jobs" "$@"
+}
+
 install_missing
 configure build -DLOCOGRAPH_BENCHMARKS=ON
 build build
@@ -22,10 +29,8 @@ mapfile -t unit_tests < <(
 )
 build build-asan --target "${unit_tests[@]}"
 say "running ${unit_tests[*]} under AddressSanitizer and UBSan"
-printf "$root/build-asan/tests/bin/%s\n" "${unit_tests[@]}" |
-  ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 \
-    xargs -P "$jobs" -I PROGRAM timeout 2400 PROGRAM --gtest_brief=1 >&2 ||
-  die "a sanitized test failed"
+ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 run_tests build-asan \
+  --tests-regex "^($(IFS='|' && echo "${unit_tests[*]}"))" >&2
 
 say "running all tests"
-ctest --test-dir "$root/build" --output-on-failure --no-tests=error --parallel "$jobs"
+run_tests build
