@@ -1,6 +1,6 @@
 #!/bin/bash
-# Code blocks of doc/custom_types.md are code of the examples, which are built and run by other tests:
-# each block stands, line by line, in one of their files.
+# Code blocks of doc/custom_types.md and doc/custom_constraints.md are code of the examples, which are
+# built and run by other tests: each block stands, line by line, in one of their files.
 #
 #   documented_code_test.sh SOURCE_FOLDER
 
@@ -13,21 +13,21 @@ awk -v folder="$work" '
   /^```(cpp|cmake)$/ { inside = 1; file = folder "/" ++count; next }
   /^```$/ { inside = 0; next }
   inside { print > file }
-' "$source/doc/custom_types.md"
+' "$source"/doc/custom_{types,constraints}.md
 
 blocks=0
 for block in "$work"/*; do
   blocks=$((blocks + 1))
   found=
-  for example in "$source"/examples/{custom_edge,plugin}/{*.cpp,CMakeLists.txt}; do
+  for example in "$source"/examples/{custom_edge,plugin,custom_constraint}/{*.cpp,CMakeLists.txt}; do
     text=$(<"$example")
     [[ $text == *"$(<"$block")"* ]] && found=yes
   done
   if [ -z "$found" ]; then
-    echo "FAILED: no example holds this code of doc/custom_types.md:"
+    echo "FAILED: no example holds this code of the documentation:"
     cat "$block"
     exit 1
   fi
 done
-[ "$blocks" -ge 10 ] || { echo "FAILED: only $blocks code blocks found"; exit 1; }
+[ "$blocks" -ge 15 ] || { echo "FAILED: only $blocks code blocks found"; exit 1; }
 echo "$blocks code blocks found in the examples"

@@ -2,6 +2,8 @@
 #include <apps/command_runner.h>
 #include <locograph/world/octree.h>
 
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 
 namespace locograph {
@@ -237,6 +239,61 @@ TEST(PlanCommands, RefuseWrongUsageInOneLineAndWriteNothing) {
   }
   expect_refusal(runner.run("plan nonsense -o out.g2o"), "nonsense", "centauro_drive");
   EXPECT_EQ(runner.files(), 1) << "only the plan";
+}
+
+/// A cup on the robot, mounted five degrees forwards.
+const char kCrookedCup[] =
+    "PARAMS_FRAME 4 0 pelvis 0 0 0.5 0 0.043619387365336 0 0.999048221581858\n";
+
+/// Pitch of the base [rad] of every VERTEX_CONFIGURATION of a level drive along x.
+std::vector<double> pitches(const std::string& plan) {
+  std::vector<double> result;
+  std::istringstream in(plan);
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream fields(line);
+    std::string tag;
+    double id, time, x, y, z, qx, qy, qz, qw;
+    fields >> tag;
+    if (tag != "VERTEX_CONFIGURATION") continue;
+    fields >> id >> time >> x >> y >> z >> qx >> qy >> qz >> qw;
+    result.push_back(2.0 * std::atan2(qy, qw));
+  }
+  return result;
+}
+
+TEST(PlanCommands, RefineKeepsAConstraintThatAPlugInBrings) {
+  const PlanRunner runner;
+  std::string plan = runner.read("plan.g2o") + kCrookedCup;
+  for (int i = 10; i < 50; ++i)
+    plan += "EDGE_CUP_TILT " + std::to_string(i) + " 4 0.05 scalar 1e5\n";
+  runner.write("cup.g2o", plan);
+  const Outcome without = runner.run("refine cup.g2o -o out.g2o");
+  EXPECT_EQ(without.exit_code, 2);
+  EXPECT_NE(without.err.find("EDGE_CUP_TILT"), std::string::npos) << without.err;
+
+  const Outcome with = runner.run("refine cup.g2o --plugin level_cup -o out.g2o --json");
+  ASSERT_EQ(with.exit_code, 0) << with.err << with.out;
+  EXPECT_EQ(with.json()["success"], true);
+  const std::vector<double> pitch = pitches(runner.read("out.g2o"));
+  ASSERT_EQ(pitch.size(), 50u);
+  EXPECT_NEAR(pitch[0], 0.0, 1e-6);
+  // Five degrees are 0.0873 rad: the robot leans back by what is too much, and no further.
+  for (std::size_t i = 10; i < pitch.size(); ++i) EXPECT_NEAR(pitch[i], -0.0373, 0.002) << i;
+  const Outcome checked = runner.run("check out.g2o --plugin level_cup");
+  EXPECT_EQ(checked.exit_code, 0) << checked.out;
+}
+
+TEST(PlanCommands, RefineRefusesAPlugInsConstraintWhereItStands) {
+  const PlanRunner runner;
+  const std::string plan = runner.read("plan.g2o") + kCrookedCup;
+  runner.write("cup.g2o", plan + "EDGE_CUP_TILT 10 4 0 scalar 1e5\n");
+  const Outcome outcome = runner.run("refine cup.g2o --plugin level_cup -o out.g2o");
+  EXPECT_EQ(outcome.exit_code, 2);
+  const std::string line = std::to_string(std::ranges::count(plan, '\n') + 1);
+  EXPECT_NE(outcome.err.find("cup.g2o:" + line + ": a cup that may not tilt at all"),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_FALSE(runner.exists("out.g2o"));
 }
 
 }  // namespace
