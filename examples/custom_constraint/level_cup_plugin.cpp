@@ -25,7 +25,8 @@ struct EdgeCupTilt : WeightedEdge<1, VertexConfiguration> {
   void bind(const Parameters& parameters) {
     frame = parameters.get<FrameParameter>(frame_number);
     robot = parameters.get<RobotParameter>(frame->robot_number);
-    if (!(max_tilt > 0.0)) throw Error("a cup that may not tilt at all", "max_tilt > 0 rad");
+    if (max_tilt > 0.0) return;
+    throw locograph::Error("a cup that may not tilt at all", "max_tilt > 0 rad");
   }
 
   void error(const ConfigurationState& q, Eigen::Ref<Eigen::Matrix<double, 1, 1>> e) const {

@@ -252,10 +252,10 @@ std::vector<double> pitches(const std::string& plan) {
   for (std::string line; std::getline(in, line);) {
     std::istringstream fields(line);
     std::string tag;
-    double id, time, x, y, z, qx, qy, qz, qw;
+    double id, robot, time, x, y, z, qx, qy, qz, qw;
     fields >> tag;
     if (tag != "VERTEX_CONFIGURATION") continue;
-    fields >> id >> time >> x >> y >> z >> qx >> qy >> qz >> qw;
+    fields >> id >> robot >> time >> x >> y >> z >> qx >> qy >> qz >> qw;
     result.push_back(2.0 * std::atan2(qy, qw));
   }
   return result;
