@@ -19,16 +19,26 @@ endfunction()
 
 # Sets LOCOGRAPH_PLUGIN_HEADERS to a definition that says which headers a plug-in is compiled with: a
 # hash of those whose classes and virtual functions cross the boundary. The version number alone
-# does not tell two states of the source tree apart. common, core: the folders of the headers.
-macro(locograph_hash_plugin_headers common core)
+# does not tell two states of the source tree apart. root: the folder of the folders of the headers;
+# planning: whether what constraints on robots see is part of it.
+macro(locograph_hash_plugin_headers root planning)
+  set(locograph_hashed
+    common/error core/constraint core/edge core/edge_evaluation core/edge_line core/edge_pool
+    core/fields core/parameters core/plugin core/robust_kernel core/scratch core/type_registry
+    core/typed_edge_pool core/vertex core/vertex_difference core/vertex_pool)
+  if(${planning})
+    list(APPEND locograph_hashed
+      robots/collision_model robots/robot robots/robot_state
+      world/distance_field world/distance_sample world/obstacles
+      plugins/configuration/frame_parameter plugins/configuration/robot_parameters
+      plugins/configuration/self_collision_shapes plugins/configuration/vertex_configuration
+      plugins/static_balance/contact_parameter plugins/static_balance/vertex_wrenches)
+  endif()
   set(locograph_text "")
-  foreach(locograph_header ${common}/error.h ${core}/constraint.h ${core}/edge.h ${core}/edge_evaluation.h
-          ${core}/edge_line.h ${core}/edge_pool.h ${core}/fields.h ${core}/parameters.h
-          ${core}/plugin.h ${core}/robust_kernel.h ${core}/scratch.h ${core}/type_registry.h
-          ${core}/typed_edge_pool.h ${core}/vertex.h ${core}/vertex_difference.h ${core}/vertex_pool.h)
-    file(READ ${locograph_header} locograph_one)
+  foreach(locograph_header ${locograph_hashed})
+    file(READ ${root}/${locograph_header}.h locograph_one)
     string(APPEND locograph_text "${locograph_one}")
-    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${locograph_header})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${root}/${locograph_header}.h)
   endforeach()
   string(SHA256 locograph_hash "${locograph_text}")
   string(SUBSTRING ${locograph_hash} 0 16 locograph_hash)

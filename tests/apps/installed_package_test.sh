@@ -54,6 +54,12 @@ cp "$work/plugin/range.so" "$work/prefix/lib/locograph/"
 "$work/prefix/bin/locograph" list types --plugin range | grep -qx EDGE_BIASED_RANGE ||
   fail "the plug-in is not found by its name"
 
+# So is a constraint on a robot.
+configure custom_constraint
+cmake --build "$work/custom_constraint"
+"$work/prefix/bin/locograph" list types --plugin "$work/custom_constraint/level_cup.so" |
+  grep -qx EDGE_CUP_TILT || fail "the constraint is not loaded"
+
 # A component whose libraries are missing is refused by name, one whose libraries are there works.
 configure make_map "${nothing_else[@]}" >"$work/log" 2>&1 && fail "world was found without octomap"
 grep -q 'component world needs: .*octomap' "$work/log" || fail "no clear message: $(cat "$work/log")"
