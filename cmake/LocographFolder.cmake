@@ -1,7 +1,8 @@
 # One library target per folder of the house, all built alike.
 
 # What nearly every source includes, read once for each target.
-set(locograph_precompiled <Eigen/Dense> <algorithm> <filesystem> <memory> <span> <string> <vector>)
+set(locograph_precompiled <Eigen/Dense> <locograph/common/eigen_instances.h>
+    <algorithm> <filesystem> <memory> <span> <string> <vector>)
 
 # locograph_folder(NAME [INTERFACE] SOURCES... [PUBLIC deps...] [PRIVATE deps...]
 #                  [PRECOMPILE headers...])
@@ -53,12 +54,12 @@ endfunction()
 function(locograph_test name)
   cmake_parse_arguments(arg "" "SHARDS" "SOURCES;LINK;PRECOMPILE" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
-  target_link_libraries(${name} PRIVATE ${arg_LINK} locograph_private_options GTest::gtest_main)
+  target_link_libraries(${name} PRIVATE ${arg_LINK} gtest_instances locograph_private_options
+    GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE
     LOCOGRAPH_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data"
     LOCOGRAPH_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
-  target_precompile_headers(${name} PRIVATE <gtest/gtest.h> ${locograph_precompiled}
+  target_precompile_headers(${name} PRIVATE <common/gtest_instances.h> ${locograph_precompiled}
     ${arg_PRECOMPILE})
   set_target_properties(${name} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests/bin)

@@ -105,12 +105,27 @@ class TypedVertexPool final : public VertexPool {
   }
 
   void ominus(int index, const double* a, const double* b, double* d,
-              Scratch& scratch) const override {
-    detail::ominus(vertices[index], a, b, d, scratch);
+              [[maybe_unused]] Scratch& scratch) const override {
+    const V& vertex = vertices[index];
+    if constexpr (requires { vertex.ominus(a, b, d); }) {
+      vertex.ominus(a, b, d);
+    } else {
+      detail::solve_ominus(vertex.dimension(), vertex.state_size(), plus(index), a, b, d, scratch);
+    }
   }
   void ominus_jacobian(int index, const double* a, const double* b, double* jacobian,
                        Scratch& scratch) const override {
-    detail::ominus_jacobian(vertices[index], a, b, jacobian, scratch);
+    const int n = dimension(index);
+    if constexpr (requires { V::kFlat; }) {
+      Eigen::Map<Eigen::MatrixXd>(jacobian, n, n).setIdentity();
+    } else {
+      const auto minus = [&, this](const double* p, const double* q, double* d) {
+        ominus(index, p, q, d, scratch);
+      };
+      // By reference, lest the function allocates for what the lambda holds.
+      detail::ominus_jacobian(n, state_size(index), plus(index), std::cref(minus), a, b, jacobian,
+                              scratch);
+    }
   }
   std::size_t ominus_scratch_bytes(int index) const override {
     return detail::ominus_scratch_bytes(dimension(index), state_size(index));
@@ -157,6 +172,12 @@ class TypedVertexPool final : public VertexPool {
   void remove(int index) override {
     if (index + 1 != size()) vertices[index] = std::move(vertices.back());
     vertices.pop_back();
+  }
+
+ private:
+  detail::Plus plus(int index) const {
+    const V& vertex = vertices[index];
+    return [&vertex](const double* s, const double* d, double* out) { vertex.oplus(s, d, out); };
   }
 };
 

@@ -4,6 +4,8 @@
 
 namespace locograph {
 
+template class TypedVertexPool<VertexConfiguration>;
+
 namespace {
 
 /// A file with edges only makes vertices that know no robot.

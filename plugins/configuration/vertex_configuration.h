@@ -8,7 +8,7 @@
 /// ConfigurationState: kinematics and collision spheres worked out once for each state, read by
 /// all.
 
-#include <locograph/core/vertex.h>
+#include <locograph/core/vertex_pool.h>
 #include <locograph/plugins/configuration/robot_parameters.h>
 #include <locograph/robots/robot_state.h>
 
@@ -72,5 +72,6 @@ struct VertexConfiguration : Vertex<Eigen::Dynamic, Eigen::Dynamic> {
 void read_quaternion(const FieldReader& in, Eigen::VectorXd& configuration);
 
 LOCOGRAPH_REGISTER_VERTEX("VERTEX_CONFIGURATION", VertexConfiguration)
+extern template class TypedVertexPool<VertexConfiguration>;
 
 }  // namespace locograph

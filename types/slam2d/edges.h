@@ -190,6 +190,8 @@ struct EdgeSE2PointXYOffset : Edge<2, VertexSE2, VertexXY> {
 LOCOGRAPH_REGISTER_EDGE("EDGE_SE2_POINTXY_OFFSET", EdgeSE2PointXYOffset)
 
 // Compiled once, with the registration: the most used of them.
+extern template class TypedVertexPool<VertexSE2>;
+extern template class TypedVertexPool<VertexXY>;
 extern template class TypedEdgePool<EdgeSE2>;
 extern template class TypedEdgePool<EdgeSE2XY>;
 extern template class TypedEdgePool<EdgePriorSE2>;

@@ -82,6 +82,8 @@ void EdgeSE2LotsOfXY::jacobians(const SE2<double>& a, std::span<const Eigen::Vec
   }
 }
 
+template class TypedVertexPool<VertexSE2>;
+template class TypedVertexPool<VertexXY>;
 template class TypedEdgePool<EdgeSE2>;
 template class TypedEdgePool<EdgeSE2XY>;
 template class TypedEdgePool<EdgePriorSE2>;

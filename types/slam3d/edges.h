@@ -178,6 +178,8 @@ struct EdgeProjectDisparity : Edge<3, VertexSE3, VertexPointXYZ> {
 LOCOGRAPH_REGISTER_EDGE("EDGE_PROJECT_DISPARITY", EdgeProjectDisparity)
 
 // Compiled once, with the registration: the most used of them.
+extern template class TypedVertexPool<VertexSE3>;
+extern template class TypedVertexPool<VertexPointXYZ>;
 extern template class TypedEdgePool<EdgeSE3>;
 extern template class TypedEdgePool<EdgeSE3PointXYZ>;
 

@@ -64,6 +64,8 @@ void EdgeSE3LotsOfXYZ::jacobians(const SE3<double>& a, std::span<const Eigen::Ve
   }
 }
 
+template class TypedVertexPool<VertexSE3>;
+template class TypedVertexPool<VertexPointXYZ>;
 template class TypedEdgePool<EdgeSE3>;
 template class TypedEdgePool<EdgeSE3PointXYZ>;
 

@@ -1,0 +1,5 @@
+#include <common/gtest_instances.h>
+
+namespace testing::internal {
+LOCOGRAPH_GTEST_INSTANCES()
+}
