@@ -24,8 +24,10 @@ macro(locograph_hash_plugin_headers common core)
   set(locograph_text "")
   foreach(locograph_header ${common}/error.h ${core}/constraint.h ${core}/edge.h ${core}/edge_evaluation.h
           ${core}/edge_line.h ${core}/edge_pool.h ${core}/fields.h ${core}/parameters.h
-          ${core}/plugin.h ${core}/robust_kernel.h ${core}/scratch.h ${core}/type_registry.h
-          ${core}/typed_edge_pool.h ${core}/vertex.h ${core}/vertex_difference.h ${core}/vertex_pool.h)
+          ${core}/plugin.h ${core}/robust_kernel.h ${core}/row_label.h ${core}/scratch.h
+          ${core}/type_registry.h
+          ${core}/typed_edge_pool.h ${core}/vertex.h ${core}/vertex_difference.h
+          ${core}/vertex_pool.h)
     file(READ ${locograph_header} locograph_one)
     string(APPEND locograph_text "${locograph_one}")
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${locograph_header})
