@@ -1,4 +1,5 @@
 #include <locograph/apps/describe.h>
+#include <locograph/apps/violations_json.h>
 #include <locograph/core/connectivity.h>
 #include <locograph/core/graph_file.h>
 
@@ -54,7 +55,7 @@ Json edges_json(const Graph& graph) {
 
 Json describe_graph(const std::filesystem::path& path, const TypeRegistry& types) {
   ReadReport report;
-  const Graph graph = read_graph(path, types, {.lenient = true}, &report);
+  Graph graph = read_graph(path, types, {.lenient = true}, &report);
   if (graph.vertex_count() == 0 && !report.unknown.empty()) {
     throw Error(path.string(), 0,
                 "no line is a known vertex or edge; the first: " + report.unknown.front(), "");
@@ -75,6 +76,10 @@ Json describe_graph(const std::filesystem::path& path, const TypeRegistry& types
   json["indefinite_information"] = report.indefinite_information;
   if (report.indefinite_information > 0) {
     json["first_indefinite_line"] = report.first_indefinite_line;
+  }
+  add_violations(json, graph);
+  if (json.contains("violations")) {
+    for (Json& violation : json["violations"]) violation = std::string(violation["text"]);
   }
   json["unknown_lines"] = report.unknown.size();
   if (!report.unknown.empty()) json["first_unknown"] = report.unknown.front();

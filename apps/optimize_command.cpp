@@ -4,6 +4,7 @@
 #include <locograph/apps/optimize_command.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/progress.h>
+#include <locograph/apps/violations_json.h>
 #include <locograph/common/deadline.h>
 #include <locograph/core/graduated_non_convexity.h>
 #include <locograph/core/graph_file.h>
@@ -17,6 +18,7 @@
 #include <locograph/types/chordal_guess.h>
 
 #include <CLI/Validators.hpp>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -221,6 +223,14 @@ void print_summary(const OptimizeOptions& options, const Json& result) {
   }
   text += std::string(result["converged"] ? "" : "not converged: ") +
           result["reason"].get<std::string>() + '\n';
+  if (result.contains("violations")) {
+    text += counted(result["constraints"], "constraint", "constraints") + ", " +
+            counted(result["violated_rows"], "row", "rows") + " violated\n";
+    constexpr std::size_t kMost = 3;
+    for (std::size_t i = 0; i < std::min(kMost, result["violations"].size()); ++i) {
+      text += "  " + result["violations"][i]["text"].get<std::string>() + '\n';
+    }
+  }
   if (result.contains("diagnosis_text")) text += result["diagnosis_text"].get<std::string>();
   if (result.contains("output")) {
     text += "written: " + result["output"].get<std::string>() + '\n';
@@ -290,6 +300,7 @@ ExitCode optimize(const OptimizeOptions& options) {
       {"iterations_detail", iterations_json(result)},
   };
   if (options.graduated) json["rejected_edges"] = rejected;
+  add_violations(json, graph);
   if (!diagnosis.is_null()) {
     json["diagnosis"] = diagnosis;
     json["diagnosis_text"] = diagnosis_text;

@@ -24,8 +24,8 @@ endfunction()
 macro(locograph_hash_plugin_headers root planning)
   set(locograph_hashed
     common/error core/constraint core/edge core/edge_evaluation core/edge_line core/edge_pool
-    core/fields core/parameters core/plugin core/robust_kernel core/scratch core/type_registry
-    core/typed_edge_pool core/vertex core/vertex_difference core/vertex_pool)
+    core/fields core/parameters core/plugin core/robust_kernel core/row_label core/scratch
+    core/type_registry core/typed_edge_pool core/vertex core/vertex_difference core/vertex_pool)
   if(${planning})
     list(APPEND locograph_hashed
       robots/collision_model robots/robot robots/robot_state

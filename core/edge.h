@@ -32,6 +32,11 @@
 /// error has so many rows for each of the many vertices, and files count the vertices, not the
 /// rows. Every edge carries its vertices, information and robust kernel by value.
 ///
+/// What its rows are called when somebody asks which constraint is violated (violations.h), by the
+/// first that the type has: RowLabel row_label(int row, const V&… vertices) const, with the fixed
+/// (or leading) vertices as they stand in the graph; RowLabel row_label(int row) const; static
+/// constexpr std::string_view kUnit, where all rows have one unit and no name.
+///
 /// A WeightedEdge has a diagonal Ω, a vector of weights, and a row-major Jacobian that is zero
 /// before jacobians() is called; only entries other than zero cost time. It suits errors of many
 /// rows that each touch a few coordinates (limits, distances). With kOneSided = true its rows are

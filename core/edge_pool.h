@@ -9,6 +9,7 @@
 #include <locograph/core/constraint.h>
 #include <locograph/core/edge.h>
 #include <locograph/core/parameters.h>
+#include <locograph/core/row_label.h>
 #include <locograph/core/scratch.h>
 #include <locograph/core/vertex_pool.h>
 
@@ -123,6 +124,11 @@ class EdgePool {
   virtual void write(int index, FieldWriter& out) const = 0;
   /// Removes by moving the last edge into the gap.
   virtual void remove(int index) = 0;
+
+  /// Of a row of edge k, at the states in the graph; empty where the type says nothing.
+  virtual RowLabel row_label(const CompiledEdges& /*edges*/, int /*k*/, int /*row*/) const {
+    return {};
+  }
 
  private:
   std::string tag_;

@@ -122,6 +122,11 @@ class TypedEdgePool final : public EdgePool {
     return result;
   }
 
+  RowLabel row_label(const CompiledEdges& compiled, int k, int row) const override {
+    return label_of(edges[compiled.edges[k]], slots(compiled, k), row,
+                    typename Evaluator::FixedSequence());
+  }
+
   bool predict([[maybe_unused]] int index, [[maybe_unused]] int slot,
                [[maybe_unused]] const double* other_state,
                [[maybe_unused]] double* state) const override {
@@ -191,6 +196,25 @@ class TypedEdgePool final : public EdgePool {
     const int begin = compiled.slot_begin[k];
     return {compiled.slots.data() + begin,
             static_cast<std::size_t>(compiled.slot_begin[k + 1] - begin)};
+  }
+
+  /// The first that the type has: a label for each row, with its (leading) vertices or without
+  /// them; one unit for all rows.
+  template <class Own, int... I>
+  static RowLabel label_of([[maybe_unused]] const Own& edge,
+                           [[maybe_unused]] std::span<const CompiledEdges::Slot> own,
+                           [[maybe_unused]] int row, std::integer_sequence<int, I...>) {
+    if constexpr (requires {
+                    edge.row_label(row, detail::vertex_of<detail::FixedVertex<Own, I>>(own[I])...);
+                  }) {
+      return edge.row_label(row, detail::vertex_of<detail::FixedVertex<Own, I>>(own[I])...);
+    } else if constexpr (requires { edge.row_label(row); }) {
+      return edge.row_label(row);
+    } else if constexpr (requires { Own::kUnit; }) {
+      return {"", std::string(Own::kUnit)};
+    } else {
+      return {};
+    }
   }
 
   /// Null for an edge that is no constraint.

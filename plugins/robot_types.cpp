@@ -1,4 +1,5 @@
 #include <locograph/plugins/acceleration_limits/edge_acceleration_limits.h>
+#include <locograph/plugins/acceleration_limits/edge_acceleration_limits_timed.h>
 #include <locograph/plugins/com/edge_com.h>
 #include <locograph/plugins/contact/edge_contact.h>
 #include <locograph/plugins/frame_pose/edge_frame_pose.h>
@@ -13,7 +14,10 @@
 #include <locograph/plugins/static_balance/edge_torque_limits.h>
 #include <locograph/plugins/static_balance/edge_wrench_norm.h>
 #include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
+#include <locograph/plugins/time_step/edge_duration.h>
+#include <locograph/plugins/time_step/edge_time_step_limits.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
+#include <locograph/plugins/velocity_limits/edge_velocity_limits_timed.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
 #include <locograph/plugins/wheel_contact/edge_wheel_contact.h>
 
@@ -27,21 +31,31 @@ void add_robot_types(TypeRegistry& types) {
   types.add_parameter<ScenarioParameter>("PARAMS_SCENARIO");
   types.add_parameter<ContactParameter>("PARAMS_CONTACT");
   types.add_vertex<VertexConfiguration>();
+  types.add_vertex<VertexTimeStep>();
   types.add_vertex<VertexWrenches>();
   types.add_edge<EdgeAccelerationLimits>();
+  types.add_edge<EdgeAccelerationLimitsTimed>();
+  types.add_edge<EdgeAccelerationLimitsTimedSigned>();
   types.add_edge<EdgeBalance>();
   types.add_edge<EdgeCom>();
   types.add_edge<EdgeContact>();
   types.add_edge<EdgeContactWrench>();
+  types.add_edge<EdgeDuration>();
   types.add_edge<EdgeFramePose>();
   types.add_edge<EdgeJointLimits>();
   types.add_edge<EdgeObstacleDistance>();
   types.add_edge<EdgePlanTracking>();
+  types.add_edge<EdgeRestAccelerationLimitsTimed>();
+  types.add_edge<EdgeRestAccelerationLimitsTimedSigned>();
   types.add_edge<EdgeRolling>();
   types.add_edge<EdgeSelfCollision>();
   types.add_edge<EdgeSweptObstacleDistance>();
+  types.add_edge<EdgeTimeStepLimits>();
+  types.add_edge<EdgeTimeStepLimitsSigned>();
   types.add_edge<EdgeTorqueLimits>();
   types.add_edge<EdgeVelocityLimits>();
+  types.add_edge<EdgeVelocityLimitsTimed>();
+  types.add_edge<EdgeVelocityLimitsTimedSigned>();
   types.add_edge<EdgeVelocityTracking>();
   types.add_edge<EdgeWheelContact>();
   types.add_edge<EdgeWrenchNorm>();

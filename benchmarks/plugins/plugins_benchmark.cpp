@@ -3,6 +3,7 @@
 #include <benchmark/benchmark.h>
 #include <locograph/core/workspace.h>
 #include <locograph/plugins/acceleration_limits/edge_acceleration_limits.h>
+#include <locograph/plugins/acceleration_limits/edge_acceleration_limits_timed.h>
 #include <locograph/plugins/com/edge_com.h>
 #include <locograph/plugins/contact/edge_contact.h>
 #include <locograph/plugins/frame_pose/edge_frame_pose.h>
@@ -16,7 +17,10 @@
 #include <locograph/plugins/static_balance/edge_torque_limits.h>
 #include <locograph/plugins/static_balance/edge_wrench_norm.h>
 #include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
+#include <locograph/plugins/time_step/edge_duration.h>
+#include <locograph/plugins/time_step/edge_time_step_limits.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
+#include <locograph/plugins/velocity_limits/edge_velocity_limits_timed.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
 #include <locograph/plugins/wheel_contact/edge_wheel_contact.h>
 #include <locograph/world/octree.h>
@@ -93,6 +97,28 @@ class Drive {
       graph_.add_edge(edge, ids_[i - 2], ids_[i - 1], ids_[i]);
     }
   }
+  /// The time from each configuration to the next as a vertex.
+  void add_steps() {
+    for (int i = 1; i < kConfigurations; ++i) {
+      steps_.push_back(graph_.add_vertex(2000 + i, VertexTimeStep(0.2)));
+    }
+  }
+  template <class E>
+  void add_to_steps(const E& edge) {
+    for (const auto& step : steps_) graph_.add_edge(edge, step);
+  }
+  template <class E>
+  void add_over_one_step(const E& edge) {
+    for (std::size_t i = 1; i < ids_.size(); ++i) {
+      graph_.add_edge(edge, ids_[i - 1], ids_[i], steps_[i - 1]);
+    }
+  }
+  template <class E>
+  void add_over_two_steps(const E& edge) {
+    for (std::size_t i = 2; i < ids_.size(); ++i) {
+      graph_.add_edge(edge, ids_[i - 2], ids_[i - 1], ids_[i], steps_[i - 2], steps_[i - 1]);
+    }
+  }
   /// Each configuration stands on its four feet: surfaces, the wheels braked.
   void add_wrenches() {
     std::vector<int> numbers;
@@ -139,6 +165,7 @@ class Drive {
   Graph graph_;
   std::vector<VertexId<VertexConfiguration>> ids_;
   std::vector<VertexId<VertexWrenches>> wrenches_;
+  std::vector<VertexId<VertexTimeStep>> steps_;
   Problem problem_;
   Workspace workspace_;
 };
@@ -201,6 +228,47 @@ void AccelerationLimits(benchmark::State& run, bool linearise, double limit) {
 BENCHMARK_CAPTURE(AccelerationLimits, error, false, 20.0);
 BENCHMARK_CAPTURE(AccelerationLimits, linearise, true, 20.0);
 BENCHMARK_CAPTURE(AccelerationLimits, linearise_violated_where_it_moves, true, 1e-9);
+
+void VelocityLimitsOverSteps(benchmark::State& run, bool linearise, LimitKind kind) {
+  Drive drive(true);
+  drive.add_steps();
+  const Robot& robot = drive.model();
+  if (kind == LimitKind::kHinged) {
+    drive.add_over_one_step(EdgeVelocityLimitsTimed(robot, 0.95, 0.5, 0.5, 1e4));
+  } else {
+    drive.add_over_one_step(EdgeVelocityLimitsTimedSigned(robot, 0.95, 0.5, 0.5, 1e4));
+  }
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(VelocityLimitsOverSteps, error, false, LimitKind::kHinged);
+BENCHMARK_CAPTURE(VelocityLimitsOverSteps, linearise, true, LimitKind::kHinged);
+BENCHMARK_CAPTURE(VelocityLimitsOverSteps, linearise_signed, true, LimitKind::kSigned);
+
+void AccelerationLimitsOverSteps(benchmark::State& run, bool linearise, LimitKind kind) {
+  Drive drive(true);
+  drive.add_steps();
+  const Eigen::VectorXd limits =
+      Eigen::VectorXd::Constant(drive.model().active_joint_count() + 2, 20.0);
+  if (kind == LimitKind::kHinged) {
+    drive.add_over_two_steps(EdgeAccelerationLimitsTimed(limits, 1.0));
+  } else {
+    drive.add_over_two_steps(EdgeAccelerationLimitsTimedSigned(limits, 1.0));
+  }
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(AccelerationLimitsOverSteps, error, false, LimitKind::kHinged);
+BENCHMARK_CAPTURE(AccelerationLimitsOverSteps, linearise, true, LimitKind::kHinged);
+BENCHMARK_CAPTURE(AccelerationLimitsOverSteps, linearise_signed, true, LimitKind::kSigned);
+
+template <class E>
+void OnTimeStep(benchmark::State& run, bool linearise, const E& edge) {
+  Drive drive(true);
+  drive.add_steps();
+  drive.add_to_steps(edge);
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(OnTimeStep, duration_linearise, true, EdgeDuration(1.0));
+BENCHMARK_CAPTURE(OnTimeStep, limits_linearise, true, EdgeTimeStepLimits(0.01, 0.1, 1e4));
 
 void ObstacleDistance(benchmark::State& run, bool linearise, bool with_map, double margin_m) {
   Drive drive(with_map);

@@ -17,6 +17,7 @@
 
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/plugins/configuration/edge_fit.h>
+#include <locograph/plugins/configuration/row_labels.h>
 
 namespace locograph {
 
@@ -45,6 +46,10 @@ struct EdgeAccelerationLimits
                  const ConfigurationState& c, JacobianRef<EdgeAccelerationLimits, 0> ja,
                  JacobianRef<EdgeAccelerationLimits, 1> jb,
                  JacobianRef<EdgeAccelerationLimits, 2> jc) const;
+  RowLabel row_label(int row, const VertexConfiguration& a, const VertexConfiguration&,
+                     const VertexConfiguration&) const {
+    return motion_row(*a.robot->robot, row, "acceleration", "/s^2");
+  }
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeAccelerationLimits::kTag, EdgeAccelerationLimits)
 extern template class TypedEdgePool<EdgeAccelerationLimits>;

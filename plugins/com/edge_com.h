@@ -12,6 +12,7 @@
 
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/plugins/configuration/edge_fit.h>
+#include <locograph/plugins/configuration/row_labels.h>
 
 namespace locograph {
 
@@ -26,6 +27,7 @@ struct EdgeCom : WeightedEdge<3, VertexConfiguration> {
 
   void error(const ConfigurationState& q, Eigen::Ref<Eigen::Vector3d> e) const;
   void jacobians(const ConfigurationState& q, JacobianRef<EdgeCom, 0> j) const;
+  RowLabel row_label(int row) const { return pose_row(row); }
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeCom::kTag, EdgeCom)
 extern template class TypedEdgePool<EdgeCom>;

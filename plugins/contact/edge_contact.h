@@ -23,6 +23,7 @@
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/plugins/configuration/edge_fit.h>
 #include <locograph/plugins/configuration/frame_parameter.h>
+#include <locograph/plugins/configuration/row_labels.h>
 
 #include <span>
 
@@ -62,6 +63,11 @@ struct EdgeContact : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
 
   void error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const ConfigurationState& q, JacobianRef<EdgeContact, 0> j) const;
+  RowLabel row_label(int row) const {
+    RowLabel label = pose_row(held_coordinates(kind)[row]);
+    label.name = frame->link_name + " " + label.name;
+    return label;
+  }
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeContact::kTag, EdgeContact)
 extern template class TypedEdgePool<EdgeContact>;

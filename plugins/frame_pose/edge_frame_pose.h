@@ -11,6 +11,7 @@
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/plugins/configuration/edge_fit.h>
 #include <locograph/plugins/configuration/frame_parameter.h>
+#include <locograph/plugins/configuration/row_labels.h>
 
 namespace locograph {
 
@@ -32,6 +33,11 @@ struct EdgeFramePose : WeightedEdge<6, VertexConfiguration> {
 
   void error(const ConfigurationState& q, Eigen::Ref<Eigen::Matrix<double, 6, 1>> e) const;
   void jacobians(const ConfigurationState& q, JacobianRef<EdgeFramePose, 0> j) const;
+  RowLabel row_label(int row) const {
+    RowLabel label = pose_row(row);
+    label.name = frame->link_name + " " + label.name;
+    return label;
+  }
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeFramePose::kTag, EdgeFramePose)
 extern template class TypedEdgePool<EdgeFramePose>;

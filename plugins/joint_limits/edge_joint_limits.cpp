@@ -29,4 +29,12 @@ void EdgeJointLimits::jacobians(const ConfigurationState& q,
   }
 }
 
+RowLabel EdgeJointLimits::row_label(int row, const VertexConfiguration& q) const {
+  const Robot& robot = *q.robot->robot;
+  const Joint& joint = robot.active_joint(row);
+  const double position = q.state[robot.base_configuration_size() + row];
+  const bool upper = position - joint.upper > joint.lower - position;
+  return joint_row(robot, row, upper ? "upper limit" : "lower limit");
+}
+
 }  // namespace locograph

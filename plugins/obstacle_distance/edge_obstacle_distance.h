@@ -10,6 +10,7 @@
 
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/plugins/configuration/edge_fit.h>
+#include <locograph/plugins/configuration/row_labels.h>
 
 namespace locograph {
 
@@ -33,6 +34,9 @@ struct EdgeObstacleDistance : WeightedEdge<Eigen::Dynamic, VertexConfiguration> 
 
   void error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const ConfigurationState& q, JacobianRef<EdgeObstacleDistance, 0> j) const;
+  RowLabel row_label(int row, const VertexConfiguration& q) const {
+    return sphere_row(*q.robot, row, "near an obstacle");
+  }
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeObstacleDistance::kTag, EdgeObstacleDistance)
 extern template class TypedEdgePool<EdgeObstacleDistance>;

@@ -8,6 +8,7 @@
 
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/plugins/configuration/edge_fit.h>
+#include <locograph/plugins/configuration/row_labels.h>
 
 namespace locograph {
 
@@ -41,6 +42,9 @@ struct EdgePlanTracking : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
 
   void error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const ConfigurationState& q, JacobianRef<EdgePlanTracking, 0> j) const;
+  RowLabel row_label(int row, const VertexConfiguration& q) const {
+    return tangent_row(*q.robot->robot, row);
+  }
 };
 LOCOGRAPH_REGISTER_EDGE(EdgePlanTracking::kTag, EdgePlanTracking)
 extern template class TypedEdgePool<EdgePlanTracking>;

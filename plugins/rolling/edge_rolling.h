@@ -31,6 +31,9 @@ struct EdgeRolling : WheelsEdge<VertexConfiguration, VertexConfiguration> {
              Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const ConfigurationState& a, const ConfigurationState& b,
                  JacobianRef<EdgeRolling, 0> ja, JacobianRef<EdgeRolling, 1> jb) const;
+  RowLabel row_label(int row) const {
+    return {wheels->wheels[row / 2].link_name + (row % 2 == 0 ? " lateral" : " longitudinal"), "m"};
+  }
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeRolling::kTag, EdgeRolling)
 extern template class TypedEdgePool<EdgeRolling>;

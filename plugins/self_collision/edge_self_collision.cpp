@@ -122,4 +122,12 @@ void EdgeSelfCollision::jacobians(const ConfigurationState& q,
   }
 }
 
+RowLabel EdgeSelfCollision::row_label(int row, const VertexConfiguration& q) const {
+  const SelfCollisionShapes::Pair& pair = q.robot->self_collision.pairs[row];
+  const auto link = [&](int bound) {
+    return q.robot->robot->links()[q.robot->bounds[bound].link].name;
+  };
+  return {link(pair.first) + " near " + link(pair.second), "m"};
+}
+
 }  // namespace locograph

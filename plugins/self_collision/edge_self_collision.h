@@ -14,6 +14,7 @@
 
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/plugins/configuration/edge_fit.h>
+#include <locograph/plugins/configuration/row_labels.h>
 
 namespace locograph {
 
@@ -33,6 +34,7 @@ struct EdgeSelfCollision : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
 
   void error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const ConfigurationState& q, JacobianRef<EdgeSelfCollision, 0> j) const;
+  RowLabel row_label(int row, const VertexConfiguration& q) const;
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeSelfCollision::kTag, EdgeSelfCollision)
 extern template class TypedEdgePool<EdgeSelfCollision>;

@@ -8,6 +8,7 @@
 /// floating base only.
 
 #include <locograph/core/typed_edge_pool.h>
+#include <locograph/plugins/configuration/row_labels.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
 
@@ -26,6 +27,7 @@ struct EdgeBalance : WeightedEdge<6, VertexConfiguration, VertexWrenches> {
              Eigen::Ref<Eigen::Matrix<double, 6, 1>> e) const;
   void jacobians(const ConfigurationState& q, const WrenchesState& wrenches,
                  JacobianRef<EdgeBalance, 0> by_q, JacobianRef<EdgeBalance, 1> by_wrenches) const;
+  RowLabel row_label(int row) const { return pose_row(row, "N", "N m"); }
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeBalance::kTag, EdgeBalance)
 extern template class TypedEdgePool<EdgeBalance>;

@@ -70,6 +70,20 @@ void each_limit(const ContactParameter& contact, const double* w, F&& f) {
   }
 }
 
+/// Of a row of each_limit().
+RowLabel limit_label(const ContactParameter& contact, int row) {
+  if (contact.given.kind == WrenchKind::kRung) {
+    return row < 3 ? RowLabel{"force", "N"} : RowLabel{"moment", "N m"};
+  }
+  const int yaw_rows = 8, pressure_rows = 4;
+  const int from_end = contact.limit_rows() - row;
+  const bool surface = contact.given.kind == WrenchKind::kSurface;
+  if (surface && from_end <= yaw_rows) return {"yaw moment", "N m"};
+  if (surface && from_end <= yaw_rows + pressure_rows) return {"centre of pressure", "N m"};
+  if (row < 2) return {row == 0 ? "pull" : "normal force", "N"};
+  return {"friction", "N"};
+}
+
 int rows_of(const ContactList& contacts) {
   int rows = 0;
   for (const auto& contact : contacts) rows += contact->limit_rows();
@@ -111,6 +125,18 @@ void EdgeContactWrench::jacobians(const WrenchesState& wrenches,
     if (value <= 0.0) return;
     for (int c = 0; c < count; ++c) j(row, first + c) = limit.gradient[c];
   });
+}
+
+RowLabel EdgeContactWrench::row_label(int row, const VertexWrenches& wrenches) const {
+  for (const auto& contact : *wrenches.contacts) {
+    if (row < contact->limit_rows()) {
+      RowLabel label = limit_label(*contact, row);
+      label.name = contact->given.link + " " + label.name;
+      return label;
+    }
+    row -= contact->limit_rows();
+  }
+  return {};
 }
 
 }  // namespace locograph

@@ -34,6 +34,7 @@ struct EdgeContactWrench : WeightedEdge<Eigen::Dynamic, VertexWrenches> {
 
   void error(const WrenchesState& wrenches, Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const WrenchesState& wrenches, JacobianRef<EdgeContactWrench, 0> j) const;
+  RowLabel row_label(int row, const VertexWrenches& wrenches) const;
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeContactWrench::kTag, EdgeContactWrench)
 extern template class TypedEdgePool<EdgeContactWrench>;

@@ -91,4 +91,10 @@ void EdgeTorqueLimits::jacobians(const ConfigurationState& q, const WrenchesStat
   }
 }
 
+RowLabel EdgeTorqueLimits::row_label(int row, const VertexConfiguration& q,
+                                     const VertexWrenches&) const {
+  const Joint& joint = q.robot->robot->active_joint(row);
+  return {joint.name + " torque", joint.type == JointType::kPrismatic ? "N" : "N m"};
+}
+
 }  // namespace locograph

@@ -8,6 +8,7 @@
 /// whose effort is zero or less is an Error: no such joint holds anything.
 
 #include <locograph/core/typed_edge_pool.h>
+#include <locograph/plugins/configuration/row_labels.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
 
@@ -29,6 +30,7 @@ struct EdgeTorqueLimits : WeightedEdge<Eigen::Dynamic, VertexConfiguration, Vert
   void jacobians(const ConfigurationState& q, const WrenchesState& wrenches,
                  JacobianRef<EdgeTorqueLimits, 0> by_q,
                  JacobianRef<EdgeTorqueLimits, 1> by_wrenches) const;
+  RowLabel row_label(int row, const VertexConfiguration& q, const VertexWrenches&) const;
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeTorqueLimits::kTag, EdgeTorqueLimits)
 extern template class TypedEdgePool<EdgeTorqueLimits>;

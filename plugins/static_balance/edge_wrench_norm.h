@@ -22,6 +22,7 @@ struct EdgeWrenchNorm : WeightedEdge<Eigen::Dynamic, VertexWrenches> {
 
   void error(const WrenchesState& wrenches, Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const WrenchesState& wrenches, JacobianRef<EdgeWrenchNorm, 0> j) const;
+  RowLabel row_label(int row, const VertexWrenches& wrenches) const;
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeWrenchNorm::kTag, EdgeWrenchNorm)
 extern template class TypedEdgePool<EdgeWrenchNorm>;

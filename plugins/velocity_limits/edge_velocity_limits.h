@@ -11,6 +11,7 @@
 
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/plugins/configuration/edge_fit.h>
+#include <locograph/plugins/configuration/row_labels.h>
 
 namespace locograph {
 
@@ -36,6 +37,9 @@ struct EdgeVelocityLimits : WeightedEdge<Eigen::Dynamic, VertexConfiguration, Ve
   void jacobians(const ConfigurationState& a, const ConfigurationState& b,
                  JacobianRef<EdgeVelocityLimits, 0> ja,
                  JacobianRef<EdgeVelocityLimits, 1> jb) const;
+  RowLabel row_label(int row, const VertexConfiguration& a, const VertexConfiguration&) const {
+    return motion_row(*a.robot->robot, row, "step");
+  }
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeVelocityLimits::kTag, EdgeVelocityLimits)
 extern template class TypedEdgePool<EdgeVelocityLimits>;

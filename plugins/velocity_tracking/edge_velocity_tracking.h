@@ -9,6 +9,7 @@
 
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/plugins/configuration/edge_fit.h>
+#include <locograph/plugins/configuration/row_labels.h>
 
 namespace locograph {
 
@@ -35,6 +36,9 @@ struct EdgeVelocityTracking
   void jacobians(const ConfigurationState& a, const ConfigurationState& b,
                  JacobianRef<EdgeVelocityTracking, 0> ja,
                  JacobianRef<EdgeVelocityTracking, 1> jb) const;
+  RowLabel row_label(int row, const VertexConfiguration& a, const VertexConfiguration&) const {
+    return tangent_row(*a.robot->robot, row);
+  }
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeVelocityTracking::kTag, EdgeVelocityTracking)
 extern template class TypedEdgePool<EdgeVelocityTracking>;

@@ -21,6 +21,11 @@ struct EdgeWheelContact : WheelsEdge<VertexConfiguration> {
 
   void error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const ConfigurationState& q, JacobianRef<EdgeWheelContact, 0> j) const;
+  RowLabel row_label(int row) const {
+    const std::string& wheel = wheels->wheels[row / 2].link_name;
+    // The sine of the tilt has no unit.
+    return row % 2 == 0 ? RowLabel{wheel + " height", "m"} : RowLabel{wheel + " axle tilt", ""};
+  }
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeWheelContact::kTag, EdgeWheelContact)
 extern template class TypedEdgePool<EdgeWheelContact>;

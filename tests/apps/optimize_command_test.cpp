@@ -1,4 +1,5 @@
 #include <apps/command_runner.h>
+#include <plugins/small_robot.h>
 
 #include <sstream>
 
@@ -55,6 +56,65 @@ TEST(Optimize, TellsWhatIsFreeWhenTheSystemIsSingular) {
   const Outcome text = runner.run("optimize a.g2o --algorithm gn");
   EXPECT_NE(text.out.find("1 direction is free, mostly at vertex 7 (VERTEX_XY)"), std::string::npos)
       << text.out;
+}
+
+/// The arm of a held configuration stands 0.25 rad beyond its limit.
+const char kBeyondALimit[] =
+    "PARAMS_ROBOT 0 cart.urdf - floating 0\n"
+    "VERTEX_CONFIGURATION 3 0 0 0 0 0 0 0 0 1 2.25 0.2 0.3\n"
+    "VERTEX_CONFIGURATION 4 0 1 0 0 0 0 0 0 1 2.5 0.2 0.3\n"
+    "FIX 3\n"
+    "EDGE_JOINT_LIMITS 3 3 0 scalar 1\n"
+    "EDGE_JOINT_LIMITS 4 3 0 scalar 1\n"
+    "EDGE_PLAN_TRACKING 4 9 0 0 0 0 0 0 1 0 0.2 0.3 scalar 1\n";
+
+TEST(Optimize, TellsWhichConstraintsAreViolated) {
+  const CommandRunner runner;
+  runner.write("cart.urdf", test::kCartUrdf);
+  runner.write("plan.g2o", kBeyondALimit);
+  const nlohmann::json result = runner.run("optimize plan.g2o --json").json();
+  EXPECT_EQ(result["constraints"], 2);
+  EXPECT_EQ(result["violated_rows"], 1) << "the free configuration was brought inside";
+  ASSERT_EQ(result["violations"].size(), 1u);
+  const nlohmann::json worst = result["violations"][0];
+  EXPECT_EQ(worst["constraint"], "EDGE_JOINT_LIMITS");
+  EXPECT_EQ(worst["line"], 5);
+  EXPECT_EQ(worst["vertices"], nlohmann::json({3}));
+  EXPECT_EQ(worst["row"], 0);
+  EXPECT_EQ(worst["name"], "arm_joint upper limit");
+  EXPECT_EQ(worst["unit"], "rad");
+  EXPECT_EQ(worst["one_sided"], true);
+  EXPECT_DOUBLE_EQ(worst["amount"], 0.25);
+  const std::string text =
+      "EDGE_JOINT_LIMITS 3 (line 5), row 0: arm_joint upper limit exceeded by 0.25 rad";
+  EXPECT_EQ(worst["text"], text);
+  const Outcome summary = runner.run("optimize plan.g2o");
+  EXPECT_NE(summary.out.find("2 constraints, 1 row violated\n  " + text), std::string::npos)
+      << summary.out;
+}
+
+TEST(Optimize, HasNothingToSayOfConstraintsWhereThereAreNone) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle);
+  EXPECT_FALSE(runner.run("optimize a.g2o --json").json().contains("violations"));
+}
+
+TEST(Info, TellsWhichConstraintsAreViolated) {
+  const CommandRunner runner;
+  runner.write("cart.urdf", test::kCartUrdf);
+  runner.write("plan.g2o", kBeyondALimit);
+  const Outcome outcome = runner.run("info plan.g2o");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  // As they stand in the file, the worse one first.
+  const std::size_t worse = outcome.out.find(
+                        "EDGE_JOINT_LIMITS 4 (line 6), row 0: arm_joint upper "
+                        "limit exceeded by 0.5 rad"),
+                    better = outcome.out.find(
+                        "EDGE_JOINT_LIMITS 3 (line 5), row 0: arm_joint "
+                        "upper limit exceeded by 0.25 rad");
+  EXPECT_NE(worse, std::string::npos) << outcome.out;
+  EXPECT_NE(better, std::string::npos) << outcome.out;
+  EXPECT_LT(worse, better);
 }
 
 TEST(Optimize, DiagnosesAHealthyGraphWhenAsked) {
