@@ -16,6 +16,7 @@
 #endif
 #include <locograph/types/bundle/bal_file.h>
 #include <locograph/types/chordal_guess.h>
+#include <locograph/types/doubtful_closures.h>
 
 #include <CLI/Validators.hpp>
 #include <algorithm>
@@ -96,19 +97,54 @@ Graph load(const OptimizeOptions& options, ReadReport& report) {
   return graph;
 }
 
-void guess(Graph& graph, const OptimizeOptions& options, LinearSolver& solver) {
+/// Returns the loop closures that were left out because nothing confirms them: none without a
+/// kernel or graduation to bring them back.
+std::vector<int> guess(Graph& graph, const OptimizeOptions& options, LinearSolver& solver) {
   int unreached = 0;
+  std::vector<int> doubted;
   if (options.initial_guess == "odometry") unreached = guess_from_odometry(graph);
   if (options.initial_guess == "spanning-tree") unreached = guess_from_spanning_tree(graph);
-  if (options.initial_guess == "chordal") unreached = guess_chordal(graph, solver);
+  if (options.initial_guess == "chordal") {
+    if (options.graduated || options.kernel != "none") {
+      doubted = doubtful_closures(graph, odometry_edges(graph));
+    }
+    unreached = guess_chordal(graph, solver, doubted);
+  }
   if (unreached > 0) {
     print_warning(counted(unreached, "vertex", "vertices") +
                   " cannot be predicted from any edge: first values kept");
   }
+  return doubted;
+}
+
+/// Scalar unknowns of the graph.
+int unknowns(const Graph& graph) {
+  int sum = 0;
+  for (int v = 0; v < graph.vertex_slots(); ++v) {
+    if (graph.vertex_alive(v) && !graph.vertex_record(v).fixed) sum += graph.dimension(v);
+  }
+  return sum;
+}
+
+OptimiserResult run_graduated(Graph& graph, const OptimizeOptions& options, LinearSolver& solver,
+                              const std::vector<int>& doubted, int& rejected, Times& times) {
+  const Stopwatch watch;
+  ThreadPool threads(options.threads);
+  solver.use_threads(&threads);
+  GraduationOptions graduation;
+  graduation.optimiser = options.optimiser;
+  graduation.for_all = options.initial_guess == "chordal";
+  GraduationResult result =
+      optimise_graduated(graph, graduation, solver, odometry_edges(graph), doubted, &threads);
+  solver.use_threads(nullptr);
+  times.optimize = watch.seconds();
+  rejected = result.rejected;
+  result.optimiser.iterations = result.iterations;
+  return result.optimiser;
 }
 
 OptimiserResult run(Graph& graph, const OptimizeOptions& options, LinearSolver& solver,
-                    int& dimension, int& rejected, Times& times) {
+                    Times& times) {
   Stopwatch watch;
   ThreadPool threads(options.threads);
   Problem problem;
@@ -118,20 +154,6 @@ OptimiserResult run(Graph& graph, const OptimizeOptions& options, LinearSolver& 
   workspace.use_threads(&threads);
   workspace.load_state();
   solver.use_threads(&threads);
-  dimension = problem.dimension();
-  if (options.graduated) {
-    times.compile = watch.lap();
-    GraduationOptions graduation;
-    graduation.optimiser = options.optimiser;
-    GraduationResult result =
-        optimise_graduated(workspace, graduation, solver, odometry_edges(graph));
-    workspace.store_state();
-    solver.use_threads(nullptr);
-    times.optimize = watch.seconds();
-    rejected = result.rejected;
-    result.optimiser.iterations = result.iterations;
-    return result.optimiser;
-  }
   Optimiser optimiser(options.optimiser);
   optimiser.start(workspace, solver);
   times.compile = watch.lap();
@@ -152,14 +174,11 @@ OptimiserResult run(Graph& graph, const OptimizeOptions& options, LinearSolver& 
 /// The whole graph by Ceres.
 OptimiserResult run_ceres([[maybe_unused]] Graph& graph,
                           [[maybe_unused]] const OptimizeOptions& options,
-                          [[maybe_unused]] int& dimension, [[maybe_unused]] Times& times) {
+                          [[maybe_unused]] Times& times) {
 #ifdef LOCOGRAPH_WITH_CERES_BACKEND
   const Stopwatch watch;
   const OptimiserResult result = optimise_with_ceres(graph, options.optimiser, options.threads);
   times.optimize = watch.seconds();
-  for (int v = 0; v < graph.vertex_slots(); ++v) {
-    if (graph.vertex_alive(v) && !graph.vertex_record(v).fixed) dimension += graph.dimension(v);
-  }
   return result;
 #else
   throw Error("this locograph was built without Ceres", "another --linear-solver");
@@ -260,10 +279,13 @@ ExitCode optimize(const OptimizeOptions& options) {
     gauge = hold_gauge(graph, options.input_name(), options.lenient);
     mark_points_for_elimination(graph);
   }
-  guess(graph, options, *solver);
-  int dimension = 0, rejected = 0;
-  const OptimiserResult result = ceres ? run_ceres(graph, options, dimension, times)
-                                       : run(graph, options, *solver, dimension, rejected, times);
+  const std::vector<int> doubted = guess(graph, options, *solver);
+  const int dimension = unknowns(graph);
+  int rejected = 0;
+  const OptimiserResult result =
+      ceres               ? run_ceres(graph, options, times)
+      : options.graduated ? run_graduated(graph, options, *solver, doubted, rejected, times)
+                          : run(graph, options, *solver, times);
   Json diagnosis;
   std::string diagnosis_text;
   if (options.diagnose || calls_for_diagnosis(result)) {
@@ -341,7 +363,10 @@ Command add_optimize(CLI::App& app) {
                    "Robust kernel of every edge, NAME[:WIDTH][:second-order] or barron:WIDTH:ALPHA "
                    "(see: locograph list kernels)")
       ->capture_default_str();
-  parser->add_option("--initial-guess", o.initial_guess, "none, odometry, spanning-tree or chordal")
+  parser
+      ->add_option("--initial-guess", o.initial_guess,
+                   "none, odometry, spanning-tree or chordal; chordal with --gnc or --kernel does "
+                   "without the loop closures that no short cycle confirms")
       ->check(CLI::IsMember({"none", "odometry", "spanning-tree", "chordal"}))
       ->capture_default_str();
   parser->add_flag(

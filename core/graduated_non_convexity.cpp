@@ -41,16 +41,23 @@ class Rounds {
         number[p][compiled[p].edges[k]] = static_cast<int>(k);
       }
     }
+    double each = options.inlier_probability;
+    if (options.for_all) {
+      int count = 0;
+      for (int slot = 0; slot < graph_.edge_slots(); ++slot) {
+        if (graph_.edge_alive(slot) && !is_trusted[slot]) ++count;
+      }
+      each = 1.0 - (1.0 - each) / std::max(count, 1);
+    }
     for (int slot = 0; slot < graph_.edge_slots(); ++slot) {
       if (!graph_.edge_alive(slot) || is_trusted[slot]) continue;
       const Graph::EdgeRecord& record = graph_.edge_record(slot);
       const int k = number[record.pool][record.index];
       if (k < 0) continue;
       EdgePool& pool = *graph_.edge_pools()[record.pool];
-      const double width = options.width > 0.0
-                               ? options.width
-                               : std::sqrt(chi_squared_quantile(pool.dimension(record.index),
-                                                                options.inlier_probability));
+      const double width =
+          options.width > 0.0 ? options.width
+                              : std::sqrt(chi_squared_quantile(pool.dimension(record.index), each));
       suspects_.push_back({slot, record.pool, record.index, k, width, pool.kernel(record.index)});
     }
     squared_.resize(suspects_.size());
@@ -148,6 +155,58 @@ class Rounds {
   double control_ = kSharp;  ///< μ
 };
 
+/// On the edges that are not `out`. The others are rejected.
+GraduationResult optimise_without(Graph& graph, const std::vector<bool>& out,
+                                  const GraduationOptions& options, LinearSolver& solver,
+                                  std::span<const int> trusted, ThreadPool* threads) {
+  std::vector<int> used;
+  for (int slot = 0; slot < graph.edge_slots(); ++slot) {
+    if (graph.edge_alive(slot) && !out[slot]) used.push_back(slot);
+  }
+  Problem problem;
+  if (static_cast<int>(used.size()) == graph.edge_count()) {
+    problem.compile(graph);
+  } else {
+    problem.compile_on(graph, used);
+  }
+  Workspace workspace;
+  workspace.allocate(problem);
+  workspace.use_threads(threads);
+  workspace.load_state();
+  GraduationResult result = optimise_graduated(workspace, options, solver, trusted);
+  workspace.store_state();
+  for (int slot = 0; slot < graph.edge_slots(); ++slot) {
+    if (!out[slot]) continue;
+    result.weight[slot] = 0.0;
+    ++result.rejected;
+  }
+  return result;
+}
+
+/// `out` becomes what is rejected at the present state. False when nothing comes back.
+bool bring_back(Graph& graph, std::vector<bool>& out, const GraduationOptions& options,
+                std::span<const int> trusted, const GraduationResult& result) {
+  std::vector<int> doubted;
+  for (int slot = 0; slot < graph.edge_slots(); ++slot) {
+    if (out[slot]) doubted.push_back(slot);
+  }
+  if (doubted.empty()) return false;
+  Problem problem;
+  problem.compile_on(graph, doubted);
+  Workspace workspace;
+  workspace.allocate(problem);
+  workspace.load_state();
+  GraduationResult back;
+  Rounds rounds(workspace, options, trusted);
+  rounds.sharpen();
+  rounds.report(back);
+  if (back.rejected == static_cast<int>(doubted.size())) return false;
+  for (int slot = 0; slot < graph.edge_slots(); ++slot) {
+    if (graph.edge_alive(slot)) out[slot] = (out[slot] ? back : result).weight[slot] < 0.5;
+  }
+  return true;
+}
+
 void check(bool good, const char* option, const char* expected) {
   if (!good) throw Error(std::string("option ") + option + " is out of range", expected);
 }
@@ -224,14 +283,24 @@ GraduationResult optimise_graduated(Workspace& workspace, const GraduationOption
 }
 
 GraduationResult optimise_graduated(Graph& graph, const GraduationOptions& options,
-                                    LinearSolver& solver, std::span<const int> trusted) {
-  Problem problem;
-  problem.compile(graph);
-  Workspace workspace;
-  workspace.allocate(problem);
-  workspace.load_state();
-  GraduationResult result = optimise_graduated(workspace, options, solver, trusted);
-  workspace.store_state();
+                                    LinearSolver& solver, std::span<const int> trusted,
+                                    std::span<const int> doubted, ThreadPool* threads) {
+  constexpr int kMostPasses = 20;
+  std::vector<bool> out(graph.edge_slots(), false);
+  for (const int slot : doubted) out[slot] = graph.edge_alive(slot);
+  GraduationResult result;
+  for (int pass = 1;; ++pass) {
+    GraduationResult now = optimise_without(graph, out, options, solver, trusted, threads);
+    if (pass > 1) now.optimiser.initial = result.optimiser.initial;
+    now.rounds += result.rounds;
+    now.iterations += result.iterations;
+    result = std::move(now);
+    if (doubted.empty() || pass == kMostPasses ||
+        result.optimiser.reason == OptimiserResult::Reason::kDeadline ||
+        !bring_back(graph, out, options, trusted, result)) {
+      break;
+    }
+  }
   return result;
 }
 

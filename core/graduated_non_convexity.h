@@ -18,7 +18,10 @@
 ///
 /// Edges known to be right (odometry, priors) should be named as trusted; they keep their kernel.
 /// Constraints are never suspect.
-/// Start from values that do not rest on suspect edges: odometry. Deterministic.
+/// Start from values that do not rest on wrong edges: odometry, or where that drifts too far the
+/// chordal guess without the doubtful closures (types/doubtful_closures.h), naming these as
+/// doubted. Doubted edges are left out of the problem, so that they neither pull nor fill its
+/// matrix, until their s is below c² at the optimum of the others. Deterministic.
 
 #include <locograph/core/optimiser.h>
 
@@ -33,6 +36,10 @@ struct GraduationOptions {
   Graduation kind = Graduation::kTruncated;
   /// Probability that s of a right measurement is below c².
   double inlier_probability = 0.99;
+  /// inlier_probability is that of all right measurements together: each of m suspect edges gets
+  /// the quantile at 1 − (1 − p)/m (Bonferroni), lest a graph loses one in a hundred of them. For
+  /// good initial values; from poor ones the narrower c rejects more of what is wrong.
+  bool for_all = false;
   /// c for every suspect edge; 0: from inlier_probability and the dimension of the edge.
   double width = 0.0;
   /// By which the control parameter μ changes from round to round.
@@ -58,9 +65,12 @@ struct GraduationResult {
 /// `trusted` are edge slots.
 GraduationResult optimise_graduated(Workspace& workspace, const GraduationOptions& options,
                                     LinearSolver& solver, std::span<const int> trusted = {});
-/// Compiles, optimises and writes the result back to the graph.
+/// Compiles, optimises and writes the result back to the graph. Leaving out the `doubted` edges
+/// must not disconnect it. Doubted edges that stay out count as rejected, but not in the costs.
 GraduationResult optimise_graduated(Graph& graph, const GraduationOptions& options,
-                                    LinearSolver& solver, std::span<const int> trusted = {});
+                                    LinearSolver& solver, std::span<const int> trusted = {},
+                                    std::span<const int> doubted = {},
+                                    ThreadPool* threads = nullptr);
 
 /// Slots of the edges that are no loop closures: on one vertex, on consecutive ids, or on a vertex
 /// that nothing else measures.

@@ -1,5 +1,6 @@
 #include <locograph/core/initial_guess.h>
 #include <locograph/types/chordal_guess.h>
+#include <locograph/types/parts.h>
 #include <locograph/types/slam2d/edges.h>
 #include <locograph/types/slam3d/edges.h>
 #include <locograph/types/slam3d/priors.h>
@@ -92,25 +93,6 @@ Anchor<N> anchor(const E& edge, const Pose& offset) {
           Space<N>::rotation_weight(edge.information),
           axes * edge.information.template topLeftCorner<N, N>() * axes.transpose()};
 }
-
-/// Sets of vertices that relations tie together.
-class Parts {
- public:
-  explicit Parts(int size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
-  /// The lowest slot of the part.
-  int first(int v) {
-    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-    return v;
-  }
-  void join(int a, int b) {
-    a = first(a);
-    b = first(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 template <int N>
 class Relaxation {
@@ -359,45 +341,57 @@ class Relaxation {
   Eigen::MatrixXd right_;
 };
 
-Relaxation<2> planar(Graph& graph) {
+/// use(edge) for every edge of type E that is not left out.
+template <class E, class Use>
+void for_each(const Graph& graph, const std::vector<bool>& left_out, Use use) {
+  for (int slot = 0; slot < graph.edge_slots(); ++slot) {
+    if (!graph.edge_alive(slot) || left_out[slot]) continue;
+    const Graph::EdgeRecord& record = graph.edge_record(slot);
+    const EdgePool& pool = *graph.edge_pools()[record.pool];
+    if (pool.type() == typeid(E)) {
+      use(static_cast<const TypedEdgePool<E>&>(pool).edges[record.index]);
+    }
+  }
+}
+
+Relaxation<2> planar(Graph& graph, const std::vector<bool>& left_out) {
   std::vector<Relation<2>> relations;
   std::vector<Anchor<2>> anchors;
   const SE2<double> none;
-  for (const EdgeSE2& e : graph.edges_of<EdgeSE2>())
-    relations.push_back(relation<2>(e, none, none));
-  for (const EdgeSE2Offset& e : graph.edges_of<EdgeSE2Offset>()) {
+  for_each<EdgeSE2>(graph, left_out,
+                    [&](const EdgeSE2& e) { relations.push_back(relation<2>(e, none, none)); });
+  for_each<EdgeSE2Offset>(graph, left_out, [&](const EdgeSE2Offset& e) {
     relations.push_back(relation<2>(e, e.first, e.second));
-  }
-  for (const EdgePriorSE2& e : graph.edges_of<EdgePriorSE2>()) {
-    anchors.push_back(anchor<2>(e, none));
-  }
-  for (const EdgePriorSE2XY& e : graph.edges_of<EdgePriorSE2XY>()) {
+  });
+  for_each<EdgePriorSE2>(graph, left_out,
+                         [&](const EdgePriorSE2& e) { anchors.push_back(anchor<2>(e, none)); });
+  for_each<EdgePriorSE2XY>(graph, left_out, [&](const EdgePriorSE2XY& e) {
     anchors.push_back({e.vertices[0], Matrix<2>::Identity(), e.measurement, Vector<2>::Zero(), 0.0,
                        e.information});
-  }
+  });
   return {graph, std::move(relations), std::move(anchors)};
 }
 
-Relaxation<3> spatial(Graph& graph) {
+Relaxation<3> spatial(Graph& graph, const std::vector<bool>& left_out) {
   std::vector<Relation<3>> relations;
   std::vector<Anchor<3>> anchors;
   const SE3<double> none;
-  for (const EdgeSE3& e : graph.edges_of<EdgeSE3>())
-    relations.push_back(relation<3>(e, none, none));
-  for (const EdgeSE3Offset& e : graph.edges_of<EdgeSE3Offset>()) {
+  for_each<EdgeSE3>(graph, left_out,
+                    [&](const EdgeSE3& e) { relations.push_back(relation<3>(e, none, none)); });
+  for_each<EdgeSE3Offset>(graph, left_out, [&](const EdgeSE3Offset& e) {
     relations.push_back(relation<3>(e, e.first, e.second));
-  }
-  for (const EdgeSE3Prior& e : graph.edges_of<EdgeSE3Prior>()) {
-    anchors.push_back(anchor<3>(e, e.offset));
-  }
+  });
+  for_each<EdgeSE3Prior>(graph, left_out,
+                         [&](const EdgeSE3Prior& e) { anchors.push_back(anchor<3>(e, e.offset)); });
   return {graph, std::move(relations), std::move(anchors)};
 }
 
 }  // namespace
 
-int guess_chordal(Graph& graph, LinearSolver& solver) {
-  std::vector<bool> known(graph.vertex_slots(), false);
-  if (!planar(graph).solve(solver, known) || !spatial(graph).solve(solver, known)) {
+int guess_chordal(Graph& graph, LinearSolver& solver, std::span<const int> left_out) {
+  std::vector<bool> known(graph.vertex_slots(), false), out(graph.edge_slots(), false);
+  for (const int slot : left_out) out[slot] = true;
+  if (!planar(graph, out).solve(solver, known) || !spatial(graph, out).solve(solver, known)) {
     return guess_from_spanning_tree(graph);
   }
   // The walk starts at what is fixed, and now that is what is known.

@@ -15,16 +15,20 @@
 /// poses. Fixed vertices keep their state. A part that neither a fixed vertex nor a prior of the
 /// whole pose holds keeps the state of its first vertex; if it has enough priors of a position, it
 /// is then moved onto them as a whole. Points and what else is left follow by prediction, as in
-/// guess_from_spanning_tree(). Robust kernels are not looked at.
+/// guess_from_spanning_tree(). Robust kernels are not looked at: where loop closures may be wrong,
+/// leave out those that doubtful_closures() finds.
 
 #include <locograph/core/graph.h>
 #include <locograph/core/linear_solver.h>
+
+#include <span>
 
 namespace locograph {
 
 /// Returns the number of vertices that nothing reaches: they keep their state. When a linear system
 /// cannot be solved (information beyond the range of numbers) every value comes from the spanning
-/// tree instead. Leaves `solver` analysed for the pose graph.
-int guess_chordal(Graph& graph, LinearSolver& solver);
+/// tree instead. Leaves `solver` analysed for the pose graph. `left_out`: slots of edges not to
+/// use.
+int guess_chordal(Graph& graph, LinearSolver& solver, std::span<const int> left_out = {});
 
 }  // namespace locograph

@@ -1,12 +1,14 @@
 /// Pose graphs of which every tenth loop closure is false: what plain least squares, robust kernels
-/// and graduated non-convexity make of them, from odometry.
+/// and graduated non-convexity make of them.
 ///
-///     robustness_benchmark [--fraction F] [--seed N] [FILE.g2o…]
+///     robustness_benchmark [--fraction F] [--seed N] [--method NAME]… [FILE.g2o…]
 ///
 /// Prints one JSON object. For each method: chi2 of the true edges over that of the optimum without
 /// false ones, root mean square and largest distance of the positions from that optimum [m], how
 /// many false closures were kept and how many true ones rejected (weight below and above ½), and
 /// the time [s]. `:closures` after a kernel: on loop closures only, otherwise on every edge.
+/// `chordal+` before a method: from the chordal guess without the doubtful closures, and garbage
+/// before it; otherwise from odometry.
 
 #include <locograph/common/deadline.h>
 #include <locograph/core/graduated_non_convexity.h>
@@ -14,6 +16,7 @@
 #include <locograph/core/initial_guess.h>
 #include <locograph/solvers/linear_solvers.h>
 #include <locograph/types/chordal_guess.h>
+#include <locograph/types/doubtful_closures.h>
 #include <locograph/types/standard_types.h>
 
 #include <algorithm>
@@ -55,14 +58,12 @@ class Case {
     wrong_ = make_false_closures<E>(optimum_, fraction, seed);
   }
 
-  Json run() const {
+  Json run(const std::vector<std::string>& methods) const {
     Json json;
     json["file"] = file_.filename().string();
     json["false_closures"] = wrong_.edges.size();
     json["chi2_without_them"] = best_;
-    for (const char* method :
-         {"none", "huber:1", "cauchy:1", "geman-mcclure:3", "dcs:1", "dcs:1:closures",
-          "gnc-truncated", "gnc-geman-mcclure", "gnc-truncated:all"}) {
+    for (const std::string& method : methods) {
       json[method] = run(method);
       std::cerr << "  " << method << ": " << json[method].dump() << "\n";
     }
@@ -70,22 +71,49 @@ class Case {
   }
 
  private:
+  static constexpr std::string_view kChordal = "chordal+";
+
+  /// The same for every method.
+  static void make_garbage(Graph& graph) {
+    std::mt19937 engine(1);
+    std::normal_distribution<double> normal(0.0, 10.0);
+    for (int v = 1; v < graph.vertex_slots(); ++v) {
+      double* state = graph.state(v);
+      for (int i = 0; i < graph.state_size(v); ++i) state[i] = normal(engine);
+      if constexpr (E::kDimension == 6) Eigen::Map<Eigen::Vector4d>(state + 3).normalize();
+    }
+  }
+
   Json run(std::string method) const {
     Graph graph = load(file_);
     const int edges = graph.edge_slots();
     const std::vector<EdgeId> added = wrong_.add(graph);
-    guess_from_odometry(graph);
     const std::vector<int> odometry = odometry_edges(graph);
     const std::unique_ptr<LinearSolver> solver = make_linear_solver("auto");
+    const bool chordal = method.starts_with(kChordal);
+    if (chordal) {
+      method.erase(0, kChordal.size());
+      make_garbage(graph);
+    } else {
+      guess_from_odometry(graph);
+    }
     const Stopwatch watch;
+    std::vector<int> doubted;
+    if (chordal) {
+      doubted = doubtful_closures(graph, odometry);
+      guess_chordal(graph, *solver, doubted);
+    }
+    const double seconds_for_guess = watch.seconds();
     std::vector<double> weight;
     OptimiserResult result;
     if (method.starts_with("gnc")) {
       GraduationOptions options;
       if (method.starts_with("gnc-geman")) options.kind = Graduation::kGemanMcClure;
       const bool all = method.ends_with(":all");
+      options.for_all = chordal;
       const GraduationResult graduated = optimise_graduated(
-          graph, options, *solver, all ? std::span<const int>() : std::span<const int>(odometry));
+          graph, options, *solver, all ? std::span<const int>() : std::span<const int>(odometry),
+          doubted);
       weight = graduated.weight;
       result = graduated.optimiser;
       result.iterations = graduated.iterations;
@@ -104,6 +132,13 @@ class Case {
     }
     Json json;
     json["seconds"] = watch.seconds();
+    if (chordal) {
+      json["seconds_for_guess"] = seconds_for_guess;
+      json["doubted_false"] =
+          std::count_if(doubted.begin(), doubted.end(), [&](int slot) { return slot >= edges; });
+      json["doubted_true"] =
+          std::count_if(doubted.begin(), doubted.end(), [&](int slot) { return slot < edges; });
+    }
     json["iterations"] = result.iterations;
     json["converged"] = result.converged;
     json["false_kept"] =
@@ -163,13 +198,27 @@ int main(int argc, char** argv) {
   double fraction = 0.1;
   unsigned seed = 1;
   std::vector<std::filesystem::path> files;
-  for (const char* name : {"manhattan", "intel", "CSAIL", "sphere2500", "parking-garage"}) {
+  std::vector<std::string> methods = {"none",
+                                      "huber:1",
+                                      "cauchy:1",
+                                      "geman-mcclure:3",
+                                      "dcs:1",
+                                      "dcs:1:closures",
+                                      "gnc-truncated",
+                                      "gnc-geman-mcclure",
+                                      "gnc-truncated:all",
+                                      "chordal+dcs:1:closures",
+                                      "chordal+gnc-truncated"};
+  for (const char* name :
+       {"manhattan", "intel", "CSAIL", "sphere2500", "torus3D", "parking-garage"}) {
     files.push_back(pose_graph_file(name));
   }
   CLI::App app("Pose graphs with false loop closures", "robustness_benchmark");
-  app.add_option("FILE", files, "Pose graphs (.g2o); default: five of the shared data");
+  app.add_option("FILE", files, "Pose graphs (.g2o); default: six of the shared data");
   app.add_option("--fraction", fraction, "Of the loop closures that are false, in (0, 1)");
   app.add_option("--seed", seed, "Of the false ones");
+  app.add_option("--method", methods, "Only these; a kernel of locograph optimize is one, too")
+      ->allow_extra_args(false);
   return run_benchmark(app, argc, argv, [&] {
     if (!(fraction > 0.0 && fraction < 1.0)) {
       throw Error("option --fraction", "a number in (0, 1)");
@@ -179,8 +228,8 @@ int main(int argc, char** argv) {
     for (const std::filesystem::path& file : files) {
       std::cerr << file.filename().string() << "\n";
       const bool planar = !load(file).edges_of<EdgeSE2>().empty();
-      all["graphs"].push_back(planar ? Case<EdgeSE2>(file, fraction, seed).run()
-                                     : Case<EdgeSE3>(file, fraction, seed).run());
+      all["graphs"].push_back(planar ? Case<EdgeSE2>(file, fraction, seed).run(methods)
+                                     : Case<EdgeSE3>(file, fraction, seed).run(methods));
     }
     std::cout << all.dump(1) << "\n";
   });

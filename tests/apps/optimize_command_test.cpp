@@ -267,6 +267,20 @@ TEST(Optimize, LeavesWrongLoopClosuresOutWhenAskedTo) {
   EXPECT_FALSE(runner.run("optimize a.g2o --json").json().contains("rejected_edges"));
 }
 
+TEST(Optimize, DoesNotBelieveAWrongLoopClosureForTheChordalGuessEither) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle + std::string("EDGE_SE2 0 2 50 0 0 100 0 0 100 0 100\n"));
+  const Outcome outcome = runner.run("optimize a.g2o --initial-guess chordal --gnc --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["rejected_edges"], 1);
+  // What the triangle costs alone: the wrong edge is not in the problem.
+  EXPECT_NEAR(outcome.json()["final_chi2"].get<double>(), 1.0 / 3.0, 1e-6);
+  const Outcome with_kernel =
+      runner.run("optimize a.g2o --initial-guess chordal --kernel dcs:1 --json");
+  ASSERT_EQ(with_kernel.exit_code, 0) << with_kernel.err;
+  EXPECT_LT(with_kernel.json()["final_cost"].get<double>(), 2.0);
+}
+
 TEST(Optimize, SaysNoWhenTheIterationsRunOutAndStillWritesWhatItHas) {
   const CommandRunner runner;
   runner.write("a.g2o", kTriangle);

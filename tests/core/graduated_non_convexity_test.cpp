@@ -94,6 +94,41 @@ TEST_P(EitherGraduation, LeavesTrustedEdgesAlone) {
   EXPECT_EQ(result.weight[trusted.slot], 1.0);
 }
 
+TEST_P(EitherGraduation, BringsBackWhatIsDoubtedWithoutReason) {
+  Graph all = helix_3d(80, 0.02), doubting = helix_3d(80, 0.02);
+  const std::vector<EdgeId> wrong = make_false_closures<EdgeSE3>(all, 0.2, 4).add(doubting);
+  guess_from_odometry(all);
+  guess_from_odometry(doubting);
+  const std::unique_ptr<LinearSolver> solver = make_linear_solver("auto");
+  const std::vector<int> odometry = odometry_edges(doubting);
+  optimise_graduated(all, options(), *solver, odometry_edges(all));
+  std::vector<int> doubted;  // the wrong ones, and two in three of the others
+  for (int slot = 0; slot < doubting.edge_slots(); ++slot) {
+    const bool trusted = std::find(odometry.begin(), odometry.end(), slot) != odometry.end();
+    if (!trusted && (slot >= wrong.front().slot || slot % 3 != 0)) doubted.push_back(slot);
+  }
+  ASSERT_GT(doubted.size(), wrong.size() + 20);
+  const GraduationResult result =
+      optimise_graduated(doubting, options(), *solver, odometry, doubted);
+  EXPECT_TRUE(result.optimiser.converged) << result.optimiser.reason_text();
+  EXPECT_EQ(result.rejected, static_cast<int>(wrong.size()));
+  for (const EdgeId edge : wrong) EXPECT_EQ(result.weight[edge.slot], 0.0);
+  EXPECT_LT(distance(all, doubting), 1e-4);
+}
+
+TEST(Graduation, OfAllTogetherLosesNoneOfManyRightEdges) {
+  // With one in a hundred beyond its own quantile, some of these are rejected; together, none.
+  Graph each = helix_3d(400, 0.3), all = helix_3d(400, 0.3);
+  const std::unique_ptr<LinearSolver> solver = make_linear_solver("auto");
+  GraduationOptions options;
+  options.inlier_probability = 0.9;
+  const int lost = optimise_graduated(each, options, *solver).rejected;
+  options.for_all = true;
+  const int lost_of_all = optimise_graduated(all, options, *solver).rejected;
+  EXPECT_GT(lost, 0);
+  EXPECT_EQ(lost_of_all, 0);
+}
+
 TEST_P(EitherGraduation, EndsWithTheDeadline) {
   Graph graph = ring_2d(20);
   GraduationOptions late = options();
