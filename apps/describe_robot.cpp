@@ -1,5 +1,10 @@
 #include <locograph/apps/describe.h>
 #include <locograph/apps/type_names.h>
+#include <locograph/plugins/configuration/self_collision_shapes.h>
+#include <locograph/plugins/configuration/sphere_overshoot.h>
+#include <locograph/robots/approximation.h>
+
+#include <cmath>
 
 namespace locograph {
 namespace {
@@ -11,6 +16,30 @@ Json joint_json(const Joint& joint) {
           {"max_velocity", limit_json(joint.max_velocity)},
           {"max_effort", limit_json(joint.max_effort)},
           {"units", joint.type == JointType::kPrismatic ? "m, m/s, N" : "rad, rad/s, Nm"}};
+}
+
+/// To the micrometre.
+double millimetres(double metres) { return 1e-3 * std::round(1e6 * metres); }
+
+/// Link by link, the shapes that the distance edges see in place of the URDF's.
+Json approximation_json(const Robot& robot) {
+  Json links = Json::object();
+  for (const LinkApproximation& link :
+       approximations(robot, kSphereOvershoot_m, {.max_overshoot_m = kSelfOvershoot_m})) {
+    Json& json = links[robot.links()[link.link].name];
+    json["shapes"] = link.shapes;
+    if (!link.unusable.empty()) {
+      json["unusable"] = link.unusable;
+      continue;
+    }
+    json["spheres"] = link.spheres.count;
+    json["spheres_over_mm"] = millimetres(link.spheres.worst_over_m);
+    json["spheres_under_mm"] = millimetres(link.spheres.worst_under_m);
+    json["capsules"] = link.capsules.count;
+    json["capsules_over_mm"] = millimetres(link.capsules.worst_over_m);
+    json["capsules_under_mm"] = millimetres(link.capsules.worst_under_m);
+  }
+  return links;
 }
 
 }  // namespace
@@ -49,6 +78,7 @@ Json describe_robot(const std::filesystem::path& path) {
     limits[robot.active_joint(i).name] = joint_json(robot.active_joint(i));
   }
   json["limits"] = limits;
+  json["approximation"] = approximation_json(robot);
   return json;
 }
 

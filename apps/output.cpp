@@ -34,7 +34,7 @@ bool is_flat(const Json& value) {
 std::pair<std::string, std::string> label_and_unit(const std::string& key, const Json& value) {
   const bool numeric =
       value.is_number() || (value.is_array() && !value.empty() && value.front().is_number());
-  for (const std::string unit : {"m", "kg", "s", "rad"}) {
+  for (const std::string unit : {"mm", "m", "kg", "s", "rad"}) {
     if (numeric && key.ends_with("_" + unit)) {
       return {key.substr(0, key.size() - unit.size() - 1), ' ' + unit};
     }

@@ -6,8 +6,8 @@
 ///     print_warning("3 meshes are missing");
 ///
 /// With --json standard output is one JSON object and nothing else. Without, the same object is
-/// printed as indented lines `key: value unit`, the unit taken from the key's suffix (_m, _kg, _s,
-/// _rad); long lists are cut.
+/// printed as indented lines `key: value unit`, the unit taken from the key's suffix (_m, _mm, _kg,
+/// _s, _rad); long lists are cut.
 
 #include <exception>
 #include <filesystem>

@@ -1,5 +1,8 @@
 #include <locograph/common/error.h>
 #include <locograph/robots/collision_model.h>
+#include <locograph/robots/covering_capsules.h>
+#include <locograph/robots/mesh_fit.h>
+#include <locograph/robots/shape_covers.h>
 
 #include <algorithm>
 #include <cmath>
@@ -162,8 +165,7 @@ Spheres cover_cylinder(double r, double length, double overshoot, int limit) {
 }
 
 /// Empty if it takes more than `limit` spheres.
-Spheres cover(const CollisionShape& shape, const Eigen::Vector3d& box_size, double overshoot,
-              int limit) {
+Spheres cover(const CollisionShape& shape, double overshoot, int limit) {
   switch (shape.type) {
     case ShapeType::kSphere:
       return {{Eigen::Vector3d::Zero(), shape.radius}};
@@ -172,10 +174,15 @@ Spheres cover(const CollisionShape& shape, const Eigen::Vector3d& box_size, doub
     case ShapeType::kCylinder:
       return cover_cylinder(shape.radius, shape.length, overshoot, limit);
     case ShapeType::kBox:
+      return cover_box(shape.size, overshoot, limit);
     case ShapeType::kMesh:
-      return cover_box(box_size, overshoot, limit);
+      break;
   }
-  return {};
+  Spheres spheres;
+  for (const Capsule& sphere : fit_capsules(collision_mesh(shape), {overshoot, limit, true})) {
+    spheres.emplace_back(sphere.from, sphere.radius);
+  }
+  return spheres;
 }
 
 }  // namespace
@@ -187,23 +194,13 @@ std::vector<CollisionSphere> covering_spheres(const CollisionShape& shape, doubl
                     std::to_string(max_spheres_per_shape) + " spheres per shape",
                 "positive numbers");
   }
-  Eigen::Vector3d box_size = shape.size, box_centre = Eigen::Vector3d::Zero();
-  if (shape.type == ShapeType::kMesh) {
-    if (!shape.mesh_found) {
-      throw Error(shape.mesh_file.string(), 0, "collision mesh not found",
-                  "a file below a folder above the URDF");
-    }
-    const Eigen::AlignedBox3d bounds = stl_bounds(shape.mesh_file);
-    box_size = bounds.sizes().cwiseProduct(shape.size.cwiseAbs());
-    box_centre = bounds.center().cwiseProduct(shape.size);
-  }
   Spheres spheres;
   for (double overshoot = max_overshoot_m; spheres.empty(); overshoot *= 1.1) {
-    spheres = cover(shape, box_size, overshoot, max_spheres_per_shape);
+    spheres = cover(shape, overshoot, max_spheres_per_shape);
   }
   std::vector<CollisionSphere> result;
   for (const auto& [centre, radius] : spheres) {
-    const Eigen::Vector3d in_link = shape.link_from_shape * (box_centre + centre);
+    const Eigen::Vector3d in_link = shape.link_from_shape * centre;
     result.push_back({shape.link, in_link, radius * kInflation, -1});
   }
   return result;
@@ -212,18 +209,15 @@ std::vector<CollisionSphere> covering_spheres(const CollisionShape& shape, doubl
 std::vector<CollisionSphere> covering_spheres(const Robot& robot, double max_overshoot_m,
                                               int max_spheres_per_shape) {
   std::vector<CollisionSphere> result;
+  ShapeCovers<std::vector<CollisionSphere>> covers([&](const CollisionShape& shape) {
+    return covering_spheres(shape, max_overshoot_m, max_spheres_per_shape);
+  });
   for (const Link& link : robot.links()) {
     for (std::size_t s = 0; s < link.collision.size(); ++s) {
       const CollisionShape& shape = link.collision[s];
-      if (shape.type == ShapeType::kMesh && !shape.mesh_found) {
-        throw Error(robot.urdf_file().string(), shape.line,
-                    "collision mesh '" + shape.mesh_file.string() + "' not found",
-                    "the file below a folder above the URDF");
-      }
-      for (CollisionSphere sphere :
-           covering_spheres(shape, max_overshoot_m, max_spheres_per_shape)) {
-        sphere.shape = static_cast<int>(s);
-        result.push_back(sphere);
+      for (const CollisionSphere& sphere : covers.of(robot, shape)) {
+        result.push_back({shape.link, shape.link_from_shape * sphere.center, sphere.radius,
+                          static_cast<int>(s)});
       }
     }
   }

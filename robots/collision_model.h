@@ -5,7 +5,8 @@
 ///       Eigen::Vector3d centre = state.world_from_link(sphere.link) * sphere.center;
 ///     }
 ///
-/// The union of the spheres contains every shape; a mesh (STL) is replaced by its bounding box.
+/// The union of the spheres contains every shape; those of a mesh (STL) are fitted to its triangles
+/// (mesh_fit.h).
 /// Spheres are sorted by link, then by shape.
 ///
 /// CENTAURO takes 349, 211, 165, 116 and 96 spheres at an overshoot of 10, 15, 20, 25 and 30 mm, of

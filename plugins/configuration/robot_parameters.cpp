@@ -1,14 +1,11 @@
 #include <locograph/plugins/configuration/robot_parameters.h>
+#include <locograph/plugins/configuration/sphere_overshoot.h>
 #include <locograph/world/octree.h>
 
 #include <algorithm>
 
 namespace locograph {
 namespace {
-
-/// Spheres may stick out of the shapes they cover by this much: more spheres cost time, larger ones
-/// cost free space.
-constexpr double kSphereOvershoot_m = 0.02;
 
 std::filesystem::path read_path(FieldReader& in) {
   const std::string word = in.word();

@@ -1,36 +1,21 @@
 #include <locograph/plugins/configuration/robot_parameters.h>
+#include <locograph/robots/covering_capsules.h>
 
 #include <algorithm>
 
 namespace locograph {
-namespace {
-
-constexpr int kMostSpheresPerShape = 64;
-
-void append(std::vector<SelfCollisionShapes::Capsule>& capsules, const CollisionShape& shape) {
-  if (shape.type == ShapeType::kSphere || shape.type == ShapeType::kCapsule) {
-    const double half = shape.type == ShapeType::kCapsule ? 0.5 * shape.length : 0.0;
-    const Eigen::Vector3d along = half * shape.link_from_shape.linear().col(2);
-    const Eigen::Vector3d middle = shape.link_from_shape.translation();
-    capsules.push_back({middle - along, middle + along, shape.radius});
-    return;
-  }
-  for (const CollisionSphere& sphere :
-       covering_spheres(shape, kSelfOvershoot_m, kMostSpheresPerShape)) {
-    capsules.push_back({sphere.center, sphere.center, sphere.radius});
-  }
-}
-
-}  // namespace
 
 SelfCollisionShapes::SelfCollisionShapes(const RobotParameter& parameter) {
   const Robot& robot = *parameter.robot;
+  const std::vector<CollisionCapsule> of_links =
+      covering_capsules(robot, {.max_overshoot_m = kSelfOvershoot_m});
   std::vector<int> bound_of_link(robot.links().size(), -1);
   for (const RobotParameter::LinkBound& bound : parameter.bounds) {
     bound_of_link[bound.link] = static_cast<int>(of_bound.size());
     OfBound own{0.0, static_cast<int>(capsules.size()), 0};
-    for (const CollisionShape& shape : robot.links()[bound.link].collision) {
-      append(capsules, shape);
+    for (const CollisionCapsule& c : of_links) {
+      if (c.link == bound.link)
+        capsules.push_back({c.capsule.from, c.capsule.to, c.capsule.radius});
     }
     own.end = static_cast<int>(capsules.size());
     for (int i = own.begin; i < own.end; ++i) {

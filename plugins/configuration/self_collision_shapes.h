@@ -6,8 +6,9 @@
 ///       …robot->self_collision.of_bound[pair.first].begin…
 ///     }
 ///
-/// A capsule or a sphere of the URDF is itself; any other shape becomes the spheres that cover it
-/// and stick out of it by no more than kSelfOvershoot_m (see collision_model.h).
+/// A capsule or a sphere of the URDF is itself; any other shape becomes the spheres or, of a mesh,
+/// the capsules that cover it and stick out of it by no more than kSelfOvershoot_m (see
+/// robots/covering_capsules.h).
 
 #include <Eigen/Core>
 #include <vector>

