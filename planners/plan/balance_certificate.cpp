@@ -88,7 +88,11 @@ class Programme {
   }
 
   BalanceCertificate solve() {
-    if (solve(true) || solve(false)) return certificate();
+    if (solve(Mode::kMargin) || solve(Mode::kViolation)) {
+      BalanceCertificate result = certificate();
+      if (options_.least_torques && solve(Mode::kTorques)) result.max_torque_ratio = solution_[0];
+      return result;
+    }
     BalanceCertificate failed;
     failed.margin = -kInfinity;
     failed.max_torque_ratio = kInfinity;
@@ -98,6 +102,10 @@ class Programme {
   }
 
  private:
+  /// What is sought: the largest margin, the least violation, or, at a margin of zero, the least
+  /// largest ratio of a torque to its limit.
+  enum class Mode { kMargin, kViolation, kTorques };
+
   void place_robot(const Eigen::VectorXd& configuration) {
     if (configuration.size() != robot_.configuration_size()) {
       throw Error("a configuration of " + std::to_string(configuration.size()) + " numbers",
@@ -185,9 +193,10 @@ class Programme {
     }
   }
 
-  /// Joints that no contact loads bound the margin, the others get rows.
+  /// Joints that no contact loads bound the margin and the ratio, the others get rows.
   void limit_torques() {
-    for (int i = 0; options_.enforce_torque_limits && i < robot_.active_joint_count(); ++i) {
+    if (!options_.enforce_torque_limits && !options_.least_torques) return;
+    for (int i = 0; i < robot_.active_joint_count(); ++i) {
       const Joint& joint = robot_.active_joint(i);
       if (!(joint.max_effort > 0.0)) {
         throw Error("joint " + joint.name + " has an effort limit of " +
@@ -199,17 +208,18 @@ class Programme {
         limited_.push_back(i);
         continue;
       }
-      const double left = 1.0 - std::abs(gravity_[base_ + i]) / joint.max_effort;
-      if (left >= largest_margin_) continue;
-      largest_margin_ = left;
-      largest_margin_joint_ = i;
+      const double ratio = std::abs(gravity_[base_ + i]) / joint.max_effort;
+      if (ratio <= least_ratio_) continue;
+      least_ratio_ = ratio;
+      least_ratio_joint_ = i;
     }
   }
 
   /// Rows: those of the base, as equations or, in both directions, as inequalities; two for each
   /// limited joint; those of the contacts. Inequalities read row <= bound.
-  int base_rows() const { return exact_ ? base_ : 2 * base_; }
-  int contact_row() const { return base_rows() + 2 * static_cast<int>(limited_.size()); }
+  int base_rows() const { return mode_ == Mode::kViolation ? 2 * base_ : base_; }
+  bool torques_limited() const { return options_.enforce_torque_limits || mode_ == Mode::kTorques; }
+  int torque_rows() const { return torques_limited() ? 2 * static_cast<int>(limited_.size()) : 0; }
   static int rows_of(const ContactDescription& contact) {
     if (contact.kind != WrenchKind::kRung) return 1;
     return contact.max_moment_Nm > 0.0 ? 10 : 6;
@@ -222,14 +232,14 @@ class Programme {
     column.setZero();
     for (int i = 0; i < base_; ++i) {
       column[i] = unknown.torques[i] / base_scale(i);
-      if (!exact_) column[base_ + i] = -column[i];
+      if (mode_ == Mode::kViolation) column[base_ + i] = -column[i];
     }
-    int row = base_rows();
-    for (const int joint : limited_) {
+    for (int i = 0; i < torque_rows() / 2; ++i) {
+      const int joint = limited_[std::size_t(i)], row = base_rows() + 2 * i;
       column[row] = -unknown.torques[base_ + joint] / robot_.active_joint(joint).max_effort;
       column[row + 1] = -column[row];
-      row += 2;
     }
+    int row = base_rows() + torque_rows();
     for (int i = 0; i < unknown.contact; ++i) row += rows_of(*contacts_[std::size_t(i)].given);
     const ContactDescription& given = *contacts_[std::size_t(unknown.contact)].given;
     if (given.kind != WrenchKind::kRung) {
@@ -245,45 +255,67 @@ class Programme {
     }
   }
 
-  /// exact: equilibrium holds and the margin is not negative. Else both give way together.
-  bool solve(bool exact) {
-    exact_ = exact;
+  bool solve(Mode mode) {
+    mode_ = mode;
     const int columns = static_cast<int>(unknowns_.size()) + 1;
-    int rows = contact_row();
+    int rows = base_rows() + torque_rows();
     for (const PlacedContact& contact : contacts_) rows += rows_of(*contact.given);
 
     Eigen::MatrixXd matrix(rows, columns);
     for (int c = 1; c < columns; ++c) fill(unknowns_[std::size_t(c - 1)], matrix.col(c));
-    // Column 0: the margin, which tightens every inequality and shifts every cone.
-    reserve_columns_.resize(rows, static_cast<Eigen::Index>(reserves_.size()));
-    for (std::size_t i = 0; i < reserves_.size(); ++i) {
-      fill(reserves_[i].force, reserve_columns_.col(Eigen::Index(i)));
-    }
-    matrix.col(0) = reserve_columns_.rowwise().sum();
-    matrix.col(0).tail(rows - (exact ? base_ : 0)).array() += 1.0;
-
     Eigen::VectorXd lower = Eigen::VectorXd::Constant(rows, -COIN_DBL_MAX);
     Eigen::VectorXd upper = Eigen::VectorXd::Ones(rows);
+    if (mode == Mode::kTorques) {
+      // Column 0: the ratio.
+      matrix.col(0).setZero();
+      matrix.col(0).segment(base_rows(), torque_rows()).setConstant(-1.0);
+      upper.segment(base_rows(), torque_rows()).setZero();
+    } else {
+      // Column 0: the margin, which tightens every inequality and shifts every cone.
+      reserve_columns_.resize(rows, static_cast<Eigen::Index>(reserves_.size()));
+      for (std::size_t i = 0; i < reserves_.size(); ++i) {
+        fill(reserves_[i].force, reserve_columns_.col(Eigen::Index(i)));
+      }
+      matrix.col(0) = reserve_columns_.rowwise().sum();
+      matrix.col(0).tail(rows - (mode == Mode::kMargin ? base_ : 0)).array() += 1.0;
+    }
     for (int i = 0; i < base_; ++i) {
       upper[i] = gravity_[i] / base_scale(i);
-      if (exact) lower[i] = upper[i];
-      if (!exact) upper[base_ + i] = -upper[i];
+      if (mode == Mode::kViolation) {
+        upper[base_ + i] = -upper[i];
+      } else {
+        lower[i] = upper[i];
+      }
     }
-    for (std::size_t i = 0; i < limited_.size(); ++i) {
-      const double ratio =
-          gravity_[base_ + limited_[i]] / robot_.active_joint(limited_[i]).max_effort;
-      upper[base_rows() + 2 * int(i)] -= ratio;
-      upper[base_rows() + 2 * int(i) + 1] += ratio;
+    for (int i = 0; i < torque_rows() / 2; ++i) {
+      const int joint = limited_[std::size_t(i)], row = base_rows() + 2 * i;
+      const double ratio = gravity_[base_ + joint] / robot_.active_joint(joint).max_effort;
+      upper[row] -= ratio;
+      upper[row + 1] += ratio;
     }
     Eigen::VectorXd least = Eigen::VectorXd::Zero(columns);
+    Eigen::VectorXd most = Eigen::VectorXd::Constant(columns, COIN_DBL_MAX);
     for (int c = 1; c < columns; ++c) {
       if (unknowns_[std::size_t(c - 1)].lower < 0.0) least[c] = -COIN_DBL_MAX;
     }
-    Eigen::VectorXd most = Eigen::VectorXd::Constant(columns, COIN_DBL_MAX);
-    least[0] = exact ? 0.0 : -COIN_DBL_MAX;
-    most[0] = exact ? largest_margin_ : std::min(0.0, largest_margin_);
-    if (most[0] < least[0]) return false;
+    switch (mode) {
+      case Mode::kMargin:
+        most[0] = largest_margin();
+        if (most[0] < 0.0) return false;
+        break;
+      case Mode::kViolation:
+        least[0] = -COIN_DBL_MAX;
+        most[0] = std::min(0.0, largest_margin());
+        break;
+      case Mode::kTorques:
+        least[0] = least_ratio_;
+        break;
+    }
     return run(matrix, least, most, lower, upper);
+  }
+
+  double largest_margin() const {
+    return options_.enforce_torque_limits ? 1.0 - least_ratio_ : 1.0;
   }
 
   bool run(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& least, const Eigen::VectorXd& most,
@@ -300,7 +332,7 @@ class Programme {
       starts.push_back(static_cast<int>(indices.size()));
     }
     Eigen::VectorXd objective = Eigen::VectorXd::Zero(columns);
-    objective[0] = -1.0;
+    objective[0] = mode_ == Mode::kTorques ? 1.0 : -1.0;
     ClpSimplex model;
     model.setLogLevel(0);
     model.scaling(0);  // all rows and columns are dimensionless and of the order of one
@@ -365,21 +397,21 @@ class Programme {
       most = share;
       words = text();
     };
-    if (largest_margin_joint_ >= 0 && solution_[0] >= largest_margin_ - 1e-9) {
-      words = "torque of " + robot_.active_joint(largest_margin_joint_).name +
-              ", which no contact loads";
+    if (torques_limited() && least_ratio_joint_ >= 0 && solution_[0] >= largest_margin() - 1e-9) {
+      words =
+          "torque of " + robot_.active_joint(least_ratio_joint_).name + ", which no contact loads";
     }
-    for (int i = 0; !exact_ && i < base_; ++i) {
+    for (int i = 0; mode_ == Mode::kViolation && i < base_; ++i) {
       consider(-prices_[i] - prices_[base_ + i], [&] {
         return std::string(i < 3 ? "a force" : "a moment") + " on the base is left over";
       });
     }
-    for (std::size_t i = 0; i < limited_.size(); ++i) {
-      const int row = base_rows() + 2 * static_cast<int>(i);
+    for (int i = 0; i < torque_rows() / 2; ++i) {
+      const int row = base_rows() + 2 * i;
       consider(-prices_[row] - prices_[row + 1],
-               [&] { return "torque of " + robot_.active_joint(limited_[i]).name; });
+               [&] { return "torque of " + robot_.active_joint(limited_[std::size_t(i)]).name; });
     }
-    int row = contact_row();
+    int row = base_rows() + torque_rows();
     for (const PlacedContact& contact : contacts_) {
       const int rows = rows_of(*contact.given);
       for (int k = 0; k < rows; ++k) {
@@ -415,10 +447,10 @@ class Programme {
   std::vector<Reserve> reserves_;
   std::vector<bool> moving_joint_;  // some contact loads it
   std::vector<int> limited_;        // joints with rows
-  double largest_margin_ = 1.0;
-  int largest_margin_joint_ = -1;
+  double least_ratio_ = 0.0;        // of the joints without rows
+  int least_ratio_joint_ = -1;
 
-  bool exact_ = true;
+  Mode mode_ = Mode::kMargin;
   Eigen::MatrixXd reserve_columns_;
   Eigen::VectorXd solution_, prices_;
 };

@@ -37,7 +37,7 @@
 ///
 /// Deterministic; const arguments may be shared between threads. A joint without an effort in the
 /// URDF (infinite) has no row; one whose effort is zero or less is an Error while torque limits are
-/// enforced, as for EDGE_TORQUE_LIMITS: it cannot hold anything.
+/// enforced or least torques asked for, as for EDGE_TORQUE_LIMITS: it cannot hold anything.
 /// Throws Error for a configuration of another size, one that is not finite or has a quaternion
 /// far from norm 1, an unknown link, a normal that is zero or along `forward`, numbers that are not
 /// finite, sizes, friction or force limits that are not positive, fewer than 3 facets, and a robot
@@ -56,13 +56,17 @@ namespace locograph {
 struct BalanceOptions {
   bool enforce_torque_limits = true;
   int facets = 16;  ///< sides of the friction pyramids, 3 to 64
+  /// A second programme: max_torque_ratio becomes the least with which the contacts can balance the
+  /// robot, at a margin of zero; at most one exactly if torque limits can be kept.
+  bool least_torques = false;
 };
 
 struct BalanceCertificate {
   bool balanced = false;  ///< margin >= 0 up to 1e-6, and the wrenches were verified
   double margin = 0.0;    ///< at most 1; > 0 inside all limits, < 0 outside
-  /// Largest |torque| / limit with these wrenches; joints without a positive finite limit are left
-  /// out.
+  /// Largest |torque| / limit, joints without a positive finite limit left out: with these
+  /// wrenches (which are for the margin's sake as large as 1 - margin allows), or
+  /// BalanceOptions::least_torques. If no wrenches balance, of those that violate least.
   double max_torque_ratio = 0.0;
   /// fx fy fz mx my mz of each contact [N, N m]: on the robot, about the contact point, along the
   /// contact's axes.

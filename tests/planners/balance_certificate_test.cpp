@@ -197,6 +197,16 @@ TEST(BalanceCertificate, ReachesATorqueLimitExactly) {
   const BalanceCertificate shared = certify(robot, standing(robot), {foot, hand});
   EXPECT_TRUE(shared.balanced);
   EXPECT_LT(shared.max_torque_ratio, 1.0 - shared.margin + 1e-8);
+  // The hand can take all of it.
+  BalanceOptions least;
+  least.least_torques = true;
+  EXPECT_NEAR(certify(robot, standing(robot), {foot, hand}, least).max_torque_ratio, 0.0, 1e-8);
+  EXPECT_EQ(certify(robot, standing(robot), {foot, hand}, least).margin, shared.margin);
+  hand.max_force_N = 0.4 * needed;
+  EXPECT_NEAR(certify(robot, standing(robot), {foot, hand}, least).max_torque_ratio, 1.2, 1e-5);
+  least.enforce_torque_limits = false;
+  EXPECT_NEAR(certify(robot, standing(robot), {foot, hand}, least).max_torque_ratio, 1.2, 1e-5);
+  EXPECT_NEAR(certify(robot, standing(robot), {foot}, least).max_torque_ratio, 2.0, 1e-5);
 }
 
 TEST(BalanceCertificate, AsksAFixedBaseForTorquesOnly) {
@@ -438,7 +448,8 @@ TEST(BalanceCertificate, GainsNothingByFewerSidesOrByMoreLimits) {
   for (int i = 0; i < 20; ++i) {
     const RandomStance stance = random_stance(random);
     const auto margin = [&](int facets, bool enforce) {
-      return certify(coman_plus(), stance.configuration, stance.contacts, {enforce, facets}).margin;
+      return certify(coman_plus(), stance.configuration, stance.contacts, {enforce, facets, false})
+          .margin;
     };
     // Below zero the cones are shifted down, blunt ones by less.
     EXPECT_LE(std::max(0.0, margin(4, true)), std::max(0.0, margin(16, true)) + 1e-7);
@@ -511,7 +522,7 @@ TEST(BalanceCertificate, RefusesWhatMakesNoSenseByName) {
   const Robot powerless = arm(0.0, true);
   const ContactDescription foot = contact_at("foot", WrenchKind::kSurface, 0.5);
   EXPECT_THROW(certify(powerless, standing(powerless), {foot}), Error);
-  EXPECT_NO_THROW(certify(powerless, standing(powerless), {foot}, {false, 16}));
+  EXPECT_NO_THROW(certify(powerless, standing(powerless), {foot}, {false, 16, false}));
 }
 
 }  // namespace
