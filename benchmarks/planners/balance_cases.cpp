@@ -92,7 +92,7 @@ Eigen::VectorXd contact_weights(const std::vector<ContactDescription>& contacts,
     }
     add(1, weight);
     add(1, contact.max_force_N);
-    add(kFacets, weight);
+    add(contact.facets, weight);
     if (contact.kind == WrenchKind::kPoint) continue;
     add(2, weight * contact.half_x_m);
     add(2, weight * contact.half_y_m);

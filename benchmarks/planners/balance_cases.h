@@ -44,7 +44,7 @@ BalanceCase without_surface_limits(const BalanceRobot& robot, BalanceCase postur
 /// corner.
 enum class SurfaceModel { kRows, kCorners };
 
-/// The configuration held, EDGE_BALANCE, EDGE_CONTACT_WRENCH (inner pyramids of 16 sides) and
+/// The configuration held, EDGE_BALANCE, EDGE_CONTACT_WRENCH (with the pyramids given) and
 /// EDGE_TORQUE_LIMITS are minimised over the wrenches by Levenberg-Marquardt. Norm of what is left,
 /// dimensionless: forces by the weight, moments by weight times 1 m or times half size, limits by
 /// themselves.
