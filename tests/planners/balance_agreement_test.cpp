@@ -45,13 +45,13 @@ INSTANTIATE_TEST_SUITE_P(Robots, BalanceAgreement, testing::Values("coman_plus",
                          });
 
 TEST(BalanceAgreement, EndsWhereTheRowsOfASurfaceGrantYawToForcesAtFullFriction) {
-  // A block of 10 kg squeezed by two walls, its centre of mass 2 cm beyond their edge: forces at
+  // A block of 10 kg squeezed by two walls, its centre of mass 4 cm beyond their edge: forces at
   // the corners of the edge that use 97 % of their friction to bear the weight cannot turn it.
   const test::TemporaryFolder folder;
   const std::string inertia = "<inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>";
   const auto urdf = folder.write(
       "block.urdf",
-      "<robot name='block'><link name='block'><inertial><origin xyz='0 0.07 0'/><mass "
+      "<robot name='block'><link name='block'><inertial><origin xyz='0 0.09 0'/><mass "
       "value='10'/>" +
           inertia +
           "</inertial></link><link name='knob'/><joint name='knob_joint' type='revolute'><parent "
