@@ -61,6 +61,13 @@ void print_summary(const PlanFile& file, const CheckReport& report) {
           short_number(report.min_self_clearance_m) + " m, velocities up to " +
           short_number(100.0 * report.max_velocity_ratio) + " % of their limits, contacts within " +
           short_number(report.max_contact_error_m) + " m\n";
+  if (report.min_balance_margin) {
+    text += "balanced with a margin of " + short_number(*report.min_balance_margin) + '\n';
+  }
+  if (report.max_torque_ratio) {
+    text += "torques up to " + short_number(100.0 * *report.max_torque_ratio) +
+            " % of their limits hold the robot\n";
+  }
   print_text(text);
 }
 

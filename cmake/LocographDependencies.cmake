@@ -27,6 +27,7 @@ if(LOCOGRAPH_PLANNING)
   find_package(PkgConfig REQUIRED)
   pkg_check_modules(urdfdom REQUIRED IMPORTED_TARGET urdfdom)
   pkg_check_modules(dynamicedt3d REQUIRED IMPORTED_TARGET dynamicEDT3D)
+  pkg_check_modules(clp REQUIRED IMPORTED_TARGET clp)
 endif()
 
 if(LOCOGRAPH_TESTS)

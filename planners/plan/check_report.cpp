@@ -33,6 +33,9 @@ void CheckOptions::validate() const {
   not_negative(joint_tolerance_rad, "joint_tolerance_rad");
   not_negative(velocity_tolerance, "velocity_tolerance");
   not_negative(quaternion_tolerance, "quaternion_tolerance");
+  if (!(min_balance_margin < 1.0) || !std::isfinite(min_balance_margin))
+    throw Error("check option min_balance_margin is " + std::to_string(min_balance_margin),
+                "a number below 1");
   if (!std::isfinite(ground_z_m) && ground_z_m != -std::numeric_limits<double>::infinity())
     throw Error("check option ground_z_m is " + std::to_string(ground_z_m),
                 "a height, or -infinity for no ground");

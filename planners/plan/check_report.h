@@ -54,6 +54,9 @@ struct CheckOptions {
   double velocity_tolerance = 1e-6;   ///< of the ratio of velocity and limit, for rounding
   double quaternion_tolerance = 1e-6;
 
+  double min_balance_margin = 0.0;    ///< of balance_certificate.h, below 1
+  bool enforce_torque_limits = true;  ///< else torques are reported, and never too large
+
   /// Throws Error naming the option that makes no sense.
   void validate() const;
 };
@@ -79,7 +82,9 @@ struct CheckReport {
   std::vector<Violation> violations;  ///< every constraint, also those that hold, in fixed order
   double min_clearance_m = 0.0;       ///< the world's cutoff if nothing is nearer
   double min_self_clearance_m = 0.0;
-  std::optional<double> min_balance_margin, max_torque_ratio;  ///< not judged by check_motion
+  /// Of the vertices whose contacts are known; nothing if there are none. The margin is that of the
+  /// contacts alone, the ratio the least that the most loaded joint can be held with.
+  std::optional<double> min_balance_margin, max_torque_ratio;
   double max_velocity_ratio = 0.0;
   double max_contact_error_m = 0.0;
 

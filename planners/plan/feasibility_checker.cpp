@@ -1,4 +1,5 @@
 #include <locograph/common/error.h>
+#include <locograph/planners/plan/balance_certificate.h>
 #include <locograph/planners/plan/clearance_search.h>
 #include <locograph/planners/plan/feasibility_checker.h>
 #include <locograph/planners/plan/moving_shapes.h>
@@ -48,6 +49,8 @@ class Check {
     for (std::size_t i = 0; i < vertices_; ++i) check_numbers(int(i));
     for (std::size_t i = 0; i < vertices_; ++i)
       if (usable_.vertices[i]) check_joint_limits(int(i));
+    for (std::size_t i = 0; i < motion_.contacts.size(); ++i)
+      if (usable_.vertices[i] && !motion_.contacts[i].empty()) check_balance(int(i));
     for (std::size_t i = 0; i + 1 < vertices_; ++i)
       if (usable_.vertices[i] && usable_.vertices[i + 1]) check_step(int(i));
     check_ground_and_wheels();
@@ -101,6 +104,25 @@ class Check {
           });
       if (worst) joint_limits_.set_unit(joint.type == JointType::kPrismatic ? "m" : "rad");
     }
+  }
+
+  void check_balance(int vertex) {
+    Eigen::VectorXd q = configuration(vertex);
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();
+    if (robot_.floating_base()) {
+      q.segment<4>(3).normalize();
+      place = q.head<3>();
+    }
+    BalanceOptions balance;
+    balance.enforce_torque_limits = false;
+    balance.least_torques = true;
+    const BalanceCertificate certificate =
+        certify_balance(robot_, q, motion_.contacts[std::size_t(vertex)], balance);
+    static_balance_.add(certificate.margin, vertex, time(vertex), place,
+                        [&] { return certificate.limiting; });
+    if (!certificate.balanced) return;
+    torque_limits_.add(certificate.max_torque_ratio, vertex, time(vertex), place,
+                       [] { return std::string("of all wrenches that balance, at the least"); });
   }
 
   void check_step(int vertex) {
@@ -240,12 +262,15 @@ class Check {
          {&not_finite_, &configuration_size_, &time_order_, &step_size_, &base_orientation_,
           &joint_limits_, &velocity_limits_, &obstacle_distance_, &self_collision_,
           &ground_penetration_, &wheel_ground_penetration_, &mount_ground_penetration_,
-          &wheel_contact_, &wheel_tilt_, &lateral_slip_, &longitudinal_slip_}) {
+          &wheel_contact_, &wheel_tilt_, &lateral_slip_, &longitudinal_slip_, &static_balance_,
+          &torque_limits_}) {
       report.violations.push_back(tally->result());
       report.feasible = report.feasible && !tally->result().violated;
     }
     report.min_clearance_m = obstacle_distance_.worst();
     report.min_self_clearance_m = self_collision_.worst();
+    if (!static_balance_.empty()) report.min_balance_margin = static_balance_.worst();
+    if (!torque_limits_.empty()) report.max_torque_ratio = torque_limits_.worst();
     report.max_velocity_ratio = velocity_limits_.worst();
     report.max_contact_error_m = wheel_contact_.worst();
     return report;
@@ -294,6 +319,11 @@ class Check {
   ViolationTally lateral_slip_ = higher("lateral_slip", "m", options_.max_lateral_slip_m);
   ViolationTally longitudinal_slip_ =
       higher("longitudinal_slip", "m", options_.max_longitudinal_slip_m);
+  // Slack: what the linear programmes round.
+  ViolationTally static_balance_ = lower("static_balance", "1", options_.min_balance_margin, 1e-6);
+  ViolationTally torque_limits_ =
+      higher("torque_limits", "ratio", 1.0,
+             options_.enforce_torque_limits ? 1e-6 : std::numeric_limits<double>::infinity());
 };
 
 }  // namespace
@@ -306,6 +336,10 @@ CheckReport check_motion(const Robot& robot, const CollisionWorld& world, const 
     throw Error(std::to_string(motion.time_s.size()) + " times for " +
                     std::to_string(motion.configurations.size()) + " configurations",
                 "one each");
+  if (!motion.contacts.empty() && motion.contacts.size() != motion.configurations.size())
+    throw Error(std::to_string(motion.contacts.size()) + " lists of contacts for " +
+                    std::to_string(motion.configurations.size()) + " configurations",
+                "one each, or none");
   if (!motion.wheels.empty() && std::isinf(options.ground_z_m))
     throw Error("wheels without ground", "a ground_z_m that is finite");
   return Check(robot, world, motion, options).run();

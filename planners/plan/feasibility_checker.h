@@ -27,16 +27,20 @@
 ///     wheel_tilt               of a wheel's axle to the horizontal (rad)
 ///     lateral_slip             largest anywhere within a step, see wheel_rolling.h (m)
 ///     longitudinal_slip        the same (m)
+///     static_balance           margin of balance_certificate.h, without torque limits (1)
+///     torque_limits            least largest |torque| / limit that balances (ratio)
 ///
 /// A vertex with a number that is not finite, of the wrong size, or with a quaternion near zero is
 /// reported; nothing else is checked there and next to it. Joint limits and velocities are exact
 /// between vertices because joints are linear there; distances follow clearance_search.h; the rest
 /// is sampled as CheckOptions say.
 ///
-/// Balance and torques are not judged here: they need wrenches, which a Motion has not.
+/// Balance and torques are judged at the vertices whose contacts the motion knows, not in between,
+/// and by wrenches of the certificate's own: it is asked whether there are any.
 /// Deterministic; const arguments may be shared between threads.
-/// Throws Error for an empty motion, as many times as configurations missing, a wheel that is none,
-/// an option that makes no sense, and a world of another robot.
+/// Throws Error for an empty motion, as many times as configurations missing, lists of contacts for
+/// some configurations only, a contact that makes no sense (certify_balance()), a wheel that is
+/// none, an option that makes no sense, and a world of another robot.
 
 #include <locograph/planners/plan/check_report.h>
 #include <locograph/planners/plan/motion_interpolation.h>

@@ -10,6 +10,7 @@
 /// constant rate about one axis, the short way round (slerp). A configuration is laid out as in
 /// robot.h. Keeps pointers to the robot and to the motion; one sampler per thread.
 
+#include <locograph/plugins/static_balance/contact_parameter.h>
 #include <locograph/robots/robot.h>
 #include <locograph/robots/robot_state.h>
 
@@ -28,6 +29,9 @@ struct Motion {
   std::vector<double> time_s;                   ///< one per configuration
   std::vector<Eigen::VectorXd> configurations;  ///< the vertices
   std::vector<RollingWheel> wheels;             ///< that roll on the ground all the time
+  /// What each vertex stands on, one list for each configuration; an empty list, and no lists at
+  /// all: not known.
+  std::vector<std::vector<ContactDescription>> contacts = {};
 };
 
 /// How much a configuration changes from one vertex to the next.

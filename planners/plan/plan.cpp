@@ -3,6 +3,7 @@
 #include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/plugins/rolling/edge_rolling.h>
+#include <locograph/plugins/static_balance/vertex_wrenches.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
 #include <locograph/plugins/wheel_contact/edge_wheel_contact.h>
@@ -28,6 +29,45 @@ bool steers(const Robot& robot, const WheelsParameter& wheels, int active) {
 bool turns_wheel(const WheelsParameter& wheels, int active) {
   return std::any_of(wheels.wheels.begin(), wheels.wheels.end(),
                      [active](const Wheel& wheel) { return wheel.joint == active; });
+}
+
+template <class V>
+bool is(const Graph& graph, int slot) {
+  return graph.vertex_pools()[graph.vertex_record(slot).pool]->type() == typeid(V);
+}
+
+/// By the slot of a configuration: the VERTEX_WRENCHES that shares an edge with it, -1 for none.
+std::vector<int> wrenches_by_configuration(const Graph& graph) {
+  std::vector<int> wrenches(static_cast<std::size_t>(graph.vertex_slots()), -1);
+  for (int edge = 0; edge < graph.edge_slots(); ++edge) {
+    if (!graph.edge_alive(edge)) continue;
+    for (const int a : graph.edge_vertices(edge)) {
+      if (!is<VertexConfiguration>(graph, a)) continue;
+      int& found = wrenches[static_cast<std::size_t>(a)];
+      for (const int b : graph.edge_vertices(edge)) {
+        if (!is<VertexWrenches>(graph, b)) continue;
+        if (found >= 0 && found != b) {
+          throw Error("configuration " + std::to_string(graph.vertex_record(a).id) +
+                          " shares edges with several VERTEX_WRENCHES",
+                      "one with all its contacts");
+        }
+        found = b;
+      }
+    }
+  }
+  return wrenches;
+}
+
+void add_contacts(const Graph& graph, const Plan& plan, Motion& motion) {
+  const std::vector<int> wrenches = wrenches_by_configuration(graph);
+  for (const int slot : plan.slots) {
+    std::vector<ContactDescription>& contacts = motion.contacts.emplace_back();
+    const int found = wrenches[static_cast<std::size_t>(slot)];
+    if (found < 0) continue;
+    const VertexWrenches& vertex = graph.vertex(VertexId<VertexWrenches>{found});
+    if (!vertex.contacts) throw Error("wrenches without contacts", "a VERTEX_WRENCHES line");
+    for (const auto& contact : *vertex.contacts) contacts.push_back(contact->given);
+  }
 }
 
 }  // namespace
@@ -68,6 +108,7 @@ Motion motion_of(const Graph& graph, const Plan& plan) {
       motion.wheels.push_back({wheel.link, wheel.radius_m});
     }
   }
+  if (!graph.vertices_of<VertexWrenches>().empty()) add_contacts(graph, plan, motion);
   return motion;
 }
 

@@ -25,6 +25,8 @@ struct Plan {
 /// Throws Error when the graph holds no configuration, or configurations of several robots.
 Plan plan_of(const Graph& graph);
 
+/// With the contacts of the VERTEX_WRENCHES that an edge joins to a configuration, if there are
+/// any. Throws Error for a configuration with several.
 Motion motion_of(const Graph& graph, const Plan& plan);
 
 /// How strongly the edges of a new plan hold. Weights are on squared errors in m and rad; those of

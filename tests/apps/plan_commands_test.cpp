@@ -6,6 +6,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "robots/coman_plus_postures.h"
+
 namespace locograph {
 namespace {
 
@@ -97,7 +99,8 @@ TEST(PlanCommands, CheckListsEveryConstraintAlsoThoseThatHold) {
        {"not_finite", "configuration_size", "time_order", "step_size", "base_orientation",
         "joint_limits", "velocity_limits", "obstacle_distance", "self_collision",
         "ground_penetration", "wheel_ground_penetration", "mount_ground_penetration",
-        "wheel_contact", "wheel_tilt", "lateral_slip", "longitudinal_slip"}) {
+        "wheel_contact", "wheel_tilt", "lateral_slip", "longitudinal_slip", "static_balance",
+        "torque_limits"}) {
     const nlohmann::json* violation = constraint(json, name);
     ASSERT_NE(violation, nullptr) << name;
     for (const char* field : {"worst", "unit", "limit", "at_vertex", "count"}) {
@@ -111,6 +114,40 @@ TEST(PlanCommands, CheckListsEveryConstraintAlsoThoseThatHold) {
   }
   EXPECT_TRUE(json.contains("min_balance_margin"));
   EXPECT_TRUE(json.contains("max_torque_ratio"));
+}
+
+/// COMAN+ on the given soles in the published squat A0, which two of them hold.
+std::string squat(const std::string& contacts) {
+  const std::string stem = LOCOGRAPH_SOURCE_DIR "/robots/models/coman_plus/coman_plus";
+  std::ostringstream text;
+  text.precision(17);
+  text << "PARAMS_ROBOT 0 " << stem << ".urdf " << stem << ".srdf floating 0\n"
+       << "PARAMS_CONTACT 4 0 l_sole 0 0 0 link 0 0 1 1 0 0 surface 0.08 0.035 0.5 1000\n"
+       << "PARAMS_CONTACT 5 0 r_sole 0 0 0 link 0 0 1 1 0 0 surface 0.08 0.035 0.5 1000\n"
+       << "VERTEX_CONFIGURATION 7 0 0.0 " << test::coman_postures()[0].configuration().transpose()
+       << "\nVERTEX_WRENCHES 8 " << contacts << "\nEDGE_BALANCE 7 8 scalar 1\n";
+  return text.str();
+}
+
+TEST(PlanCommands, CheckJudgesBalanceAndTorquesWhereThePlanHasContactWrenches) {
+  const CommandRunner runner;
+  runner.write("both.g2o", squat("2 4 5  0 0 0 0 0 0  0 0 0 0 0 0"));
+  const nlohmann::json both = runner.run("check both.g2o --json").json();
+  EXPECT_NEAR(both["min_balance_margin"].get<double>(), 0.1968, 1e-4);
+  EXPECT_NEAR(both["max_torque_ratio"].get<double>(), 0.4186, 1e-4);
+  EXPECT_EQ((*constraint(both, "static_balance"))["violated"], false);
+  EXPECT_EQ((*constraint(both, "torque_limits"))["violated"], false);
+  const std::string words = runner.run("check both.g2o").out;
+  EXPECT_NE(words.find("balanced with a margin of 0.19"), std::string::npos) << words;
+
+  runner.write("one.g2o", squat("1 5  0 0 0 0 0 0"));
+  const Outcome fallen = runner.run("check one.g2o --json");
+  EXPECT_EQ(fallen.exit_code, 1);
+  const nlohmann::json balance = *constraint(fallen.json(), "static_balance");
+  EXPECT_EQ(balance["violated"], true);
+  EXPECT_EQ(balance["at_vertex"], 7);
+  EXPECT_EQ(balance["unit"], "1");
+  EXPECT_LT(balance["worst"].get<double>(), 0.0);
 }
 
 TEST(PlanCommands, RefinePrintsOneJsonObjectWithEveryField) {

@@ -35,7 +35,9 @@ TEST(FeasibilityChecker, AcceptsAStraightDriveOnRollingWheelsAndListsEveryConstr
                                           "wheel_contact",
                                           "wheel_tilt",
                                           "lateral_slip",
-                                          "longitudinal_slip"};
+                                          "longitudinal_slip",
+                                          "static_balance",
+                                          "torque_limits"};
   ASSERT_EQ(report.violations.size(), names.size());
   for (std::size_t i = 0; i < names.size(); ++i)
     EXPECT_EQ(report.violations[i].constraint, names[i]);

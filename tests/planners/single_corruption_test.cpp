@@ -288,6 +288,47 @@ std::vector<Corruption> corruptions() {
                  2,
                  {},
                  "knee_1 and hip1_2"});
+  all.push_back({"OnItsFrontWheelsAlone",
+                 [](Motion& m) {
+                   m.contacts.resize(m.configurations.size());
+                   for (const char* wheel : {"wheel_1", "wheel_2"}) {
+                     ContactDescription contact;
+                     contact.link = wheel;
+                     contact.axes_in_world = true;
+                     contact.kind = WrenchKind::kPoint;
+                     contact.mu = 0.5;
+                     contact.max_force_N = 1000.0;
+                     m.contacts[3].push_back(contact);
+                   }
+                 },
+                 {"static_balance"},
+                 3,
+                 kNaN,
+                 "1",
+                 0.0,
+                 1,
+                 {},
+                 "a moment on the base is left over"});
+  all.push_back({"HeldByOneHandAlone",
+                 [](Motion& m) {
+                   ContactDescription grasp;  // a bar along z
+                   grasp.link = "ball1_tip";
+                   grasp.axes_in_world = true;
+                   grasp.normal = Eigen::Vector3d::UnitX();
+                   grasp.forward = Eigen::Vector3d::UnitY();
+                   grasp.kind = WrenchKind::kRung;
+                   grasp.max_force_N = grasp.max_moment_Nm = 1e5;
+                   m.contacts.resize(m.configurations.size());
+                   m.contacts[6] = {grasp};
+                 },
+                 {"torque_limits"},
+                 6,
+                 kNaN,
+                 "ratio",
+                 0.0,
+                 1,
+                 {},
+                 "at the least"});
   return all;
 }
 

@@ -1,0 +1,199 @@
+#include "balance_cases.h"
+
+#include <locograph/core/graph.h>
+#include <locograph/core/optimiser.h>
+#include <locograph/plugins/static_balance/edge_balance.h>
+#include <locograph/plugins/static_balance/edge_contact_wrench.h>
+#include <locograph/plugins/static_balance/edge_torque_limits.h>
+#include <locograph/robots/robot_state.h>
+#include <locograph/robots/statics.h>
+#include <locograph/solvers/linear_solvers.h>
+
+#include <cmath>
+
+namespace locograph {
+namespace {
+
+constexpr int kRobot = 0, kFirstContact = 1, kFacets = 16;
+
+/// The same numbers with every standard library.
+double uniform(std::mt19937_64& random, double lower, double upper) {
+  return lower + (upper - lower) * 0x1.0p-53 * static_cast<double>(random() >> 11);
+}
+
+Eigen::Vector3d vector(std::mt19937_64& random, double scale) {
+  Eigen::Vector3d v;
+  for (double& x : v) x = uniform(random, -scale, scale);
+  return v;
+}
+
+double weight_of(const BalanceRobot& robot) {
+  return robot.model().total_mass() * standard_gravity().norm();
+}
+
+ContactDescription draw_contact(const BalanceRobot& robot, const std::string& link, bool hand,
+                                bool flat, std::mt19937_64& random) {
+  ContactDescription contact;
+  contact.link = link;
+  contact.axes_in_world = !flat || uniform(random, 0.0, 1.0) < 0.5;
+  const double slope = uniform(random, 0.0, 1.0) < 0.3 ? 1.0 : 0.3;
+  if (contact.axes_in_world) contact.normal += vector(random, slope);
+  contact.forward = Eigen::Vector3d::UnitX() + vector(random, 0.3);
+  contact.kind = flat ? WrenchKind::kSurface : WrenchKind::kPoint;
+  contact.half_x_m = uniform(random, 0.04, 0.1);
+  contact.half_y_m = uniform(random, 0.02, 0.06);
+  contact.mu = uniform(random, 0.3, 0.9);
+  contact.max_force_N = uniform(random, 0.5, 1.5) * weight_of(robot);
+  contact.cone = FrictionCone::kInner;
+  contact.facets = kFacets;
+  if (hand && uniform(random, 0.0, 1.0) < 0.4) {
+    contact.kind = WrenchKind::kRung;
+    contact.max_force_N = uniform(random, 0.1, 0.8) * weight_of(robot);
+    contact.max_moment_Nm = uniform(random, 0.0, 20.0);
+    contact.cone = FrictionCone::kCircle;
+  }
+  return contact;
+}
+
+/// A surface's four corners as points.
+std::vector<ContactDescription> corners_of(const ContactDescription& surface,
+                                           const RobotState& state) {
+  const Eigen::Vector3d z = surface.normal.normalized();
+  const Eigen::Vector3d y = z.cross(surface.forward).normalized();
+  const Eigen::Vector3d x = y.cross(z);
+  Eigen::Matrix3d link_from_axes = Eigen::Matrix3d::Identity();
+  if (surface.axes_in_world) {
+    const int link = state.robot().link_index(surface.link);
+    link_from_axes = state.world_from_link(link).linear().transpose();
+  }
+  std::vector<ContactDescription> corners;
+  for (const double a : {-1.0, 1.0}) {
+    for (const double b : {-1.0, 1.0}) {
+      corners.push_back(surface);
+      corners.back().kind = WrenchKind::kPoint;
+      corners.back().point +=
+          link_from_axes * (a * surface.half_x_m * x + b * surface.half_y_m * y);
+    }
+  }
+  return corners;
+}
+
+/// 1 / unit² of each row of EDGE_CONTACT_WRENCH.
+Eigen::VectorXd contact_weights(const std::vector<ContactDescription>& contacts, double weight) {
+  std::vector<double> units;
+  const auto add = [&units](int count, double unit) {
+    for (int i = 0; i < count; ++i) units.push_back(unit);
+  };
+  for (const ContactDescription& contact : contacts) {
+    if (contact.kind == WrenchKind::kRung) {
+      add(3, contact.max_force_N);
+      add(2, contact.max_moment_Nm);
+      continue;
+    }
+    add(1, weight);
+    add(1, contact.max_force_N);
+    add(contact.facets, weight);
+    if (contact.kind == WrenchKind::kPoint) continue;
+    add(2, weight * contact.half_x_m);
+    add(2, weight * contact.half_y_m);
+    add(8, weight * (contact.half_x_m + contact.half_y_m));
+  }
+  const Eigen::Map<const Eigen::VectorXd> all(units.data(), Eigen::Index(units.size()));
+  return all.array().square().inverse().matrix();
+}
+
+}  // namespace
+
+BalanceRobot balance_robot(const std::string& name) {
+  const std::string stem = LOCOGRAPH_SOURCE_DIR "/robots/models/" + name + "/" + name;
+  return {name,
+          std::make_shared<const RobotParameter>(stem + ".urdf", stem + ".srdf", RobotOptions{})};
+}
+
+BalanceCase without_surface_limits(const BalanceRobot& robot, BalanceCase posture) {
+  for (ContactDescription& contact : posture.contacts) {
+    if (contact.kind == WrenchKind::kSurface) contact.max_force_N = 100.0 * weight_of(robot);
+  }
+  return posture;
+}
+
+BalanceCase draw_balance_case(const BalanceRobot& robot, std::mt19937_64& random) {
+  const Robot& model = robot.model();
+  BalanceCase drawn;
+  drawn.configuration = model.named_configuration("home");
+  const Eigen::Vector3d turn = vector(random, 0.3);
+  drawn.configuration.segment<4>(3) =
+      Eigen::Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized())).coeffs();
+  const double reach = uniform(random, 0.02, 0.25);
+  for (int i = 0; i < model.active_joint_count(); ++i) {
+    const Joint& joint = model.active_joint(i);
+    const double range =
+        joint.type == JointType::kContinuous ? 2.0 * EIGEN_PI : joint.upper - joint.lower;
+    double& q = drawn.configuration[7 + i];
+    q = std::clamp(q + reach * uniform(random, -range, range), joint.lower, joint.upper);
+  }
+  const bool coman = robot.name == "coman_plus";
+  const std::vector<std::string> feet =
+      coman ? std::vector<std::string>{"l_sole", "r_sole"}
+            : std::vector<std::string>{"wheel_1", "wheel_2", "wheel_3", "wheel_4"};
+  const std::vector<std::string> hands = coman ? std::vector<std::string>{"TCP_L", "TCP_R"}
+                                               : std::vector<std::string>{"ball1_tip", "ball2_tip"};
+  while (drawn.contacts.empty()) {
+    for (const std::string& link : feet) {
+      if (uniform(random, 0.0, 1.0) < 0.25) continue;
+      drawn.contacts.push_back(draw_contact(robot, link, false, coman, random));
+    }
+    for (const std::string& link : hands) {
+      if (uniform(random, 0.0, 1.0) < 0.5) continue;
+      const bool flat = uniform(random, 0.0, 1.0) < 0.3;
+      drawn.contacts.push_back(draw_contact(robot, link, !flat, flat, random));
+    }
+  }
+  return drawn;
+}
+
+double graph_residual(const BalanceRobot& robot, const BalanceCase& posture,
+                      SurfaceModel surfaces) {
+  RobotState state(robot.model());
+  state.update(posture.configuration.data());
+  std::vector<ContactDescription> contacts;
+  for (const ContactDescription& contact : posture.contacts) {
+    if (contact.kind == WrenchKind::kSurface && surfaces == SurfaceModel::kCorners) {
+      for (ContactDescription& corner : corners_of(contact, state)) contacts.push_back(corner);
+    } else {
+      contacts.push_back(contact);
+    }
+  }
+  Graph graph;
+  graph.parameters().set(kRobot, robot.parameter);
+  std::vector<int> numbers;
+  for (const ContactDescription& contact : contacts) {
+    numbers.push_back(kFirstContact + static_cast<int>(numbers.size()));
+    graph.parameters().set(
+        numbers.back(), std::make_shared<const ContactParameter>(robot.parameter, kRobot, contact));
+  }
+  const auto q =
+      graph.add_vertex(0, VertexConfiguration(kRobot, robot.parameter, 0.0, posture.configuration));
+  graph.set_fixed(q, true);
+  const auto w = graph.add_vertex(1, VertexWrenches(graph.parameters(), numbers));
+  const double weight = weight_of(robot);
+  graph.add_edge(EdgeBalance(1.0 / (weight * weight), 1.0 / (weight * weight)), q, w);
+  EdgeContactWrench limits(*graph.vertex(w).contacts, 1.0);
+  limits.weights = contact_weights(contacts, weight);
+  graph.add_edge(limits, w);
+  EdgeTorqueLimits torques(robot.model(), 1.0, 1.0);
+  for (int i = 0; i < robot.model().active_joint_count(); ++i) {
+    const double effort = robot.model().active_joint(i).max_effort;
+    torques.weights[i] = std::isinf(effort) ? 0.0 : 1.0 / (effort * effort);
+  }
+  graph.add_edge(torques, q, w);
+
+  OptimiserOptions options;
+  options.max_iterations = 500;
+  options.gain = 1e-15;
+  options.gradient_tolerance = 1e-16;
+  const OptimiserResult result = optimise(graph, options, *make_linear_solver("dense"));
+  return std::sqrt(result.final.chi2);
+}
+
+}  // namespace locograph
