@@ -8,6 +8,7 @@
 
 #include <cstring>
 
+#include "common/allocation_counter.h"
 #include "plugins/bad_line.h"
 #include "plugins/jacobian_comparison.h"
 #include "plugins/small_robot.h"
@@ -268,6 +269,20 @@ TEST_P(TimedLimits, AreTheSameInABatchAsOneByOne) {
     workspace.load_state();
     EXPECT_GT(expect_batch_equals_one_by_one(workspace, 1e-12).gradient.norm(), 1.0);
   }
+}
+
+TEST_P(TimedLimits, DoNotAllocateWhereTheyAreEvaluated) {
+  if (!allocations_are_counted()) GTEST_SKIP() << "a sanitizer brings its own malloc";
+  Graph graph = every_edge(97);
+  Problem problem;
+  problem.compile(graph);
+  Workspace workspace;
+  workspace.allocate(problem);
+  workspace.load_state();
+  const long before = allocation_count();
+  workspace.evaluate(workspace.state());
+  workspace.linearise();
+  EXPECT_EQ(allocation_count(), before);
 }
 
 TEST_P(TimedLimits, KeepEveryBitInAFile) {
