@@ -198,6 +198,7 @@ void PostureGraph::add_parameters(const PostureWorld& world, const PostureProble
 template <class E, class... Vertices>
 void PostureGraph::constrain(Kind kind, E edge, const Eigen::VectorXd& tolerance, int link,
                              Vertices... vertices) {
+  if (tolerance.size() == 0) return;
   Eigen::VectorXd weights = edge.weights;
   const EdgeId id = graph.add_edge(std::move(edge), vertices...);
   constraints_.push_back({kind, id, link, tolerance, std::move(weights)});

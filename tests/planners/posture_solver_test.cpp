@@ -140,6 +140,17 @@ TEST(PostureSolver, SaysWhichContactIsOutOfReachAndByHowMuch) {
   EXPECT_NE(result.reason.find(" m, limit"), std::string::npos) << result.reason;
 }
 
+TEST(PostureSolver, EndsWhenItsTimeIsUp) {
+  PostureProblem problem = coman_standing();
+  problem.preferred[2] += 0.5;
+  PostureOptions options;
+  options.deadline = Deadline::after(0.0);
+  const PostureResult result = solver_of("coman_plus").solve(problem, options);
+  EXPECT_FALSE(result.success);
+  EXPECT_EQ(result.restarts, 0);
+  EXPECT_NE(result.reason.find("time allowed is used up"), std::string::npos) << result.reason;
+}
+
 TEST(PostureSolver, ReportsBalanceThatNoPostureHas) {
   // Both soles on the same line, ten times steeper than friction allows.
   PostureProblem problem = coman_standing();
