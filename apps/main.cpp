@@ -7,6 +7,7 @@
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_command.h>
 #include <locograph/apps/plot_command.h>
+#include <locograph/apps/posture_command.h>
 #include <locograph/apps/refine_command.h>
 #include <locograph/apps/view_command.h>
 #include <locograph/common/error.h>
@@ -29,7 +30,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   const std::vector<Command> commands = {add_optimize(app), add_plan(app), add_refine(app),
                                          add_check(app),    add_info(app), add_list(app),
-                                         add_view(app),     add_plot(app)};
+                                         add_view(app),     add_plot(app), add_posture(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help_or_version) {

@@ -3,6 +3,7 @@
 #include <locograph/plugins/com/edge_com.h>
 #include <locograph/plugins/contact/edge_contact.h>
 #include <locograph/plugins/frame_pose/edge_frame_pose.h>
+#include <locograph/plugins/ground_distance/edge_ground_distance.h>
 #include <locograph/plugins/joint_limits/edge_joint_limits.h>
 #include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
@@ -42,6 +43,7 @@ void add_robot_types(TypeRegistry& types) {
   types.add_edge<EdgeContactWrench>();
   types.add_edge<EdgeDuration>();
   types.add_edge<EdgeFramePose>();
+  types.add_edge<EdgeGroundDistance>();
   types.add_edge<EdgeJointLimits>();
   types.add_edge<EdgeObstacleDistance>();
   types.add_edge<EdgePlanTracking>();

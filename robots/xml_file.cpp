@@ -73,6 +73,26 @@ std::vector<double> XmlFile::numbers(const Element& element, const char* name, i
   return values;
 }
 
+void XmlFile::allow(const Element& element, const std::set<std::string>& attributes,
+                    const std::set<std::string>& children) const {
+  const auto one_of = [](const std::set<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "one of " : ", ") + word;
+    return text.empty() ? "none" : text;
+  };
+  for (const tinyxml2::XMLAttribute* a = element.FirstAttribute(); a != nullptr; a = a->Next()) {
+    if (!attributes.contains(a->Name())) {
+      throw error(element, "unknown attribute '" + std::string(a->Name()) + "'",
+                  one_of(attributes));
+    }
+  }
+  for (const Element& child : this->children(element)) {
+    if (!children.contains(child.Name())) {
+      throw error(child, "unknown element <" + std::string(child.Name()) + ">", one_of(children));
+    }
+  }
+}
+
 Error XmlFile::error(const Element& element, const std::string& what,
                      const std::string& expected) const {
   return Error(file_, element.GetLineNum(), what, expected);

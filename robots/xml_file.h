@@ -12,6 +12,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,9 @@ class XmlFile {
   std::string attribute(const Element& element, const char* name) const;
   /// Exactly `count` finite numbers separated by blanks.
   std::vector<double> numbers(const Element& element, const char* name, int count) const;
+  /// Throws Error for an attribute or a child that is not named here: most likely a misspelling.
+  void allow(const Element& element, const std::set<std::string>& attributes,
+             const std::set<std::string>& children) const;
   Error error(const Element& element, const std::string& what, const std::string& expected) const;
 
  private:

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace locograph {
 namespace {
@@ -17,7 +16,7 @@ class ScenarioReader {
 
   Scenario read() {
     const Element& root = xml_.root();
-    allow(root, {"version", "name"}, {"robot", "wheels", "environment", "drive"});
+    xml_.allow(root, {"version", "name"}, {"robot", "wheels", "environment", "drive"});
     if (const std::string version = xml_.attribute(root, "version"); version != "1") {
       throw xml_.error(root, "scenario version '" + version + "'", "version=\"1\"");
     }
@@ -36,28 +35,6 @@ class ScenarioReader {
   }
 
  private:
-  /// Anything that is not known is a mistake, most likely a misspelling.
-  void allow(const Element& element, const std::set<std::string>& attributes,
-             const std::set<std::string>& children) const {
-    for (const tinyxml2::XMLAttribute* a = element.FirstAttribute(); a; a = a->Next()) {
-      if (!attributes.contains(a->Name())) {
-        throw xml_.error(element, "unknown attribute '" + std::string(a->Name()) + "'",
-                         attributes.empty() ? "none" : "one of " + joined(attributes));
-      }
-    }
-    for (const Element& child : xml_.children(element)) {
-      if (!children.contains(child.Name())) {
-        throw xml_.error(child, "unknown element <" + std::string(child.Name()) + ">",
-                         children.empty() ? "none" : "one of " + joined(children));
-      }
-    }
-  }
-  static std::string joined(const std::set<std::string>& words) {
-    std::string text;
-    for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-    return text;
-  }
-
   const Element* only(const Element& parent, const char* name, bool required) const {
     const auto all = xml_.children(parent, name);
     if (all.size() > 1) {
@@ -86,7 +63,7 @@ class ScenarioReader {
   }
 
   void read_robot(const Element* robot) {
-    allow(*robot, {"model", "urdf", "srdf", "active", "state"}, {});
+    xml_.allow(*robot, {"model", "urdf", "srdf", "active", "state"}, {});
     const bool by_model = robot->Attribute("model") != nullptr;
     if (by_model == (robot->Attribute("urdf") != nullptr)) {
       throw xml_.error(*robot, "the robot is not named", "either model=\"…\" or urdf=\"…\"");
@@ -113,16 +90,16 @@ class ScenarioReader {
 
   void read_wheels(const Element* wheels) {
     if (wheels == nullptr) return;
-    allow(*wheels, {}, {"wheel"});
+    xml_.allow(*wheels, {}, {"wheel"});
     for (const Element& wheel : xml_.children(*wheels, "wheel")) {
-      allow(wheel, {"link", "radius"}, {});
+      xml_.allow(wheel, {"link", "radius"}, {});
       scenario_.wheels.push_back({xml_.attribute(wheel, "link"), positive(wheel, "radius")});
     }
   }
 
   void read_environment(const Element* environment) {
     if (environment == nullptr) return;
-    allow(*environment, {"map", "obstacles"}, {});
+    xml_.allow(*environment, {"map", "obstacles"}, {});
     if (environment->Attribute("map")) {
       scenario_.map = beside_file(xml_.attribute(*environment, "map"));
     }
@@ -133,7 +110,7 @@ class ScenarioReader {
 
   void read_drive(const Element* drive) {
     if (drive == nullptr) return;
-    allow(*drive, {"distance", "curvature", "speed", "configurations"}, {});
+    xml_.allow(*drive, {"distance", "curvature", "speed", "configurations"}, {});
     DriveTask task;
     task.line = drive->GetLineNum();
     task.distance_m = positive(*drive, "distance");

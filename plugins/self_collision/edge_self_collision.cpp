@@ -63,6 +63,11 @@ Nearest nearest(const ConfigurationState& q, const SelfCollisionShapes::Pair& pa
     if ((middle - bound.center).norm() - half - first.radius >= best.distance) continue;
     for (int i = first.begin; i < first.end; ++i) {
       const Capsule& a = shapes.capsules[i];
+      // Most capsules of a covered shape are spheres, most of them far away.
+      const double reach = half + a.radius + best.distance;
+      if (a.from == a.to && (reach <= 0.0 || (middle - a.from).squaredNorm() >= reach * reach)) {
+        continue;
+      }
       const SegmentPoints points = nearest_points(a.from, a.to, b.from, b.to);
       const double distance = (points.on_second - points.on_first).norm() - a.radius - b.radius;
       if (distance >= best.distance) continue;

@@ -1,0 +1,197 @@
+#include <locograph/apps/data_folder.h>
+#include <locograph/apps/output.h>
+#include <locograph/apps/posture_command.h>
+#include <locograph/apps/robot_files.h>
+#include <locograph/common/deadline.h>
+#include <locograph/core/graph_file.h>
+#include <locograph/planners/posture/contacts_file.h>
+#include <locograph/planners/posture/posture_solver.h>
+
+#include <CLI/Validators.hpp>
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace locograph {
+namespace {
+
+struct CommandOptions {
+  std::string robot, srdf, contacts, map, obstacles, output, state, torques = "enforce";
+  std::uint64_t seed = 0;
+  int restarts = PostureOptions().max_restarts;
+  double deadline_ms = 0.0;
+  int threads = 1;
+  bool json = false;
+};
+
+/// What is thrown without a file is about the robot.
+template <class F>
+auto about(const std::filesystem::path& file, F&& f) {
+  try {
+    return f();
+  } catch (const Error& error) {
+    if (!error.file().empty()) throw;
+    throw Error(file.string(), 0, error.what(), "");
+  }
+}
+
+/// The group state asked for; else the one that robots stand in by its usual names, else neutral.
+Eigen::VectorXd preferred_state(const Robot& robot, const std::string& asked) {
+  if (!asked.empty()) return robot.named_configuration(asked);
+  const std::vector<std::string> names = robot.configuration_names();
+  for (const char* usual : {"home", "standing"}) {
+    if (std::find(names.begin(), names.end(), usual) != names.end()) {
+      return robot.named_configuration(usual);
+    }
+  }
+  return robot.neutral_configuration();
+}
+
+Json numbers(const Eigen::VectorXd& values) {
+  return std::vector<double>(values.data(), values.data() + values.size());
+}
+
+Json contacts_json(const PostureProblem& problem, const PostureReport& report) {
+  Json all = Json::array();
+  std::size_t next = 0;
+  for (const PlacedContact& placed : problem.contacts) {
+    Json contact = {{"link", placed.contact.link},
+                    {"position", numbers(placed.position)},
+                    {"bears_load", placed.bears_load}};
+    if (placed.bears_load && next < report.balance.wrenches.size()) {
+      contact["wrench"] = numbers(report.balance.wrenches[next++]);
+    }
+    all.push_back(std::move(contact));
+  }
+  return all;
+}
+
+Json result_json(const Robot& robot, const PostureProblem& problem, const PostureResult& result,
+                 const CommandOptions& options, double load_s, double total_s) {
+  Json joints = Json::object();
+  for (int i = 0; i < robot.active_joint_count(); ++i) {
+    joints[robot.active_joint(i).name] = result.configuration[robot.base_configuration_size() + i];
+  }
+  Json violations = Json::array();
+  for (const Violation& v : result.report.violations) {
+    violations.push_back({{"constraint", v.constraint},
+                          {"violated", v.violated},
+                          {"worst", v.worst},
+                          {"unit", v.unit},
+                          {"limit", v.limit},
+                          {"what", v.what}});
+  }
+  const PostureReport& report = result.report;
+  const bool certified = report.certified;
+  return {{"success", result.success},
+          {"reason", result.success ? "found" : result.reason},
+          {"robot", robot.name()},
+          {"seed", options.seed},
+          {"base", numbers(result.configuration.head(robot.base_configuration_size()))},
+          {"joints", joints},
+          {"contacts", contacts_json(problem, report)},
+          {"violations", violations},
+          {"min_balance_margin", certified ? Json(report.balance.margin) : Json(nullptr)},
+          {"max_torque_ratio", certified ? Json(report.balance.max_torque_ratio) : Json(nullptr)},
+          {"limiting", certified ? Json(report.balance.limiting) : Json(nullptr)},
+          {"restarts", result.restarts},
+          {"iterations", result.iterations},
+          {"time",
+           {{"load", load_s},
+            {"build", result.build_s},
+            {"optimise", result.optimise_s},
+            {"geometry", result.geometry_s},
+            {"balance", result.balance_s},
+            {"solve", result.total_s},
+            {"total", total_s}}}};
+}
+
+void print_summary(const Robot& robot, const PostureResult& result, const CommandOptions& options) {
+  std::string text = robot.name() + ": ";
+  if (!result.success) {
+    text += result.reason + " (" + counted(result.restarts, "restart", "restarts") + ", " +
+            short_number(1e3 * result.total_s) + " ms)\n";
+    print_text(text);
+    return;
+  }
+  text += "posture found in " + short_number(1e3 * result.total_s) + " ms, " +
+          counted(result.restarts, "restart", "restarts") + "; balance margin " +
+          short_number(result.report.balance.margin) + " (" + result.report.balance.limiting +
+          "), torques up to " + short_number(100.0 * result.report.balance.max_torque_ratio) +
+          " % of their limits\n";
+  if (!options.output.empty()) text += "written: " + options.output + '\n';
+  print_text(text);
+}
+
+ExitCode posture(const CommandOptions& options) {
+  if (!options.output.empty()) check_writable(options.output);
+  const Stopwatch total;
+  const RobotFiles files = robot_files(options.robot, options.srdf, data_folder());
+  const auto robot = std::make_shared<const RobotParameter>(
+      files.urdf, files.srdf, RobotOptions{.active_joints = {}, .lenient_srdf = true});
+  PostureProblem problem;
+  problem.contacts = load_contacts(options.contacts, *robot->robot);
+  const PostureSolver solver = about(files.urdf, [&] {
+    return PostureSolver(robot, load_posture_world(options.map, options.obstacles));
+  });
+  const Robot& model = solver.robot();
+  const Eigen::VectorXd state =
+      about(files.srdf, [&] { return preferred_state(model, options.state); });
+  problem.preferred = placed_at(model, state, problem.contacts);
+  const double load_s = total.seconds();
+
+  PostureOptions solving;
+  solving.seed = options.seed;
+  solving.max_restarts = options.restarts;
+  solving.enforce_torque_limits = solving.check.enforce_torque_limits =
+      options.torques == "enforce";
+  if (options.deadline_ms > 0.0) solving.deadline = Deadline::after(1e-3 * options.deadline_ms);
+  const PostureResult result = about(files.urdf, [&] { return solver.solve(problem, solving); });
+  if (result.success && !options.output.empty()) {
+    write_graph(solver.graph(problem, result, solving), options.output);
+  }
+  if (options.json) {
+    print_result(result_json(model, problem, result, options, load_s, total.seconds()), true);
+  } else {
+    print_summary(model, result, options);
+  }
+  return result.success ? kDone : kNo;
+}
+
+}  // namespace
+
+Command add_posture(CLI::App& app) {
+  const auto options = std::make_shared<CommandOptions>();
+  CommandOptions& o = *options;
+  CLI::App* parser = app.add_subcommand(
+      "posture", "Find a balanced, collision-free configuration for given contacts");
+  parser->add_option("ROBOT", o.robot, "URDF file, or a name that `locograph list robots` gives")
+      ->required();
+  parser->add_option("--contacts", o.contacts, "File of the contacts (.xml), see doc/posture.md")
+      ->required();
+  parser->add_option("--srdf", o.srdf, "SRDF file instead of the one beside the URDF");
+  parser->add_option("--state", o.state,
+                     "Group state of the SRDF to stay near (home, else standing, else neutral)");
+  parser->add_option("--map", o.map, "OctoMap of what is around");
+  parser->add_option("--obstacles", o.obstacles, "Obstacle file (.xml); may go with --map");
+  parser->add_option("-o,--output", o.output, "Graph file to write (.g2o)");
+  parser->add_option("--seed", o.seed, "Of the restarts")->capture_default_str();
+  parser->add_option("--restarts", o.restarts, "Most restarts")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  parser->add_option("--deadline-ms", o.deadline_ms, "Time to find it in; 0: no limit")
+      ->check(CLI::NonNegativeNumber);
+  parser
+      ->add_option("--torque-limits", o.torques,
+                   "enforce: torques keep to the URDF's efforts; report: only tell them")
+      ->check(CLI::IsMember({"enforce", "report"}))
+      ->capture_default_str();
+  parser->add_option("--threads", o.threads, "Most threads to use (this version uses one)")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  parser->add_flag("--json", o.json, "Print one JSON object");
+  return {parser, [options] { return posture(*options); }};
+}
+
+}  // namespace locograph

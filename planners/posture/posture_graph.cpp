@@ -1,0 +1,311 @@
+#include <locograph/planners/plan/plan.h>
+#include <locograph/planners/posture/posture_graph.h>
+#include <locograph/plugins/configuration/surface_axes.h>
+#include <locograph/plugins/contact/edge_contact.h>
+#include <locograph/plugins/ground_distance/edge_ground_distance.h>
+#include <locograph/plugins/joint_limits/edge_joint_limits.h>
+#include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
+#include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
+#include <locograph/plugins/self_collision/edge_self_collision.h>
+#include <locograph/plugins/static_balance/edge_balance.h>
+#include <locograph/plugins/static_balance/edge_contact_wrench.h>
+#include <locograph/plugins/static_balance/edge_torque_limits.h>
+#include <locograph/plugins/static_balance/edge_wrench_norm.h>
+#include <locograph/robots/statics.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace locograph {
+namespace {
+
+using Kind = WatchedRows::Kind;
+
+constexpr int kFirstFrame = 10, kFirstContact = 1000;
+
+// On squared errors in m, rad and parts of the robot's weight.
+constexpr double kContactWeight = 1e5, kBalanceWeight = 1e4, kLimitWeight = 1e4,
+                 kWrenchWeight = 1e3, kTorqueWeight = 1e2;
+constexpr double kPreferredJoint = 1e-2, kPreferredBase = 1e-4, kWrenchNorm = 1e-2;
+
+// What counts as closed; the check allows 1e-4 m and 1e-3 rad.
+constexpr double kContactTolerance = 3e-5, kBalanceTolerance = 2e-4, kWrenchTolerance = 5e-3;
+/// The part of a margin that a violation may use up.
+constexpr double kMarginUsed = 0.9;
+constexpr double kNoMargin = 1e-7;
+
+double used(double margin) { return margin > 0.0 ? kMarginUsed * margin : kNoMargin; }
+
+Eigen::VectorXd all(Eigen::Index rows, double value) {
+  return Eigen::VectorXd::Constant(rows, value);
+}
+
+ContactKind closure_of(const PlacedContact& placed) {
+  switch (placed.contact.kind) {
+    case WrenchKind::kPoint:
+      return ContactKind::kPoint;
+    case WrenchKind::kRung:
+      return ContactKind::kRung;
+    case WrenchKind::kSurface:
+      break;
+  }
+  return placed.forward ? ContactKind::kSurface : ContactKind::kSurfaceFreeYaw;
+}
+
+Eigen::Isometry3d frame_in_link(const ContactDescription& contact) {
+  Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
+  frame.translation() = contact.point;
+  if (contact.kind != WrenchKind::kPoint) {
+    frame.linear() = surface_axes("contact of " + contact.link, contact.normal, contact.forward);
+  }
+  return frame;
+}
+
+Eigen::Isometry3d frame_in_world(const PlacedContact& placed) {
+  Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
+  frame.translation() = placed.position;
+  frame.linear() = world_axes(placed);
+  return frame;
+}
+
+/// What the contact bears, less a margin.
+ContactDescription with_margin(ContactDescription contact, double margin) {
+  const double part = 1.0 - margin;
+  contact.mu *= part;
+  contact.half_x_m *= part;
+  contact.half_y_m *= part;
+  contact.max_force_N *= part;
+  contact.max_moment_Nm *= part;
+  return contact;
+}
+
+}  // namespace
+
+const Eigen::VectorXd& WatchedRows::error(Workspace& workspace, const Edge& edge) {
+  error_.resize(edge.tolerance.size());
+  workspace.error(edge.pool, edge.k, error_.data());
+  for (Eigen::Index r = 0; r < error_.size(); ++r) {
+    error_[r] = edge.weights[r] == 0.0 ? 0.0 : std::abs(error_[r]) / edge.tolerance[r];
+  }
+  return error_;
+}
+
+double WatchedRows::worst(Workspace& workspace) {
+  double worst = 0.0;
+  for (const Edge& edge : edges_) {
+    if (edge.kind == Kind::kSelf) continue;
+    worst = std::max(worst, error(workspace, edge).maxCoeff());
+  }
+  if (worst > 1.0) return worst;
+  for (const Edge& edge : edges_) {
+    if (edge.kind == Kind::kSelf) worst = std::max(worst, error(workspace, edge).maxCoeff());
+  }
+  return worst;
+}
+
+Violated WatchedRows::violated(Workspace& workspace) {
+  const Robot& robot = *robot_->robot;
+  Violated violated;
+  violated.joints.assign(static_cast<std::size_t>(robot.active_joint_count()), false);
+  const auto move_chain = [&](int link) {
+    for (const int i : robot.support(link)) violated.joints[static_cast<std::size_t>(i)] = true;
+  };
+  for (const Edge& edge : edges_) {
+    const Eigen::VectorXd& e = error(workspace, edge);
+    for (Eigen::Index r = 0; r < e.size(); ++r) {
+      if (e[r] <= 1.0) continue;
+      switch (edge.kind) {
+        case Kind::kContact:
+          violated.base = true;
+          move_chain(edge.link);
+          break;
+        case Kind::kJoints:
+          violated.joints[static_cast<std::size_t>(r)] = true;
+          break;
+        case Kind::kSelf: {
+          const SelfCollisionShapes::Pair& pair =
+              robot_->self_collision.pairs[static_cast<std::size_t>(r)];
+          move_chain(robot_->bounds[static_cast<std::size_t>(pair.first)].link);
+          move_chain(robot_->bounds[static_cast<std::size_t>(pair.second)].link);
+          break;
+        }
+        case Kind::kSpheres:
+          violated.base = true;
+          move_chain(robot_->spheres[static_cast<std::size_t>(r)].link);
+          break;
+        case Kind::kBalance:
+        case Kind::kWrenches:
+        case Kind::kTorques:
+          violated.base = true;
+          for (const int link : loaded_links_) move_chain(link);
+          break;
+      }
+    }
+  }
+  // Nothing stands out: the check refused what the edges allow.
+  if (!violated.base && std::none_of(violated.joints.begin(), violated.joints.end(),
+                                     [](bool moved) { return moved; })) {
+    violated.base = true;
+    violated.joints.assign(violated.joints.size(), true);
+  }
+  return violated;
+}
+
+PostureGraph::PostureGraph(std::shared_ptr<const RobotParameter> robot, const PostureWorld& world,
+                           const PostureProblem& problem, const PostureOptions& options,
+                           const std::vector<bool>& coarse_pairs)
+    : robot_(std::move(robot)), weight_N_(robot_->robot->total_mass() * standard_gravity().norm()) {
+  const Robot& model = *robot_->robot;
+  add_parameters(world, problem, options);
+  q_ = graph.add_vertex(0, VertexConfiguration(kRobotNumber, robot_, 0.0, problem.preferred));
+  w_ = graph.add_vertex(1, VertexWrenches(graph.parameters(), wrench_numbers_));
+
+  Eigen::VectorXd preference = all(model.tangent_size(), kPreferredJoint);
+  preference.head(model.base_tangent_size()).setConstant(kPreferredBase);
+  graph.add_edge(EdgePlanTracking(problem.preferred, preference), q_);
+  graph.add_edge(EdgeWrenchNorm(graph.vertex(w_), kWrenchNorm / (weight_N_ * weight_N_)), w_);
+  add_contact_edges(problem);
+  const int joints = model.active_joint_count();
+  constrain(Kind::kJoints, EdgeJointLimits(model, options.joint_margin_rad, kLimitWeight),
+            all(joints, used(options.joint_margin_rad)), -1, q_);
+  add_balance_edges(options);
+  add_collision_edges(world, problem, options, coarse_pairs);
+}
+
+void PostureGraph::add_parameters(const PostureWorld& world, const PostureProblem& problem,
+                                  const PostureOptions& options) {
+  graph.parameters().set(kRobotNumber, robot_);
+  if (world.seen) graph.parameters().set(kWorldNumber, world.seen);
+  int number = 0;
+  for (const PlacedContact& placed : problem.contacts) {
+    const ContactDescription& contact = placed.contact;
+    graph.parameters().set(kFirstFrame + number,
+                           std::make_shared<const FrameParameter>(
+                               *robot_->robot, kRobotNumber, contact.link, frame_in_link(contact)));
+    if (placed.bears_load) {
+      wrench_numbers_.push_back(kFirstContact + number);
+      wrench_axes_.push_back(world_axes(placed));
+      loaded_links_.push_back(robot_->robot->link_index(contact.link));
+      graph.parameters().set(wrench_numbers_.back(),
+                             std::make_shared<const ContactParameter>(
+                                 robot_, kRobotNumber,
+                                 with_margin(wrench_description(placed), options.wrench_margin)));
+    }
+    ++number;
+  }
+}
+
+template <class E, class... Vertices>
+void PostureGraph::constrain(Kind kind, E edge, const Eigen::VectorXd& tolerance, int link,
+                             Vertices... vertices) {
+  if (tolerance.size() == 0) return;
+  Eigen::VectorXd weights = edge.weights;
+  const EdgeId id = graph.add_edge(std::move(edge), vertices...);
+  constraints_.push_back({kind, id, link, tolerance, std::move(weights)});
+}
+
+void PostureGraph::add_contact_edges(const PostureProblem& problem) {
+  int number = kFirstFrame;
+  for (const PlacedContact& placed : problem.contacts) {
+    EdgeContact closure(number++, closure_of(placed), frame_in_world(placed), kContactWeight);
+    const Eigen::VectorXd tolerance = all(closure.dimension(), kContactTolerance);
+    constrain(Kind::kContact, std::move(closure), tolerance,
+              robot_->robot->link_index(placed.contact.link), q_);
+  }
+}
+
+void PostureGraph::add_balance_edges(const PostureOptions& options) {
+  const double unit = 1.0 / (weight_N_ * weight_N_);
+  constrain(Kind::kBalance, EdgeBalance(kBalanceWeight * unit, kBalanceWeight * unit),
+            all(6, kBalanceTolerance * weight_N_), -1, q_, w_);
+  EdgeContactWrench bearable(*graph.vertex(w_).contacts, kWrenchWeight * unit);
+  const double spare = std::min(kWrenchTolerance, 0.1 * options.wrench_margin) * weight_N_;
+  const Eigen::VectorXd tolerance = all(bearable.dimension(), std::max(spare, kNoMargin));
+  constrain(Kind::kWrenches, std::move(bearable), tolerance, -1, w_);
+  if (!options.enforce_torque_limits) return;
+  const Robot& robot = *robot_->robot;
+  EdgeTorqueLimits torques(robot, 1.0 - options.torque_margin, 0.0);
+  Eigen::VectorXd allowed(robot.active_joint_count());
+  for (int i = 0; i < robot.active_joint_count(); ++i) {
+    const double effort = robot.active_joint(i).max_effort;
+    const bool limited = std::isfinite(effort);
+    torques.weights[i] = limited ? kTorqueWeight / (effort * effort) : 0.0;
+    allowed[i] = limited ? effort * std::max(0.5 * options.torque_margin, kNoMargin) : 1.0;
+  }
+  constrain(Kind::kTorques, std::move(torques), allowed, -1, q_, w_);
+}
+
+void PostureGraph::add_collision_edges(const PostureWorld& world, const PostureProblem& problem,
+                                       const PostureOptions& options,
+                                       const std::vector<bool>& coarse_pairs) {
+  const auto pairs = static_cast<Eigen::Index>(robot_->self_collision.pairs.size());
+  if (pairs > 0) {
+    EdgeSelfCollision apart(*robot_, options.self_margin_m, kLimitWeight);
+    for (Eigen::Index p = 0; p < pairs; ++p) {
+      if (coarse_pairs[static_cast<std::size_t>(p)]) apart.weights[p] = 0.0;
+    }
+    constrain(Kind::kSelf, std::move(apart), all(pairs, used(options.self_margin_m)), -1, q_);
+  }
+  const auto spheres = static_cast<Eigen::Index>(robot_->spheres.size());
+  if (spheres == 0) return;
+  const std::vector<bool> touching = touching_links(*robot_->robot, problem.contacts);
+  const auto release_touching = [&](Eigen::VectorXd& weights) {
+    for (Eigen::Index i = 0; i < spheres; ++i) {
+      const CollisionSphere& sphere = robot_->spheres[static_cast<std::size_t>(i)];
+      if (touching[static_cast<std::size_t>(sphere.link)]) weights[i] = 0.0;
+    }
+  };
+  if (world.ground) {
+    EdgeGroundDistance ground(*robot_, options.ground_margin_m, kLimitWeight);
+    release_touching(ground.weights);
+    constrain(Kind::kSpheres, std::move(ground), all(spheres, used(options.ground_margin_m)), -1,
+              q_);
+  }
+  if (world.seen) {
+    EdgeObstacleDistance obstacles(*robot_, kWorldNumber, options.obstacle_margin_m, kLimitWeight);
+    release_touching(obstacles.weights);
+    constrain(Kind::kSpheres, std::move(obstacles), all(spheres, used(options.obstacle_margin_m)),
+              -1, q_);
+  }
+}
+
+void PostureGraph::set_start(const Eigen::VectorXd& configuration) {
+  const double share_N = weight_N_ / static_cast<double>(wrench_axes_.size());
+  std::vector<Eigen::VectorXd> wrenches;
+  for (const Eigen::Matrix3d& axes : wrench_axes_) {
+    wrenches.push_back(Eigen::VectorXd::Zero(6));
+    wrenches.back().head<3>() = axes.transpose() * (share_N * Eigen::Vector3d::UnitZ());
+  }
+  set(configuration, wrenches);
+}
+
+void PostureGraph::set(const Eigen::VectorXd& configuration,
+                       const std::vector<Eigen::VectorXd>& wrenches) {
+  graph.vertex(q_).state = configuration;
+  if (wrenches.empty()) return;
+  VertexWrenches& vertex = graph.vertex(w_);
+  Eigen::Index at = 0;
+  for (std::size_t i = 0; i < wrenches.size(); ++i) {
+    for (const int component : (*vertex.contacts)[i]->components()) {
+      vertex.state[at++] = wrenches[i][component];
+    }
+  }
+}
+
+Eigen::VectorXd PostureGraph::configuration() const { return graph.vertex(q_).state; }
+
+WatchedRows PostureGraph::watch(const Problem& compiled) const {
+  WatchedRows rows;
+  rows.robot_ = robot_;
+  rows.loaded_links_ = loaded_links_;
+  for (const Constraint& constraint : constraints_) {
+    const Graph::EdgeRecord& record = graph.edge_record(constraint.edge.slot);
+    const auto& edges = compiled.edges()[static_cast<std::size_t>(record.pool)].edges;
+    const auto found = std::find(edges.begin(), edges.end(), record.index);
+    rows.edges_.push_back({constraint.kind, record.pool, static_cast<int>(found - edges.begin()),
+                           constraint.link, constraint.tolerance, constraint.weights});
+  }
+  return rows;
+}
+
+}  // namespace locograph

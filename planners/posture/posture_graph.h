@@ -1,0 +1,101 @@
+#pragma once
+/// The graph that a posture is the optimum of, and which of its rows are violated.
+///
+///     PostureGraph posture(robot, world, problem, options);
+///     posture.set_start(problem.preferred);
+///     Problem compiled;
+///     compiled.compile(posture.graph);
+///     WatchedRows rows = posture.watch(compiled);
+///     double worst = rows.worst(workspace);                // 1: the worst row is at its tolerance
+///
+/// `coarse_pairs` of links have no weight in self-collision. Weights make one unit of violation
+/// count alike: 0.01 of m, rad or the robot's weight. Those of the preferred configuration and of
+/// the wrenches' size are so small that they move a constraint by micrometres only.
+
+#include <locograph/core/workspace.h>
+#include <locograph/planners/posture/posture_solver.h>
+#include <locograph/plugins/configuration/vertex_configuration.h>
+#include <locograph/plugins/static_balance/vertex_wrenches.h>
+
+#include <vector>
+
+namespace locograph {
+
+/// What may have to move to get rid of a violation.
+struct Violated {
+  bool base = false;
+  std::vector<bool> joints;  ///< by active joint
+};
+
+/// The rows of a posture's constraints, at the state evaluated last.
+class WatchedRows {
+ public:
+  enum class Kind { kContact, kJoints, kSelf, kSpheres, kBalance, kWrenches, kTorques };
+
+  /// The largest violation, in tolerances. Self-collision, which costs as much as all the others
+  /// together, is looked at once these hold.
+  double worst(Workspace& workspace);
+  /// What the rows above their tolerance depend on.
+  Violated violated(Workspace& workspace);
+
+ private:
+  friend class PostureGraph;
+  struct Edge {
+    Kind kind;
+    int pool, k;
+    int link;  ///< of a contact
+    Eigen::VectorXd tolerance, weights;
+  };
+  const Eigen::VectorXd& error(Workspace& workspace, const Edge& edge);
+
+  std::shared_ptr<const RobotParameter> robot_;
+  std::vector<int> loaded_links_;
+  std::vector<Edge> edges_;
+  Eigen::VectorXd error_;
+};
+
+class PostureGraph {
+ public:
+  PostureGraph(std::shared_ptr<const RobotParameter> robot, const PostureWorld& world,
+               const PostureProblem& problem, const PostureOptions& options,
+               const std::vector<bool>& coarse_pairs);
+
+  /// The configuration, and wrenches that share the weight evenly among the contacts.
+  void set_start(const Eigen::VectorXd& configuration);
+  /// wrenches: 6 numbers for each contact that bears load; empty: as they are.
+  void set(const Eigen::VectorXd& configuration, const std::vector<Eigen::VectorXd>& wrenches);
+  Eigen::VectorXd configuration() const;
+
+  WatchedRows watch(const Problem& compiled) const;
+
+  Graph graph;
+
+ private:
+  void add_parameters(const PostureWorld& world, const PostureProblem& problem,
+                      const PostureOptions& options);
+  void add_contact_edges(const PostureProblem& problem);
+  void add_balance_edges(const PostureOptions& options);
+  void add_collision_edges(const PostureWorld& world, const PostureProblem& problem,
+                           const PostureOptions& options, const std::vector<bool>& coarse_pairs);
+  template <class E, class... Vertices>
+  void constrain(WatchedRows::Kind kind, E edge, const Eigen::VectorXd& tolerance, int link,
+                 Vertices... vertices);
+
+  struct Constraint {
+    WatchedRows::Kind kind;
+    EdgeId edge;
+    int link;
+    Eigen::VectorXd tolerance, weights;
+  };
+
+  std::shared_ptr<const RobotParameter> robot_;
+  double weight_N_;
+  VertexId<VertexConfiguration> q_;
+  VertexId<VertexWrenches> w_;
+  std::vector<int> wrench_numbers_;
+  std::vector<Eigen::Matrix3d> wrench_axes_;  ///< in the world, once closed
+  std::vector<int> loaded_links_;
+  std::vector<Constraint> constraints_;
+};
+
+}  // namespace locograph

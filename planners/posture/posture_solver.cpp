@@ -1,0 +1,331 @@
+#include <locograph/core/optimiser.h>
+#include <locograph/planners/plan/plan.h>
+#include <locograph/planners/posture/posture_graph.h>
+#include <locograph/planners/posture/posture_solver.h>
+#include <locograph/plugins/self_collision/edge_self_collision.h>
+#include <locograph/solvers/linear_solvers.h>
+#include <locograph/world/octree.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <random>
+
+namespace locograph {
+namespace {
+
+void require(bool good, const char* option, const char* expected) {
+  if (!good) throw Error(std::string("option ") + option + " is out of range", expected);
+}
+
+/// The same numbers with every standard library.
+double uniform(std::mt19937_64& random, double lower, double upper) {
+  return lower + (upper - lower) * 0x1.0p-53 * static_cast<double>(random() >> 11);
+}
+
+/// Pairs of RobotParameter::self_collision that the edges would keep apart where the exact shapes
+/// do not touch.
+std::vector<bool> coarse_pairs(const std::shared_ptr<const RobotParameter>& robot,
+                               const PostureChecker& checker) {
+  const Robot& model = *robot->robot;
+  const std::size_t pairs = robot->self_collision.pairs.size();
+  std::vector<bool> coarse(pairs, false);
+  std::vector<Eigen::VectorXd> examples = {model.neutral_configuration()};
+  for (const std::string& name : model.configuration_names()) {
+    examples.push_back(model.named_configuration(name));
+  }
+  const EdgeSelfCollision edge(*robot, 0.0, 1.0);
+  Eigen::VectorXd depth(static_cast<Eigen::Index>(pairs));
+  ConfigurationState state(robot);
+  for (const Eigen::VectorXd& q : examples) {
+    state.update(q.data());
+    if (checker.self_distance_m(state.kinematics) < 0.0) continue;
+    edge.error(state, depth);
+    for (std::size_t p = 0; p < pairs; ++p) {
+      if (depth[static_cast<Eigen::Index>(p)] > 0.0) coarse[p] = true;
+    }
+  }
+  return coarse;
+}
+
+/// One solve: the graph compiled once, attempts on it.
+class Search {
+ public:
+  Search(const std::shared_ptr<const RobotParameter>& robot, const PostureWorld& world,
+         const PostureChecker& checker, const PostureProblem& problem,
+         const PostureOptions& options, const std::vector<bool>& coarse, Workspace& workspace)
+      : robot_(*robot->robot),
+        checker_(checker),
+        problem_(problem),
+        options_(options),
+        random_(options.seed),
+        posture_(robot, world, problem, options, coarse),
+        solver_(make_linear_solver("dense")),
+        workspace_(workspace) {
+    check_.ground_z_m =
+        world.ground ? options.check.ground_z_m : -std::numeric_limits<double>::infinity();
+    compiled_.compile(posture_.graph);
+    workspace_.allocate(compiled_);
+    watched_ = posture_.watch(compiled_);
+  }
+
+  PostureResult run() {
+    result_.build_s = watch_.seconds();
+    Eigen::VectorXd start = problem_.preferred;
+    for (;;) {
+      attempt(start);
+      if (result_.success || result_.restarts >= options_.max_restarts ||
+          options_.deadline.passed()) {
+        break;
+      }
+      ++result_.restarts;
+      start = perturbed();
+    }
+    if (!result_.success) explain();
+    result_.total_s = watch_.seconds();
+    return std::move(result_);
+  }
+
+ private:
+  /// Optimises from `start`. The check has the last word, also on what lacks a margin only.
+  void attempt(const Eigen::VectorXd& start) {
+    posture_.set_start(start);
+    workspace_.load_state();
+    std::vector<double> worst_by_iteration;
+    bool closed = false;
+    OptimiserOptions lm;
+    lm.scale_by_diagonal = true;
+    lm.initial_lambda = 1e-4;
+    lm.refused_lambda = 1e-2;
+    lm.max_iterations = options_.max_iterations;
+    lm.gain = 1e-4;
+    lm.deadline = options_.deadline;
+    lm.on_iteration = [&](const OptimiserResult&) {
+      const double worst = watched_.worst(workspace_);
+      closed = worst <= 1.0;
+      worst_by_iteration.push_back(worst);
+      return !closed && !stalled(worst_by_iteration);
+    };
+    const Stopwatch watch;
+    Optimiser optimiser(lm);
+    optimiser.start(workspace_, *solver_);
+    while (optimiser.iterate()) {
+    }
+    workspace_.evaluate(workspace_.state());
+    const double worst = watched_.worst(workspace_);
+    workspace_.store_state();
+    result_.optimise_s += watch.seconds();
+    result_.iterations += optimiser.result().iterations;
+    violated_ = watched_.violated(workspace_);
+    const bool best = worst < best_;
+    if (best) {
+      best_ = worst;
+      result_.configuration = posture_.configuration();
+      checked_ = false;
+    }
+    PostureCheckOptions asked = check_;
+    asked.certify_only_if_rest_holds = true;
+    PostureReport report = checked(posture_.configuration(), asked);
+    result_.success = report.feasible;
+    if (best || report.feasible) {
+      result_.configuration = posture_.configuration();
+      result_.report = std::move(report);
+      checked_ = true;
+    }
+  }
+
+  /// The worst violation, in tolerances, has not come down by a tenth in a few iterations.
+  bool stalled(const std::vector<double>& worst) const {
+    if (static_cast<int>(worst.size()) <= options_.patience) return false;
+    const auto split = worst.end() - options_.patience;
+    return *std::min_element(split, worst.end()) > 0.9 * *std::min_element(worst.begin(), split);
+  }
+
+  PostureReport checked(const Eigen::VectorXd& q, const PostureCheckOptions& options) {
+    PostureReport report = checker_.check(q, problem_.contacts, options);
+    result_.geometry_s += report.geometry_s;
+    result_.balance_s += report.balance_s;
+    return report;
+  }
+
+  void explain() {
+    if (!checked_) result_.report = checked(result_.configuration, check_);
+    result_.reason = "no posture found: " + violation_text(result_.report.worst());
+    if (options_.deadline.passed()) result_.reason += "; the time allowed is used up";
+  }
+
+  /// The preferred configuration with what was violated moved at random, further from one restart
+  /// to the next.
+  Eigen::VectorXd perturbed() {
+    Eigen::VectorXd q = problem_.preferred;
+    const int base = robot_.base_configuration_size();
+    const double reach = std::min(1.0, 0.25 * result_.restarts);
+    Eigen::VectorXd tangent = Eigen::VectorXd::Zero(robot_.tangent_size());
+    if (violated_.base) {
+      for (int i = 0; i < 3; ++i) tangent[i] = uniform(random_, -0.2, 0.2) * reach;
+      for (int i = 3; i < 6; ++i) tangent[i] = uniform(random_, -0.6, 0.6) * reach;
+    }
+    robot_.integrate(q.data(), tangent.data(), q.data());
+    for (int i = 0; i < robot_.active_joint_count(); ++i) {
+      if (!violated_.joints[static_cast<std::size_t>(i)]) continue;
+      const Joint& joint = robot_.active_joint(i);
+      const double span = joint.type == JointType::kPrismatic ? 0.2 : 1.5;
+      const double lower = std::max(joint.lower, q[base + i] - span * reach);
+      const double upper = std::min(joint.upper, q[base + i] + span * reach);
+      if (lower < upper) q[base + i] = uniform(random_, lower, upper);
+    }
+    return q;
+  }
+
+  const Robot& robot_;
+  const PostureChecker& checker_;
+  const PostureProblem& problem_;
+  const PostureOptions& options_;
+  PostureCheckOptions check_ = options_.check;
+  const Stopwatch watch_;
+  std::mt19937_64 random_;
+  PostureGraph posture_;
+  std::unique_ptr<LinearSolver> solver_;
+  Problem compiled_;
+  Workspace& workspace_;
+  WatchedRows watched_;
+  Violated violated_;
+  double best_ = std::numeric_limits<double>::infinity();
+  bool checked_ = false;
+  PostureResult result_;
+};
+
+}  // namespace
+
+/// Workspaces that no solve uses at the moment: their memory takes longer to get than most solves.
+class PostureSolver::Workspaces {
+ public:
+  std::unique_ptr<Workspace> take() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return std::make_unique<Workspace>();
+    std::unique_ptr<Workspace> workspace = std::move(free_.back());
+    free_.pop_back();
+    return workspace;
+  }
+  void give_back(std::unique_ptr<Workspace> workspace) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(workspace));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Workspace>> free_;
+};
+
+void PostureOptions::validate() const {
+  require(max_restarts >= 0, "max_restarts", "0 or more");
+  require(patience >= 1, "patience", "1 or more");
+  require(max_iterations >= 1, "max_iterations", "1 or more");
+  require(joint_margin_rad >= 0.0, "joint_margin_rad", "0 or more");
+  require(self_margin_m >= 0.0, "self_margin_m", "0 or more");
+  require(obstacle_margin_m >= 0.0, "obstacle_margin_m", "0 or more");
+  require(ground_margin_m >= 0.0, "ground_margin_m", "0 or more");
+  require(wrench_margin >= 0.0 && wrench_margin < 1.0, "wrench_margin", "a part in [0, 1)");
+  require(torque_margin >= 0.0 && torque_margin < 1.0, "torque_margin", "a part in [0, 1)");
+}
+
+PostureWorld load_posture_world(const std::filesystem::path& map,
+                                const std::filesystem::path& obstacles) {
+  PostureWorld world;
+  if (map.empty() && obstacles.empty()) return world;
+  world.seen = std::make_shared<const WorldParameter>(map, obstacles);
+  if (!map.empty()) world.map = load_octree(map);
+  if (!obstacles.empty()) world.obstacles = load_obstacles(obstacles);
+  return world;
+}
+
+PostureSolver::PostureSolver(std::shared_ptr<const RobotParameter> robot, PostureWorld world)
+    : robot_(std::move(robot)),
+      world_(std::move(world)),
+      checker_(robot_->robot, world_.map, world_.obstacles),
+      coarse_pairs_(coarse_pairs(robot_, checker_)),
+      workspaces_(std::make_unique<Workspaces>()) {
+  if (!robot_->robot->floating_base()) {
+    throw Error("a posture of a robot with a fixed base", "a floating base");
+  }
+  RobotState(*robot_->robot).require_mass();
+}
+
+PostureSolver::~PostureSolver() = default;
+
+PostureResult PostureSolver::solve(const PostureProblem& problem,
+                                   const PostureOptions& options) const {
+  options.validate();
+  require_sound_contacts(robot(), problem.contacts);
+  if (problem.preferred.size() != robot().configuration_size() || !problem.preferred.allFinite() ||
+      !(problem.preferred.segment<4>(3).norm() > 1e-3)) {
+    throw Error("a preferred configuration that is none of " + robot().name(),
+                std::to_string(robot().configuration_size()) + " finite numbers");
+  }
+  std::unique_ptr<Workspace> workspace = workspaces_->take();
+  PostureResult result =
+      Search(robot_, world_, checker_, problem, options, coarse_pairs_, *workspace).run();
+  workspaces_->give_back(std::move(workspace));
+  return result;
+}
+
+Graph PostureSolver::graph(const PostureProblem& problem, const PostureResult& result,
+                           const PostureOptions& options) const {
+  PostureOptions exact = options;
+  exact.joint_margin_rad = exact.self_margin_m = exact.obstacle_margin_m = 0.0;
+  exact.ground_margin_m = exact.wrench_margin = exact.torque_margin = 0.0;
+  // What it stays near is itself: the graph is at rest.
+  const PostureProblem found{problem.contacts, result.configuration};
+  PostureGraph posture(robot_, world_, found, exact, coarse_pairs_);
+  posture.set(result.configuration, result.report.balance.wrenches);
+  return std::move(posture.graph);
+}
+
+Eigen::VectorXd placed_at(const Robot& robot, const Eigen::VectorXd& configuration,
+                          std::span<const PlacedContact> contacts) {
+  require_sound_contacts(robot, contacts);
+  RobotState state(robot);
+  state.update(configuration.data());
+  // Each contact is a few points: its own, one along the normal and one forward where these are
+  // held; one straight above keeps the robot upright, one ahead its heading, where nothing else
+  // says so.
+  constexpr double kAxis_m = 0.1, kUpright_m = 0.3, kHeading_m = 0.02;
+  std::vector<Eigen::Vector3d> own, wanted;
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), ahead = Eigen::Vector3d::UnitX();
+  // What the robot stands on says where it is; a hand reaches out from there.
+  const bool stands = std::any_of(contacts.begin(), contacts.end(), [](const PlacedContact& c) {
+    return c.contact.kind == WrenchKind::kSurface;
+  });
+  for (const PlacedContact& placed : contacts) {
+    if (stands && placed.contact.kind != WrenchKind::kSurface) continue;
+    const Eigen::Isometry3d& pose = state.world_from_link(robot.link_index(placed.contact.link));
+    const Eigen::Vector3d point = pose * placed.contact.point;
+    const auto pair = [&](const Eigen::Vector3d& of_robot, const Eigen::Vector3d& of_world) {
+      own.push_back(point + of_robot);
+      wanted.push_back(placed.position + of_world);
+    };
+    pair(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
+    pair(kUpright_m * up, kUpright_m * up);
+    pair(kHeading_m * ahead, kHeading_m * ahead);
+    if (placed.contact.kind == WrenchKind::kPoint) continue;
+    const Eigen::Vector3d normal = pose.linear() * placed.contact.normal.normalized();
+    pair(kAxis_m * normal, kAxis_m * placed.normal.normalized());
+    if (!placed.forward) continue;
+    pair(kAxis_m * (pose.linear() * placed.contact.forward.normalized()),
+         kAxis_m * placed.forward->normalized());
+  }
+  const Eigen::Index count = static_cast<Eigen::Index>(own.size());
+  const Eigen::Map<const Eigen::Matrix3Xd> from(own.front().data(), 3, count);
+  const Eigen::Map<const Eigen::Matrix3Xd> to(wanted.front().data(), 3, count);
+  Eigen::Isometry3d moved;
+  moved.matrix() = Eigen::umeyama(from, to, false);
+  Eigen::VectorXd q = configuration;
+  const Eigen::Vector3d position = moved * Eigen::Vector3d(q.head<3>());
+  const Eigen::Quaterniond turned =
+      Eigen::Quaterniond(moved.linear()) * Eigen::Quaterniond(q.segment<4>(3).data());
+  q.head<3>() = position;
+  q.segment<4>(3) = turned.normalized().coeffs();
+  return q;
+}
+
+}  // namespace locograph

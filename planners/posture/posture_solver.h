@@ -1,0 +1,129 @@
+#pragma once
+/// Finds a balanced, collision-free configuration that closes given contacts.
+///
+///     const PostureSolver solver(std::make_shared<const RobotParameter>(urdf, srdf, options));
+///     PostureProblem problem;
+///     problem.contacts = load_contacts("standing.xml", solver.robot());
+///     problem.preferred = placed_at(solver.robot(), home, problem.contacts);
+///     PostureResult result = solver.solve(problem);
+///     if (!result.success) std::cerr << result.reason;
+///     else write_graph(solver.graph(problem, result), "standing.g2o");
+///
+/// A posture is a small graph: one configuration, one VERTEX_WRENCHES, the edges of contact
+/// closure, joint limits, balance, friction, torque limits, self-collision, ground and obstacles,
+/// and a weak pull to the preferred configuration. Levenberg-Marquardt solves it from there, then
+/// from a bounded number of seeded restarts that move what was violated: the chains that collide or
+/// do not reach, the base when balance fails (the idea of Rossini et al. 2021). An attempt ends as
+/// soon as its worst violation no longer comes down. What counts as found is decided by
+/// PostureChecker alone, never by cost.
+///
+/// Constraints are solved with margins (PostureOptions), so that what the check asks for holds with
+/// room to spare. Pairs of links whose covering shapes overlap although the links do not, in a
+/// named configuration of the robot (meshes count as their bounding boxes), are left to the check.
+/// Deterministic but for the deadline, up to rounding that depends on where vectors lie in memory:
+/// a program that makes the same calls gets the same bits. Thread-safe.
+
+#include <locograph/common/deadline.h>
+#include <locograph/core/graph.h>
+#include <locograph/planners/plan/posture_check.h>
+#include <locograph/plugins/configuration/robot_parameters.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace locograph {
+
+struct PostureProblem {
+  std::vector<PlacedContact> contacts;
+  /// The posture to stay near, and the first start: Robot::configuration_size() numbers.
+  Eigen::VectorXd preferred;
+};
+
+/// What is around the robot, as the edges see it and as the check sees it.
+struct PostureWorld {
+  std::shared_ptr<const WorldParameter> seen;  ///< null: nothing
+  std::shared_ptr<const octomap::OcTree> map;  ///< null: none
+  std::vector<Obstacle> obstacles;
+  bool ground = true;  ///< the plane z = 0
+};
+
+/// Empty paths: none. Throws Error for files that cannot be used.
+PostureWorld load_posture_world(const std::filesystem::path& map,
+                                const std::filesystem::path& obstacles);
+
+struct PostureOptions {
+  std::uint64_t seed = 0;
+  int max_restarts = 8;
+  int max_iterations = 60;  ///< of each attempt
+  /// An attempt ends when this many iterations have not lowered its worst violation by a tenth.
+  int patience = 6;
+  Deadline deadline;
+  /// Limits the torques to the efforts of the URDF; false: the result tells them.
+  bool enforce_torque_limits = true;
+
+  double joint_margin_rad = 1e-3;  ///< metres for prismatic joints
+  double self_margin_m = 4e-3;
+  double obstacle_margin_m = 0.01;
+  double ground_margin_m = 4e-3;
+  /// The part of friction, contact areas and force limits that is left as a margin.
+  double wrench_margin = 0.1;
+  double torque_margin = 0.05;
+  PostureCheckOptions check;
+
+  /// Throws Error naming the option that is out of range.
+  void validate() const;
+};
+
+struct PostureResult {
+  bool success = false;
+  /// Of a failure: the worst violation of the best attempt, with amount and unit.
+  std::string reason;
+  /// The posture; without success, the best attempt.
+  Eigen::VectorXd configuration;
+  PostureReport report;  ///< of that configuration; its wrenches are the certificate's
+  int restarts = 0, iterations = 0;
+  /// Seconds: building the graph, Levenberg-Marquardt, exact geometry, balance certificates.
+  double build_s = 0.0, optimise_s = 0.0, geometry_s = 0.0, balance_s = 0.0, total_s = 0.0;
+};
+
+class PostureSolver {
+ public:
+  /// Throws Error for a robot without a floating base, without masses, or with shapes that cannot
+  /// be used.
+  explicit PostureSolver(std::shared_ptr<const RobotParameter> robot, PostureWorld world = {});
+  ~PostureSolver();
+
+  const Robot& robot() const { return *robot_->robot; }
+
+  /// Throws Error for contacts that are not sound (placed_contact.h) or cannot bear anything, a
+  /// preferred configuration of the wrong size or not finite, and an effort limit that is not
+  /// positive where torques are limited.
+  PostureResult solve(const PostureProblem& problem, const PostureOptions& options = {}) const;
+
+  /// The posture as a graph without margins, for `optimize`, `view` and `info`: the configuration,
+  /// which is also the one it stays near, and the certificate's wrenches.
+  Graph graph(const PostureProblem& problem, const PostureResult& result,
+              const PostureOptions& options = {}) const;
+
+ private:
+  /// Memory of the solves before.
+  class Workspaces;
+
+  std::shared_ptr<const RobotParameter> robot_;
+  PostureWorld world_;
+  PostureChecker checker_;
+  std::vector<bool> coarse_pairs_;
+  std::unique_ptr<Workspaces> workspaces_;
+};
+
+/// `configuration` moved as a whole, so that its contact points are as near as possible to their
+/// places and it stands as upright as that allows. Where there are surface contacts, by these
+/// alone.
+Eigen::VectorXd placed_at(const Robot& robot, const Eigen::VectorXd& configuration,
+                          std::span<const PlacedContact> contacts);
+
+}  // namespace locograph

@@ -1,0 +1,207 @@
+#pragma once
+/// Random sets of contacts that a robot can reach, for tests and campaigns of the posture solver.
+///
+///     const PostureRobot coman = posture_robot("coman_plus");
+///     ContactSets sets(coman, 7);
+///     const ContactSet set = sets.draw();
+///     PostureProblem problem{set.contacts, placed_at(model, coman.home, set.contacts)};
+///
+/// How a set is drawn. A configuration: every joint within ±0.4 rad of the home posture and inside
+/// its limits, the base tilted by up to 0.15 rad about x and y and turned anywhere; again until it
+/// does not collide with itself; then lifted or lowered so that its lowest point is on the ground.
+/// Then one to four end effectors: for humanoids one foot or both, for robots on four legs three or
+/// all of them, since fewer hold them at single configurations only; hands at random. The poses
+/// that these have become the contacts, so there is a configuration that closes them without
+/// collision. Whether there is one that balances is not known; where the drawn one does, the whole
+/// check holds there.
+
+#include <locograph/planners/posture/posture_solver.h>
+#include <locograph/robots/robot_state.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace locograph::test {
+
+struct PostureRobot {
+  std::string name;
+  std::shared_ptr<const RobotParameter> robot;
+  Eigen::VectorXd home;
+  std::vector<ContactDescription> feet, hands;
+  int fewest_feet = 1;
+
+  const Robot& model() const { return *robot->robot; }
+};
+
+inline ContactDescription surface_contact(const std::string& link, const Eigen::Vector3d& point,
+                                          double half_x_m, double half_y_m) {
+  ContactDescription contact;
+  contact.link = link;
+  contact.point = point;
+  contact.half_x_m = half_x_m;
+  contact.half_y_m = half_y_m;
+  contact.mu = 0.6;
+  contact.max_force_N = 3000.0;
+  return contact;
+}
+
+inline ContactDescription point_contact(const std::string& link, const Eigen::Vector3d& point) {
+  ContactDescription contact;
+  contact.link = link;
+  contact.point = point;
+  contact.kind = WrenchKind::kPoint;
+  contact.mu = 0.6;
+  contact.max_force_N = 3000.0;
+  return contact;
+}
+
+/// centauro, coman_plus, which come along; go2, anymal, which are public data: data_folder holds
+/// their files.
+inline PostureRobot posture_robot(const std::string& name, const std::filesystem::path& sources,
+                                  const std::filesystem::path& data_folder) {
+  PostureRobot robot;
+  robot.name = name;
+  const bool ours = name == "centauro" || name == "coman_plus";
+  const std::filesystem::path folder =
+      ours ? sources / "robots/models" / name : data_folder / "robots";
+  RobotOptions options;
+  options.lenient_srdf = !ours;
+  robot.robot = std::make_shared<const RobotParameter>(folder / (name + ".urdf"),
+                                                       folder / (name + ".srdf"), options);
+  robot.home = robot.model().named_configuration(ours ? "home" : "standing");
+  const Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  if (name == "coman_plus") {
+    robot.feet = {surface_contact("l_sole", origin, 0.08, 0.04),
+                  surface_contact("r_sole", origin, 0.08, 0.04)};
+    robot.hands = {point_contact("TCP_L", origin), point_contact("TCP_R", origin)};
+  } else if (name == "centauro") {
+    // Where the wheel touches, on the fork that carries it; the wheel turns behind it.
+    for (const char* leg : {"1", "2", "3", "4"}) {
+      robot.feet.push_back(
+          surface_contact(std::string("ankle2_") + leg, {0.0, 0.0, -0.09835 - 0.078}, 0.005, 0.04));
+    }
+    robot.hands = {point_contact("ball1_tip", origin), point_contact("ball2_tip", origin)};
+    robot.fewest_feet = 3;
+  } else {
+    const std::vector<std::string> feet =
+        name == "go2" ? std::vector<std::string>{"FL_foot", "FR_foot", "RL_foot", "RR_foot"}
+                      : std::vector<std::string>{"LF_FOOT", "RF_FOOT", "LH_FOOT", "RH_FOOT"};
+    for (const std::string& foot : feet) robot.feet.push_back(point_contact(foot, origin));
+    robot.fewest_feet = 3;
+  }
+  return robot;
+}
+
+struct ContactSet {
+  std::vector<PlacedContact> contacts;
+  Eigen::VectorXd drawn;  ///< closes them
+};
+
+class ContactSets {
+ public:
+  ContactSets(const PostureRobot& robot, std::uint64_t seed)
+      : robot_(robot), random_(seed), shapes_(robot.model()), world_(robot.model(), nullptr, {}) {}
+
+  ContactSet draw() {
+    ContactSet set;
+    RobotState state(robot_.model());
+    for (int i = 0;; ++i) {
+      if (i == 10000) throw std::runtime_error("no configuration without collision");
+      set.drawn = configuration();
+      state.update(set.drawn.data());
+      if (world_.self_distance(poses(state)).distance_m > 0.005) break;
+    }
+    double lowest = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < shapes_.size(); ++i) {
+      lowest = std::min(lowest, shapes_.lowest_point(i, poses(state)).z());
+    }
+    set.drawn[2] -= lowest;
+    state.update(set.drawn.data());
+    for (const ContactDescription& end : ends()) set.contacts.push_back(place(end, state));
+    return set;
+  }
+
+ private:
+  double uniform(double lower, double upper) {
+    return lower + (upper - lower) * 0x1.0p-53 * static_cast<double>(random_() >> 11);
+  }
+
+  static std::vector<Eigen::Isometry3d> poses(const RobotState& state) {
+    std::vector<Eigen::Isometry3d> result;
+    for (int link = 0; link < static_cast<int>(state.robot().links().size()); ++link) {
+      result.push_back(state.world_from_link(link));
+    }
+    return result;
+  }
+
+  Eigen::VectorXd configuration() {
+    constexpr double kSpread_rad = 0.4, kTilt_rad = 0.15;
+    Eigen::VectorXd q = robot_.home;
+    const Robot& model = robot_.model();
+    for (int i = 0; i < model.active_joint_count(); ++i) {
+      const Joint& joint = model.active_joint(i);
+      double& at = q[7 + i];
+      at =
+          uniform(std::max(joint.lower, at - kSpread_rad), std::min(joint.upper, at + kSpread_rad));
+    }
+    const double yaw = uniform(-EIGEN_PI, EIGEN_PI), roll = uniform(-kTilt_rad, kTilt_rad),
+                 pitch = uniform(-kTilt_rad, kTilt_rad);
+    q.segment<4>(3) = (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+                       Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
+                       Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()))
+                          .coeffs();
+    return q;
+  }
+
+  std::vector<ContactDescription> ends() {
+    std::vector<ContactDescription> feet = shuffled(robot_.feet), hands = shuffled(robot_.hands);
+    const auto count = [&](std::size_t from, std::size_t to) {
+      return from +
+             static_cast<std::size_t>(uniform(0.0, 1.0) * static_cast<double>(to - from + 1));
+    };
+    const std::size_t most = 4;
+    feet.resize(count(static_cast<std::size_t>(robot_.fewest_feet), feet.size()));
+    hands.resize(count(0, std::min(hands.size(), most - feet.size())));
+    feet.insert(feet.end(), hands.begin(), hands.end());
+    return feet;
+  }
+
+  std::vector<ContactDescription> shuffled(std::vector<ContactDescription> ends) {
+    for (std::size_t i = ends.size(); i > 1; --i) {
+      std::swap(ends[i - 1], ends[static_cast<std::size_t>(uniform(0.0, 1.0) * double(i))]);
+    }
+    return ends;
+  }
+
+  /// On wheels and round ends yaw is free; a round end touches from the side that its frame's z
+  /// points to where it is a hand, from above where it is a foot.
+  PlacedContact place(const ContactDescription& end, const RobotState& state) const {
+    const Eigen::Isometry3d& pose = state.world_from_link(robot_.model().link_index(end.link));
+    PlacedContact placed;
+    placed.contact = end;
+    placed.position = pose * end.point;
+    placed.normal = pose.linear() * end.normal;
+    if (end.kind == WrenchKind::kSurface && robot_.name == "coman_plus") {
+      placed.forward = pose.linear() * end.forward;
+    }
+    if (end.kind == WrenchKind::kPoint) {
+      const bool hand =
+          std::any_of(robot_.hands.begin(), robot_.hands.end(),
+                      [&](const ContactDescription& h) { return h.link == end.link; });
+      placed.normal = hand ? Eigen::Vector3d(-pose.linear().col(2)) : Eigen::Vector3d::UnitZ();
+    }
+    return placed;
+  }
+
+  const PostureRobot& robot_;
+  std::mt19937_64 random_;
+  MovingShapes shapes_;
+  CollisionWorld world_;
+};
+
+}  // namespace locograph::test
