@@ -18,11 +18,12 @@
 ///  2. Growth: a closure and the shortest path of trusted and confirmed edges between its ends,
 ///     short paths first, until none is confirmed any more.
 ///
-/// Judged are the relative poses (EDGE_SE2, EDGE_SE3:QUAT and both _OFFSET forms) that are not
-/// trusted. Doubted is what is not confirmed, unless it ties parts that nothing else does: leaving
-/// the doubted edges out disconnects nothing. Without trusted edges nothing is doubted. Wrong
-/// closures that agree with each other (a run of them) can be confirmed: keep a robust kernel or
-/// graduated non-convexity afterwards.
+/// Judged are the relative poses (EDGE_SE2, EDGE_SE3:QUAT and both _OFFSET forms, Ω positive
+/// definite) that are not trusted. Doubted is what is not confirmed, unless it ties parts that
+/// nothing else does: leaving the doubted edges out disconnects nothing. Without trusted edges
+/// nothing is doubted. Wrong closures that agree with each other (a run of them) can be confirmed,
+/// and where every fifth closure is wrong and odometry is poor enough of them agree by accident
+/// (doc/benchmarks.md): keep a robust kernel or graduated non-convexity afterwards.
 
 #include <locograph/core/graph.h>
 
