@@ -29,6 +29,7 @@ struct SceneOptions {
   bool lenient = false;              ///< as ReadOptions::lenient
   std::string srdf;                  ///< robots: instead of the file beside the URDF
   std::string state;                 ///< robots: group_state to stand in; "": home or another one
+  bool capsules = false;             ///< robots: draw what links are kept apart by, nothing else
 };
 
 /// file: a graph (.g2o) or a robot (.urdf).
@@ -44,6 +45,9 @@ void add_plan_scene(const PlanFile& file, const SceneOptions& options, Json& sce
 Json check_scene(const PlanFile& file, const CheckReport& report);
 /// `map`, `obstacles`; voxels nearest to `near` when there are too many for a page.
 void add_world_scene(const LoadedWorld& world, const Eigen::AlignedBox3d& near, Json& scene);
+/// The same with the robot's covering capsules as its collision shapes, and without visual ones.
+/// Throws Error for a mesh that cannot be read.
+Json capsule_scene(const Robot& robot);
 /// A whole scene of kind pose_graph.
 Json pose_graph_scene(Graph graph, const std::string& file, const SceneOptions& options);
 /// A whole scene with one configuration: the robot on the ground.

@@ -1,6 +1,8 @@
 #include <locograph/apps/packed.h>
 #include <locograph/apps/scene.h>
 #include <locograph/apps/type_names.h>
+#include <locograph/plugins/configuration/self_collision_shapes.h>
+#include <locograph/robots/covering_capsules.h>
 #include <locograph/robots/stl_file.h>
 #include <locograph/robots/visual_model.h>
 
@@ -99,6 +101,27 @@ Json robot_scene(const Robot& robot) {
           {"meshes", meshes.list()},   {"missing", missing_meshes(visuals)}};
 }
 
+Json capsule_scene(const Robot& robot) {
+  Json scene = robot_scene(robot);
+  scene["meshes"] = scene["missing"] = Json::array();
+  for (Json& link : scene["links"]) link["visual"] = link["collision"] = Json::array();
+  for (const CollisionCapsule& c :
+       covering_capsules(robot, {.max_overshoot_m = kSelfOvershoot_m})) {
+    const Eigen::Vector3d along = c.capsule.to - c.capsule.from;
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation() = 0.5 * (c.capsule.from + c.capsule.to);
+    if (along.norm() > 0.0) {
+      pose.linear() =
+          Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), along).toRotationMatrix();
+    }
+    scene["links"][c.link]["collision"].push_back(Json{{"type", type_name(ShapeType::kCapsule)},
+                                                       {"pose", pose_json(pose)},
+                                                       {"length", along.norm()},
+                                                       {"radius", c.capsule.radius}});
+  }
+  return scene;
+}
+
 Json standing_scene(const std::string& urdf, const SceneOptions& options) {
   std::filesystem::path srdf = options.srdf;
   if (srdf.empty()) {
@@ -126,7 +149,7 @@ Json standing_scene(const std::string& urdf, const SceneOptions& options) {
   return {{"version", 1},
           {"kind", "plan"},
           {"title", title},
-          {"robot", robot_scene(robot)},
+          {"robot", options.capsules ? capsule_scene(robot) : robot_scene(robot)},
           {"plan",
            {{"times", {0.0}},
             {"configurations", packed_floats(numbers)},

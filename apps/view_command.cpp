@@ -135,6 +135,8 @@ Command add_view(CLI::App& app) {
                    "Leave out unknown tags, project indefinite information");
   parser->add_option("--srdf", o.scene.srdf, "Robots: the SRDF, if not beside the URDF");
   parser->add_option("--state", o.scene.state, "Robots: group_state to stand in");
+  parser->add_flag("--capsules", o.scene.capsules,
+                   "Robots: draw the capsules that self-collision edges see");
   parser->add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] {
             options->scene.check = !options->no_check;

@@ -118,6 +118,26 @@ const sections = {
   },
 };
 
+// What `plugins_benchmark --benchmark_repetitions=N --benchmark_out=…` wrote: medians, a row for each
+// case, `error` and `linearise` side by side.
+sections.edges = (data) => {
+  const rows = new Map();
+  for (const run of data.benchmarks) {
+    if (run.aggregate_name !== 'median' || run.ns_per_edge === undefined) continue;
+    const [edge, variant] = run.run_name.split('/');
+    const words = variant.replace(/(\d)_(\d)/, '$1.$2').split('_').filter(
+        (word) => word !== 'error' && word !== 'linearise');
+    const name = [edge, ...words].join(' ');
+    const row = rows.get(name) ?? {rows: run.rows};
+    row[/linearise/.test(variant) ? 'linearise' : 'error'] = run.ns_per_edge;
+    rows.set(name, row);
+  }
+  return table(['edge', 'rows', 'error [ns]', 'linearise [ns]'],
+               [...rows].map(([name, row]) => [
+                 name, row.rows, figure(row.error), figure(row.linearise),
+               ]));
+};
+
 // Log-log or log-x plots, drawn plainly.
 const kColours = ['#1b6ca8', '#d1495b', '#66a182', '#8d6b94', '#edae49'];
 const kWidth = 760;

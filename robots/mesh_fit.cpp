@@ -183,7 +183,7 @@ class Fit {
     whole.inside = field_.inside();
     whole = finish(std::move(whole));
     Cover best = cover(whole, false);
-    if (best.overshoot <= options_.max_overshoot_m) return best.capsules;
+    if (best.overshoot <= options_.max_overshoot_m || !options_.spheres) return best.capsules;
     Cover halved = cover(whole, true);
     return (halved.overshoot < best.overshoot ? halved : best).capsules;
   }
@@ -194,8 +194,8 @@ class Fit {
     double overshoot = std::numeric_limits<double>::infinity();
   };
 
-  /// Cuts the worst piece again and again where it helps most, or, what is worse for most shapes
-  /// but better for boxes, in the middle of its greatest extent.
+  /// Cuts the worst piece again and again where it helps most, or, what gives worse capsules but
+  /// sometimes better spheres, in the middle of its greatest extent.
   Cover cover(const Piece& whole, bool in_the_middle) const {
     Cover best;
     std::vector<Piece> pieces{whole};

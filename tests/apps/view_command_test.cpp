@@ -1,5 +1,6 @@
 #include <apps/view_test_support.h>
 
+#include <cmath>
 #include <cstdlib>
 
 namespace locograph {
@@ -180,6 +181,25 @@ TEST(View, RobotStandsOnTheGround) {
   expect_refusal(runner.run("view '" LOCOGRAPH_SOURCE_DIR
                             "/robots/models/centauro/centauro.urdf' --state hme -o x.html"),
                  LOCOGRAPH_SOURCE_DIR "/robots/models/centauro/centauro.srdf", "'home'");
+}
+
+TEST(View, RobotMayBeShownAsItsCapsules) {
+  LOCOGRAPH_NEEDS_VIEWER();
+  const CommandRunner runner;
+  runner.write("arm.urdf",
+               "<robot name=\"arm\"><link name=\"a\"><collision><origin xyz=\"1 2 3\"/>"
+               "<geometry><mesh filename=\"rod.stl\"/></geometry></collision></link></robot>");
+  runner.write("rod.stl",
+               "solid rod\nvertex 0 0 0\nvertex 0.4 0 0\nvertex 0.4 0 0\nendsolid rod\n");
+  const nlohmann::json link = view(runner, "arm.urdf --capsules")["robot"]["links"][0];
+  EXPECT_TRUE(link["visual"].empty());
+  ASSERT_EQ(link["collision"].size(), 1u);
+  const nlohmann::json& capsule = link["collision"][0];
+  EXPECT_EQ(capsule["type"], "capsule");
+  EXPECT_NEAR(capsule["pose"][0], 1.2, 0.01);
+  EXPECT_NEAR(capsule["pose"][2], 3.0, 0.01);
+  EXPECT_NEAR(std::abs(capsule["pose"][4].get<double>()), std::sqrt(0.5), 0.02);  // z along x
+  EXPECT_NEAR(capsule["length"].get<double>() + 2.0 * capsule["radius"].get<double>(), 0.4, 0.025);
 }
 
 TEST(View, MeshesThatAreMissingAreNamedOnStandardError) {
