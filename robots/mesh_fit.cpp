@@ -4,8 +4,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
+#include <mutex>
 #include <optional>
+#include <utility>
 
 namespace locograph {
 namespace {
@@ -417,10 +420,46 @@ class Fit {
   CoarseField field_;
 };
 
+/// The newest fits: a robot that is loaded again asks for those of the same meshes.
+class Memory {
+ public:
+  std::optional<std::vector<Capsule>> find(const Points& corners, const MeshFitOptions& options) {
+    const std::scoped_lock lock(mutex_);
+    for (const Entry& entry : entries_) {
+      if (entry.options == options && entry.corners == corners) return entry.capsules;
+    }
+    return std::nullopt;
+  }
+  void add(const Points& corners, const MeshFitOptions& options,
+           const std::vector<Capsule>& capsules) {
+    const std::scoped_lock lock(mutex_);
+    if (entries_.size() == kMost) entries_.pop_front();
+    entries_.push_back({corners, options, capsules});
+  }
+
+ private:
+  static constexpr std::size_t kMost = 64;
+  struct Entry {
+    Points corners;
+    MeshFitOptions options;
+    std::vector<Capsule> capsules;
+  };
+  std::mutex mutex_;
+  std::deque<Entry> entries_;
+};
+
+Memory& memory() {
+  static Memory instance;
+  return instance;
+}
+
 }  // namespace
 
 std::vector<Capsule> fit_capsules(const TriangleTree& mesh, const MeshFitOptions& options) {
-  return Fit(mesh, options).run();
+  if (auto known = memory().find(mesh.corners(), options)) return *std::move(known);
+  std::vector<Capsule> capsules = Fit(mesh, options).run();
+  memory().add(mesh.corners(), options, capsules);
+  return capsules;
 }
 
 }  // namespace locograph

@@ -15,6 +15,9 @@
 /// to the piece's farthest point. Deterministic. Meshes with holes, triangles without area or flat
 /// meshes are covered like others; where the triangles enclose nothing, everything off the surface
 /// counts as sticking out.
+///
+/// A fit takes a tenth of a second or two: the newest ones of the process are remembered.
+/// Thread-safe.
 
 #include <locograph/robots/capsule.h>
 #include <locograph/robots/triangle_tree.h>
@@ -27,6 +30,8 @@ struct MeshFitOptions {
   double max_overshoot_m = 0.01;
   int max_shapes = 12;
   bool spheres = false;  ///< spheres only: from = to
+
+  bool operator==(const MeshFitOptions&) const = default;
 };
 
 std::vector<Capsule> fit_capsules(const TriangleTree& mesh, const MeshFitOptions& options = {});

@@ -250,11 +250,7 @@ TEST_P(FloatingRoundTrip, NormalisesAQuaternionOnceAndThenKeepsItsBits) {
   expect_same_bits(state, twice.vertices_of<VertexConfiguration>()[0].state);
 }
 
-// Every reading of Go2 fits capsules to its meshes anew: one base of it is enough here.
-INSTANTIATE_TEST_SUITE_P(Plugins, RoundTrip,
-                         testing::Values("CentauroLowerBody", "CentauroAllJoints",
-                                         "CentauroFixedBase", "Go2FixedBase"),
-                         robot_case_name);
+INSTANTIATE_TEST_SUITE_P(Plugins, RoundTrip, testing::ValuesIn(all_cases()), robot_case_name);
 INSTANTIATE_TEST_SUITE_P(Plugins, ProjectRoundTrip, testing::ValuesIn(wheeled_cases()),
                          robot_case_name);
 INSTANTIATE_TEST_SUITE_P(Plugins, FloatingRoundTrip,
