@@ -19,7 +19,7 @@
 ///
 /// Constraints are solved with margins (PostureOptions), so that what the check asks for holds with
 /// room to spare. Pairs of links whose covering shapes overlap although the links do not, in a
-/// named configuration of the robot (meshes count as their bounding boxes), are left to the check.
+/// named configuration of the robot, are left to the check.
 /// Deterministic but for the deadline, up to rounding that depends on where vectors lie in memory:
 /// a program that makes the same calls gets the same bits. Thread-safe.
 

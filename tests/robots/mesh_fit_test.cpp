@@ -261,11 +261,21 @@ TEST(MeshFit, KeepsItsBoundsAndGetsBetterWithMore) {
   EXPECT_LT(last, 1.2 * 0.0183);  // cubes of 0.05 m: half their diagonal less half their side
 }
 
+TEST(MeshFit, RemembersNoOtherMeshAndNoOtherOptions) {
+  const TriangleTree one(box(0.1, 0.1, 0.1)), two(box(0.1, 0.1, 0.2));
+  const MeshFitOptions options{0.05, 4, true};
+  const std::vector<Capsule> fit = fit_capsules(one, options), longer = fit_capsules(two, options);
+  EXPECT_EQ(fit_capsules(one, options)[0].radius, fit[0].radius);
+  EXPECT_NE(longer[0].to, fit[0].to);
+  EXPECT_LT(fit_capsules(one, {0.02, 64, true})[0].radius, fit[0].radius);
+}
+
 TEST(MeshFit, GivesTheSameBitsAgain) {
   const TriangleTree mesh(turned(l_shape()));
-  const MeshFitOptions options{0.01, 6, false};
-  const std::vector<Capsule> first = fit_capsules(mesh, options);
-  const std::vector<Capsule> second = fit_capsules(mesh, options);
+  // Other options, lest the second is remembered; neither bounds the number.
+  const std::vector<Capsule> first = fit_capsules(mesh, {0.02, 20, false});
+  const std::vector<Capsule> second = fit_capsules(mesh, {0.02, 21, false});
+  ASSERT_LT(first.size(), 20u);
   ASSERT_EQ(first.size(), second.size());
   for (std::size_t i = 0; i < first.size(); ++i) {
     EXPECT_EQ(first[i].from, second[i].from);
