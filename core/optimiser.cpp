@@ -15,6 +15,25 @@ Vector map(std::span<double> values) {
   return Vector(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
+/// Sum of term(0) … term(n − 1), in an order that depends on n alone. Eigen's depends on where the
+/// numbers lie in memory: the same input would not give the same bits.
+template <class Term>
+double sum(Eigen::Index n, Term term) {
+  constexpr Eigen::Index kLanes = 8;
+  Eigen::Array<double, kLanes, 1> lanes = Eigen::Array<double, kLanes, 1>::Zero();
+  const Eigen::Index whole = n / kLanes * kLanes;
+  for (Eigen::Index i = 0; i < whole; i += kLanes) {
+    for (Eigen::Index lane = 0; lane < kLanes; ++lane) lanes[lane] += term(i + lane);
+  }
+  double total = lanes.sum();
+  for (Eigen::Index i = whole; i < n; ++i) total += term(i);
+  return total;
+}
+double dot(const Vector& a, const Vector& b) {
+  return sum(a.size(), [&](Eigen::Index i) { return a[i] * b[i]; });
+}
+double norm(const Vector& a) { return std::sqrt(dot(a, a)); }
+
 void check(bool good, const char* option, const char* expected) {
   if (!good) throw Error(std::string("option ") + option + " is out of range", expected);
 }
@@ -148,12 +167,12 @@ Cost Optimiser::evaluate_trial(IterationStatistics& now) {
   return cost;
 }
 
-double Optimiser::state_norm() const { return map(workspace_->state()).norm(); }
+double Optimiser::state_norm() const { return norm(map(workspace_->state())); }
 
 /// Takes the trial state; true when there is more to do.
 bool Optimiser::accept(const Cost& cost, IterationStatistics& now) {
   const double before = cost_.robust;
-  now.step_norm = map(workspace_->step()).norm();
+  now.step_norm = norm(map(workspace_->step()));
   const bool tiny =
       now.step_norm <= options_.step_tolerance * (state_norm() + options_.step_tolerance);
   workspace_->accept_trial();
@@ -193,12 +212,15 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
     if (solve(now)) {
       factorised = true;
       const Vector step = map(workspace_->step());
-      if (step.norm() <= options_.step_tolerance * (state_norm() + options_.step_tolerance)) {
+      if (norm(step) <= options_.step_tolerance * (state_norm() + options_.step_tolerance)) {
         return finish(Reason::kStep);
       }
       const Cost cost = evaluate_trial(now);
       // F(h) ≈ F + 2gᵀh + hᵀHh, and (H + D)h = −g: the predicted decrease is hᵀ(Dh − g).
-      const double predicted = step.dot(damping.cwiseProduct(step) + map(negative_gradient_));
+      const Vector descent = map(negative_gradient_);
+      const double predicted = sum(step.size(), [&](Eigen::Index i) {
+        return step[i] * (damping[i] * step[i] + descent[i]);
+      });
       now.gain_ratio = (cost_.robust - cost.robust) / predicted;
       if (std::isfinite(cost.robust) && now.gain_ratio > 0.0) {
         const double s = 2.0 * now.gain_ratio - 1.0;
@@ -231,29 +253,34 @@ bool Optimiser::iterate_dogleg(IterationStatistics& now) {
   }
   newton = step;
   const double curvature = workspace_->quadratic_form(negative_gradient_);
-  const double alpha = curvature > 0.0 ? descent.squaredNorm() / curvature : 0.0;
+  const double alpha = curvature > 0.0 ? dot(descent, descent) / curvature : 0.0;
   for (; now.refusals < options_.max_refusals; ++now.refusals) {
     now.lambda = radius_;
-    if (newton.norm() <= radius_) {
+    if (norm(newton) <= radius_) {
       step = newton;
-    } else if (alpha * descent.norm() >= radius_ || alpha == 0.0) {
-      step = radius_ / descent.norm() * descent;
+    } else if (alpha * norm(descent) >= radius_ || alpha == 0.0) {
+      step = radius_ / norm(descent) * descent;
     } else {
       // From the Cauchy point a towards the Newton step b until the radius: |a + β(b − a)| = Δ.
-      const double a2 = alpha * alpha * descent.squaredNorm();
-      const double ab = alpha * descent.dot(newton) - a2;
-      const double b2 = (newton - alpha * descent).squaredNorm();
+      const double a2 = alpha * alpha * dot(descent, descent);
+      const double ab = alpha * dot(descent, newton) - a2;
+      const double b2 = sum(step.size(), [&](Eigen::Index i) {
+        const double between = newton[i] - alpha * descent[i];
+        return between * between;
+      });
       const double beta = (-ab + std::sqrt(ab * ab + b2 * (radius_ * radius_ - a2))) / b2;
-      step = alpha * descent + beta * (newton - alpha * descent);
+      for (Eigen::Index i = 0; i < step.size(); ++i) {
+        step[i] = alpha * descent[i] + beta * (newton[i] - alpha * descent[i]);
+      }
     }
     const Cost cost = evaluate_trial(now);
     const double predicted =
-        2.0 * descent.dot(step) - workspace_->quadratic_form(workspace_->step());
+        2.0 * dot(descent, step) - workspace_->quadratic_form(workspace_->step());
     now.gain_ratio = (cost_.robust - cost.robust) / predicted;
     const bool good = std::isfinite(cost.robust) && now.gain_ratio > 0.0;
-    const double norm = step.norm();
-    if (good && now.gain_ratio > 0.75) radius_ = std::max(radius_, 3.0 * norm);
-    if (!good || now.gain_ratio < 0.25) radius_ = std::min(radius_, norm) / 2.0;
+    const double length = norm(step);
+    if (good && now.gain_ratio > 0.75) radius_ = std::max(radius_, 3.0 * length);
+    if (!good || now.gain_ratio < 0.25) radius_ = std::min(radius_, length) / 2.0;
     if (good) return accept(cost, now);
     if (predicted <= options_.gain * cost_.robust * 1e-3) return finish(Reason::kGain);
     if (options_.deadline.passed()) return finish(Reason::kDeadline);

@@ -32,6 +32,41 @@ TEST(Optimiser, AllAlgorithmsAndSolversReachTheSameOptimum) {
   }
 }
 
+/// Vectors of the workspace lie at different distances from the boundaries of the cache.
+TEST(Optimiser, GivesTheSameBitsWhereverItsMemoryLies) {
+  for (const Algorithm algorithm : kAlgorithms) {
+    std::vector<std::vector<double>> held, ends;
+    for (int k = 0; k < 8; ++k) {
+      Graph graph = helix_3d(30);
+      Problem problem;
+      problem.compile(graph);
+      Workspace workspace;
+      workspace.allocate(problem);
+      workspace.load_state();
+      const auto move = [&](std::vector<double>& values) {
+        held.emplace_back(static_cast<std::size_t>(2 * k + 1));
+        std::vector<double> elsewhere;
+        elsewhere.reserve(values.capacity() + static_cast<std::size_t>(2 * k));
+        elsewhere.assign(values.begin(), values.end());
+        values.swap(elsewhere);
+      };
+      move(workspace.state());
+      move(workspace.trial());
+      move(workspace.step());
+      move(workspace.damping());
+      OptimiserOptions options;
+      options.algorithm = algorithm;
+      const std::unique_ptr<LinearSolver> solver = make_linear_solver("dense");
+      Optimiser optimiser(options);
+      optimiser.start(workspace, *solver);
+      while (optimiser.iterate()) {
+      }
+      ends.push_back(workspace.state());
+    }
+    for (const std::vector<double>& end : ends) EXPECT_EQ(end, ends[0]) << name_of(algorithm);
+  }
+}
+
 TEST(Optimiser, NamesTwoEliminatedVerticesThatShareAnEdge) {
   Graph graph = ring_2d(12);
   graph.set_eliminate(4, true);
