@@ -111,7 +111,8 @@ bool is_smooth_minimum(Graph& graph) {
   }
   const std::unique_ptr<LinearSolver> solver = make_linear_solver("dense");
   solver->analyse(problem.pattern());
-  const std::vector<double> damping(problem.dimension(), 0.0);
+  std::vector<double> damping(problem.dimension());  // for directions that nothing measures
+  for (int i = 0; i < problem.dimension(); ++i) damping[i] = 1e-9 * diagonal[i] + 1e-12;
   if (!solver->factorise(workspace.hessian().data(), damping.data())) return false;
   Eigen::VectorXd step(problem.dimension());
   solver->solve(workspace.gradient().data(), step.data());
