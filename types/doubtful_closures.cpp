@@ -1,3 +1,4 @@
+#include <locograph/common/skew.h>
 #include <locograph/core/graduated_non_convexity.h>
 #include <locograph/types/doubtful_closures.h>
 #include <locograph/types/parts.h>
@@ -60,12 +61,10 @@ struct Spatial {
   static Covariance carry(const Pose& pose) {
     const Eigen::Matrix3d turn = pose.rotation().conjugate().toRotationMatrix();
     const Eigen::Vector3d t = pose.translation();
-    Eigen::Matrix3d cross;
-    cross << 0.0, -t[2], t[1], t[2], 0.0, -t[0], -t[1], t[0], 0.0;
     Covariance a = Covariance::Zero();
     a.topLeftCorner<3, 3>() = turn;
     a.bottomRightCorner<3, 3>() = turn;
-    a.topRightCorner<3, 3>() = -2.0 * turn * cross;
+    a.topRightCorner<3, 3>() = -2.0 * turn * skew(t);
     return a;
   }
   static double volume(double diameter) {
