@@ -73,6 +73,18 @@ std::vector<double> XmlFile::numbers(const Element& element, const char* name, i
   return values;
 }
 
+double XmlFile::number(const Element& element, const char* name) const {
+  return numbers(element, name, 1).front();
+}
+
+double XmlFile::positive(const Element& element, const char* name) const {
+  const double value = number(element, name);
+  if (!(value > 0.0)) {
+    throw error(element, std::string(name) + " is " + std::to_string(value), "a number > 0");
+  }
+  return value;
+}
+
 void XmlFile::allow(const Element& element, const std::set<std::string>& attributes,
                     const std::set<std::string>& children) const {
   const auto one_of = [](const std::set<std::string>& words) {

@@ -34,6 +34,10 @@ class XmlFile {
   std::string attribute(const Element& element, const char* name) const;
   /// Exactly `count` finite numbers separated by blanks.
   std::vector<double> numbers(const Element& element, const char* name, int count) const;
+  /// One finite number.
+  double number(const Element& element, const char* name) const;
+  /// One number > 0.
+  double positive(const Element& element, const char* name) const;
   /// Throws Error for an attribute or a child that is not named here: most likely a misspelling.
   void allow(const Element& element, const std::set<std::string>& attributes,
              const std::set<std::string>& children) const;

@@ -3,8 +3,8 @@
 //     posture_campaign [--robot NAME]… [--sets N] [--seed N] [--torque-limits report]
 //                      [--restarts N] [--patience N]
 //
-// Prints one JSON object. Sets are drawn as tests/planners/random_contact_sets.h says, until N of
-// them are known to be feasible: the posture they were drawn from passes the whole check. The
+// Prints one JSON object. Sets are drawn as benchmarks/planners/random_contact_sets.h says, until N
+// of them are known to be feasible: the posture they were drawn from passes the whole check. The
 // others, of which nobody knows, are solved as well and counted under `unknown`. Found is what the
 // check accepts. Times are in seconds, of PostureSolver::solve().
 #include <algorithm>

@@ -19,7 +19,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 using Wrench = Eigen::Matrix<double, 6, 1>;
 
 /// Where a contact is in the world.
-struct PlacedContact {
+struct ContactInWorld {
   const ContactDescription* given;
   int link;
   Eigen::Matrix3d axes;
@@ -37,7 +37,6 @@ struct Unknown {
 /// What the margin takes away from one friction cone: a force along the normal.
 struct Reserve {
   Unknown force;  // for a margin of 1
-  int first_ray;  // the unknowns of this cone: first_ray … + facets
   int corner;     // -1: a point
 };
 
@@ -126,7 +125,7 @@ class Programme {
   }
 
   Unknown unknown(const Eigen::Vector3d& at, const Wrench& along, double lower) const {
-    const PlacedContact& contact = contacts_.back();
+    const ContactInWorld& contact = contacts_.back();
     Unknown result{static_cast<int>(contacts_.size()) - 1, along, {}, lower};
     result.torques.setZero(robot_.tangent_size());
     add_wrench_torques(state_,
@@ -144,7 +143,7 @@ class Programme {
   void add_contact(const ContactDescription& given) {
     const int link = robot_.link_index(given.link);
     check(given);
-    PlacedContact contact{&given, link, {}, state_.world_from_link(link) * given.point};
+    ContactInWorld contact{&given, link, {}, state_.world_from_link(link) * given.point};
     contact.axes.col(2) = given.normal.normalized();
     contact.axes.col(1) = given.normal.cross(given.forward).normalized();
     contact.axes.col(0) = contact.axes.col(1).cross(contact.axes.col(2));
@@ -179,7 +178,7 @@ class Programme {
     const double mu = contacts_.back().given->mu, step = 2.0 * std::numbers::pi / options_.facets;
     std::array<Unknown, 3> axes;
     for (int i = 0; i < 3; ++i) axes[std::size_t(i)] = unknown(at, weight_ * Wrench::Unit(i), 0.0);
-    Reserve reserve{axes[2], static_cast<int>(unknowns_.size()), corner};
+    Reserve reserve{axes[2], corner};
     const double height = share / (mu * std::cos(0.5 * step));
     reserve.force.wrench *= height;
     reserve.force.torques *= height;
@@ -259,7 +258,7 @@ class Programme {
     mode_ = mode;
     const int columns = static_cast<int>(unknowns_.size()) + 1;
     int rows = base_rows() + torque_rows();
-    for (const PlacedContact& contact : contacts_) rows += rows_of(*contact.given);
+    for (const ContactInWorld& contact : contacts_) rows += rows_of(*contact.given);
 
     Eigen::MatrixXd matrix(rows, columns);
     for (int c = 1; c < columns; ++c) fill(unknowns_[std::size_t(c - 1)], matrix.col(c));
@@ -361,7 +360,7 @@ class Programme {
     }
     std::vector<PointWrench> applied;
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      const PlacedContact& contact = contacts_[i];
+      const ContactInWorld& contact = contacts_[i];
       applied.push_back({.link = contact.link,
                          .point = contact.given->point,
                          .force = contact.axes * wrenches[i].head<3>(),
@@ -412,7 +411,7 @@ class Programme {
                [&] { return "torque of " + robot_.active_joint(limited_[std::size_t(i)]).name; });
     }
     int row = base_rows() + torque_rows();
-    for (const PlacedContact& contact : contacts_) {
+    for (const ContactInWorld& contact : contacts_) {
       const int rows = rows_of(*contact.given);
       for (int k = 0; k < rows; ++k) {
         consider(-prices_[row + k], [&] {
@@ -442,7 +441,7 @@ class Programme {
   int base_;  // rows of the base
   Eigen::VectorXd gravity_;
   double weight_ = 0.0;
-  std::vector<PlacedContact> contacts_;
+  std::vector<ContactInWorld> contacts_;
   std::vector<Unknown> unknowns_;
   std::vector<Reserve> reserves_;
   std::vector<bool> moving_joint_;  // some contact loads it

@@ -19,10 +19,6 @@ Eigen::Vector3d some_forward(const Eigen::Vector3d& normal) {
   return std::abs(n.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
 }
 
-double angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 void require_sound(const Robot& robot, const PlacedContact& placed) {
   const ContactDescription& given = placed.contact;
   const std::string name = "contact of " + given.link;
@@ -41,6 +37,10 @@ void require_sound(const Robot& robot, const PlacedContact& placed) {
 
 }  // namespace
 
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
 Eigen::Matrix3d world_axes(const PlacedContact& placed) {
   return surface_axes("contact of " + placed.contact.link, placed.normal,
                       placed.forward.value_or(some_forward(placed.normal)));
@@ -49,10 +49,9 @@ Eigen::Matrix3d world_axes(const PlacedContact& placed) {
 ContactDescription wrench_description(const PlacedContact& placed) {
   ContactDescription description = placed.contact;
   if (description.kind == WrenchKind::kPoint) {
-    const Eigen::Matrix3d axes = world_axes(placed);
     description.axes_in_world = true;
-    description.normal = axes.col(2);
-    description.forward = axes.col(0);
+    description.normal = placed.normal;
+    description.forward = placed.forward.value_or(some_forward(placed.normal));
   }
   return description;
 }
@@ -104,8 +103,8 @@ void require_sound_contacts(const Robot& robot, std::span<const PlacedContact> c
         continue;
       }
       const double between =
-          angle(pose_a.linear() * a.contact.normal, pose_b.linear() * b.contact.normal);
-      if (!(std::abs(between - angle(a.normal, b.normal)) <= kSameAngle_rad)) {
+          angle_between(pose_a.linear() * a.contact.normal, pose_b.linear() * b.contact.normal);
+      if (!(std::abs(between - angle_between(a.normal, b.normal)) <= kSameAngle_rad)) {
         throw Error(names + " in their normals", "directions that one rigid body can have");
       }
     }

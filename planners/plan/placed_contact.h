@@ -34,6 +34,9 @@ struct PlacedContact {
   bool bears_load = true;  ///< false: closed, but balance does not count on it
 };
 
+/// Of two vectors of any length [rad].
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
 /// Columns x, y, z: forward, across, normal. Without `forward`, any direction across the normal.
 Eigen::Matrix3d world_axes(const PlacedContact& placed);
 

@@ -22,10 +22,6 @@ std::string number(double value) {
   return text;
 }
 
-double angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 /// How much of the unit counts as one violation.
 double scale_of(const Violation& violation) {
   return violation.unit == "m" ? 0.01 : violation.unit == "count" ? 1e-3 : 0.1;
@@ -155,13 +151,14 @@ class Check {
       case WrenchKind::kPoint:
         return 0.0;
       case WrenchKind::kRung:
-        return angle(normal.cross(forward), placed.normal.cross(*placed.forward));
+        return angle_between(normal.cross(forward), placed.normal.cross(*placed.forward));
       case WrenchKind::kSurface:
         break;
     }
-    const double tilt = angle(normal, placed.normal);
+    const double tilt = angle_between(normal, placed.normal);
     if (!placed.forward) return tilt;
-    return std::max(tilt, angle(normal.cross(forward), placed.normal.cross(*placed.forward)));
+    return std::max(tilt,
+                    angle_between(normal.cross(forward), placed.normal.cross(*placed.forward)));
   }
 
   /// The poses, with the links of the other sort taken out of the way.

@@ -46,17 +46,6 @@ class ScenarioReader {
     return all.empty() ? nullptr : &all.front().get();
   }
 
-  double number(const Element& element, const char* name) const {
-    return xml_.numbers(element, name, 1).front();
-  }
-  double positive(const Element& element, const char* name) const {
-    const double value = number(element, name);
-    if (!(value > 0.0)) {
-      throw xml_.error(element, std::string(name) + " is " + std::to_string(value), "a number > 0");
-    }
-    return value;
-  }
-
   std::filesystem::path beside_file(const std::string& path) const {
     return std::filesystem::path(path).is_absolute() ? std::filesystem::path(path)
                                                      : file_.parent_path() / path;
@@ -93,7 +82,7 @@ class ScenarioReader {
     xml_.allow(*wheels, {}, {"wheel"});
     for (const Element& wheel : xml_.children(*wheels, "wheel")) {
       xml_.allow(wheel, {"link", "radius"}, {});
-      scenario_.wheels.push_back({xml_.attribute(wheel, "link"), positive(wheel, "radius")});
+      scenario_.wheels.push_back({xml_.attribute(wheel, "link"), xml_.positive(wheel, "radius")});
     }
   }
 
@@ -113,10 +102,10 @@ class ScenarioReader {
     xml_.allow(*drive, {"distance", "curvature", "speed", "configurations"}, {});
     DriveTask task;
     task.line = drive->GetLineNum();
-    task.distance_m = positive(*drive, "distance");
-    task.speed_m_s = positive(*drive, "speed");
-    if (drive->Attribute("curvature")) task.curvature_1_m = number(*drive, "curvature");
-    const double count = number(*drive, "configurations");
+    task.distance_m = xml_.positive(*drive, "distance");
+    task.speed_m_s = xml_.positive(*drive, "speed");
+    if (drive->Attribute("curvature")) task.curvature_1_m = xml_.number(*drive, "curvature");
+    const double count = xml_.number(*drive, "configurations");
     if (!(count >= 2.0 && count <= 1e6) || count != std::floor(count)) {
       throw xml_.error(*drive, "configurations is " + std::to_string(count),
                        "a whole number from 2 to 1000000");

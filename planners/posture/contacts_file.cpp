@@ -68,19 +68,19 @@ class ContactsReader {
     contact.point = vector(element, "point", Eigen::Vector3d::Zero());
     contact.normal = vector(element, "link_normal", Eigen::Vector3d::UnitZ());
     contact.forward = vector(element, "link_forward", Eigen::Vector3d::UnitX());
-    contact.max_force_N = positive(element, "max_force");
+    contact.max_force_N = xml_.positive(element, "max_force");
     if (contact.kind == WrenchKind::kRung) {
-      contact.max_moment_Nm = number(element, "max_moment");
+      contact.max_moment_Nm = xml_.number(element, "max_moment");
       if (contact.max_moment_Nm < 0.0) {
         throw xml_.error(element, "max_moment is " + std::to_string(contact.max_moment_Nm),
                          "zero or more");
       }
     } else {
-      contact.mu = positive(element, "mu");
+      contact.mu = xml_.positive(element, "mu");
     }
     if (contact.kind == WrenchKind::kSurface) {
-      contact.half_x_m = positive(element, "half_x");
-      contact.half_y_m = positive(element, "half_y");
+      contact.half_x_m = xml_.positive(element, "half_x");
+      contact.half_y_m = xml_.positive(element, "half_y");
     }
     placed.position = vector(element, "position");
     placed.normal = vector(element, "normal");
@@ -102,16 +102,6 @@ class ContactsReader {
   Eigen::Vector3d vector(const Element& element, const char* name,
                          const Eigen::Vector3d& otherwise) const {
     return element.Attribute(name) == nullptr ? otherwise : vector(element, name);
-  }
-  double number(const Element& element, const char* name) const {
-    return xml_.numbers(element, name, 1).front();
-  }
-  double positive(const Element& element, const char* name) const {
-    const double value = number(element, name);
-    if (!(value > 0.0)) {
-      throw xml_.error(element, std::string(name) + " is " + std::to_string(value), "a number > 0");
-    }
-    return value;
   }
 
   const Robot& robot_;

@@ -4,6 +4,12 @@
 
 namespace locograph::test {
 
+Loaded::Loaded(Graph& graph) {
+  problem.compile(graph);
+  workspace.allocate(problem);
+  workspace.load_state();
+}
+
 StateEvaluation::StateEvaluation(const Problem& problem, const std::vector<double>& state)
     : state_(state) {
   scratch_.reserve(problem.scratch_bytes());
@@ -80,6 +86,17 @@ double relative_difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   if (a.size() == 0 && b.size() == 0) return 0.0;
   const double scale = std::max({1.0, a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff()});
   return (a - b).cwiseAbs().maxCoeff() / scale;
+}
+
+double state_difference(const Graph& a, const Graph& b) {
+  double most = 0.0;
+  for (int v = 0; v < b.vertex_slots(); ++v) {
+    if (!b.vertex_alive(v)) continue;
+    for (int i = 0; i < b.state_size(v); ++i) {
+      most = std::max(most, std::abs(a.state(v)[i] - b.state(v)[i]));
+    }
+  }
+  return most;
 }
 
 DenseSystem expect_batch_equals_one_by_one(Workspace& workspace, double tolerance) {

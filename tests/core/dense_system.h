@@ -14,6 +14,13 @@
 
 namespace locograph::test {
 
+/// A graph compiled, and its states loaded.
+struct Loaded {
+  explicit Loaded(Graph& graph);
+  Problem problem;
+  Workspace workspace;
+};
+
 /// The evaluation of a state, with derived quantities and scratch memory of its own.
 class StateEvaluation {
  public:
@@ -39,6 +46,9 @@ DenseSystem one_by_one(const Problem& problem, const std::vector<double>& state,
 Eigen::MatrixXd dense(const BlockPattern& pattern, std::span<const double> values);
 Eigen::MatrixXd dense_hessian(Workspace& workspace);
 Eigen::VectorXd dense_gradient(Workspace& workspace);
+
+/// Largest difference of the states of the vertices that b has.
+double state_difference(const Graph& a, const Graph& b);
 
 /// Largest difference relative to the largest entry (at least 1).
 double relative_difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);

@@ -6,6 +6,7 @@
 #include <locograph/types/standard_types.h>
 
 #include "benchmarks/core/false_loop_closures.h"
+#include "core/dense_system.h"
 #include "core/toy_graphs.h"
 
 namespace locograph {
@@ -37,16 +38,6 @@ INSTANTIATE_TEST_SUITE_P(Graduation, EitherGraduation,
                                                                        : "GemanMcClure";
                          });
 
-double distance(const Graph& a, const Graph& b) {
-  double worst = 0.0;
-  for (int v = 0; v < a.vertex_slots(); ++v) {
-    for (int i = 0; i < a.state_size(v); ++i) {
-      worst = std::max(worst, std::abs(a.state(v)[i] - b.state(v)[i]));
-    }
-  }
-  return worst;
-}
-
 TEST_P(EitherGraduation, RejectsFalseClosuresInSpaceAndKeepsTheTrueOnes) {
   Graph clean = helix_3d(80, 0.02), dirty = helix_3d(80, 0.02);
   const std::vector<EdgeId> wrong = make_false_closures<EdgeSE3>(clean, 0.2, 4).add(dirty);
@@ -61,9 +52,9 @@ TEST_P(EitherGraduation, RejectsFalseClosuresInSpaceAndKeepsTheTrueOnes) {
   for (const EdgeId edge : wrong) EXPECT_LT(result.weight[edge.slot], 0.01);
   if (GetParam() == Graduation::kTruncated) {
     // Truncated least squares of which nothing true is truncated: the same optimum.
-    EXPECT_LT(distance(clean, dirty), 1e-4);
+    EXPECT_LT(test::state_difference(clean, dirty), 1e-4);
   } else {
-    EXPECT_LT(distance(clean, dirty), 0.05);
+    EXPECT_LT(test::state_difference(clean, dirty), 0.05);
   }
 }
 
@@ -73,7 +64,8 @@ TEST_P(EitherGraduation, WithoutOutliersChangesLittle) {
   optimise(plain, {}, *solver);
   const GraduationResult result = optimise_graduated(graduated, options(), *solver);
   EXPECT_EQ(result.rejected, 0);
-  EXPECT_LT(distance(plain, graduated), GetParam() == Graduation::kTruncated ? 1e-6 : 0.02);
+  EXPECT_LT(test::state_difference(plain, graduated),
+            GetParam() == Graduation::kTruncated ? 1e-6 : 0.02);
 }
 
 TEST_P(EitherGraduation, PutsTheKernelsBack) {
@@ -113,7 +105,7 @@ TEST_P(EitherGraduation, BringsBackWhatIsDoubtedWithoutReason) {
   EXPECT_TRUE(result.optimiser.converged) << result.optimiser.reason_text();
   EXPECT_EQ(result.rejected, static_cast<int>(wrong.size()));
   for (const EdgeId edge : wrong) EXPECT_EQ(result.weight[edge.slot], 0.0);
-  EXPECT_LT(distance(all, doubting), 1e-4);
+  EXPECT_LT(test::state_difference(all, doubting), 1e-4);
 }
 
 TEST(Graduation, SharesTheProbabilityOutAmongAllSuspectsWhenAskedTo) {
@@ -192,7 +184,7 @@ TEST_P(TenPercentFalse, LoopClosuresAreSurvived) {
   EXPECT_TRUE(result.optimiser.converged) << result.optimiser.reason_text();
   EXPECT_EQ(result.rejected, static_cast<int>(added.size()));
   for (const EdgeId edge : added) EXPECT_EQ(result.weight[edge.slot], 0.0);
-  EXPECT_LT(distance(clean, graph), 1e-2);
+  EXPECT_LT(test::state_difference(clean, graph), 1e-2);
 }
 
 TEST_P(TenPercentFalse, LoopClosuresAreSurvivedBySwitchingConstraints) {
@@ -213,7 +205,7 @@ TEST_P(TenPercentFalse, LoopClosuresAreSurvivedBySwitchingConstraints) {
     graph.edge_pools()[record.pool]->kernel(record.index) = RobustKernel();
   }
   EXPECT_TRUE(optimise(graph, {}, *solver).converged);
-  EXPECT_LT(distance(clean, graph), 0.5);
+  EXPECT_LT(test::state_difference(clean, graph), 0.5);
 }
 
 }  // namespace

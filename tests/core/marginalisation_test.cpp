@@ -38,18 +38,6 @@ Graph linear_grid(int side) {
   return graph;
 }
 
-/// Largest difference of the states of the vertices that both have.
-double state_difference(const Graph& a, const Graph& b) {
-  double most = 0.0;
-  for (int v = 0; v < b.vertex_slots(); ++v) {
-    if (!b.vertex_alive(v)) continue;
-    for (int i = 0; i < b.state_size(v); ++i) {
-      most = std::max(most, std::abs(a.state(v)[i] - b.state(v)[i]));
-    }
-  }
-  return most;
-}
-
 TEST(Marginalisation, OfALinearProblemKeepsEstimateCovarianceAndChi2) {
   Graph whole = linear_grid(5), part = linear_grid(5);
   // Not at the optimum: the prior's gradient matters. One by one: priors are marginalised too.

@@ -9,8 +9,8 @@
 
 #include <map>
 
+#include "benchmarks/planners/random_contact_sets.h"
 #include "common/temporary_folder.h"
-#include "planners/random_contact_sets.h"
 
 namespace locograph::test {
 namespace {

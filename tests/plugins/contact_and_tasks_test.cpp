@@ -204,24 +204,20 @@ TEST_P(ContactsAndTasksTogether, AreMetByAFewGaussNewtonSteps) {
                                    frame_pose(graph, kFrame + 2, robot, q),
                                level),
                  id);
-  Problem problem;
-  problem.compile(graph);
-  Workspace workspace;
-  workspace.allocate(problem);
-  workspace.load_state();
-  const double before = workspace.evaluate(workspace.state()).chi2;
+  Loaded loaded(graph);
+  const double before = loaded.workspace.evaluate(loaded.workspace.state()).chi2;
   EXPECT_GT(before, 1e-2);
   for (int i = 0; i < 20; ++i) {
-    workspace.evaluate(workspace.state());
-    workspace.linearise();
-    Eigen::MatrixXd h = dense_hessian(workspace);
+    loaded.workspace.evaluate(loaded.workspace.state());
+    loaded.workspace.linearise();
+    Eigen::MatrixXd h = dense_hessian(loaded.workspace);
     h.diagonal().array() += 1e-3;
-    Eigen::Map<Eigen::VectorXd>(workspace.step().data(), h.rows()) =
-        -h.ldlt().solve(dense_gradient(workspace));
-    workspace.apply_step();
-    workspace.accept_trial();
+    Eigen::Map<Eigen::VectorXd>(loaded.workspace.step().data(), h.rows()) =
+        -h.ldlt().solve(dense_gradient(loaded.workspace));
+    loaded.workspace.apply_step();
+    loaded.workspace.accept_trial();
   }
-  EXPECT_LT(workspace.evaluate(workspace.state()).chi2, 1e-14 * before);
+  EXPECT_LT(loaded.workspace.evaluate(loaded.workspace.state()).chi2, 1e-14 * before);
 }
 
 /// 20 configurations with every edge of contacts, tasks and accelerations, two of them held.
@@ -268,26 +264,18 @@ TEST_P(ContactsAndTasks, InABatchAreTheSumOverTheirEdgesOneByOne) {
   for (const bool kernels : {false, true}) {
     Graph graph = contacts_and_tasks(robot, kernels);
     ASSERT_EQ(graph.edge_pools().size(), 4u);
-    Problem problem;
-    problem.compile(graph);
-    Workspace workspace;
-    workspace.allocate(problem);
-    workspace.load_state();
-    EXPECT_GT(expect_batch_equals_one_by_one(workspace, 1e-12).gradient.norm(), 1.0);
+    Loaded loaded(graph);
+    EXPECT_GT(expect_batch_equals_one_by_one(loaded.workspace, 1e-12).gradient.norm(), 1.0);
   }
 }
 
 TEST_P(ContactsAndTasks, DoNotAllocate) {
   if (!allocations_are_counted()) GTEST_SKIP() << "a sanitizer brings its own malloc";
   Graph graph = contacts_and_tasks(robot, true);
-  Problem problem;
-  problem.compile(graph);
-  Workspace workspace;
-  workspace.allocate(problem);
-  workspace.load_state();
+  Loaded loaded(graph);
   const long before = allocation_count();
-  const Cost cost = workspace.evaluate(workspace.state());
-  workspace.linearise();
+  const Cost cost = loaded.workspace.evaluate(loaded.workspace.state());
+  loaded.workspace.linearise();
   EXPECT_EQ(allocation_count(), before);
   EXPECT_TRUE(std::isfinite(cost.chi2));
 }

@@ -77,12 +77,9 @@ TEST_P(GroundDistance, AllEdgesAtOnceEqualOneByOne) {
     sum += (1.0 + i) * e.squaredNorm();
     graph.add_edge(edge, add_configuration(graph, robot, i, 0.0, q));
   }
-  Problem problem;
-  problem.compile(graph);
-  Workspace workspace;
-  workspace.allocate(problem);
-  workspace.load_state();
-  EXPECT_NEAR(workspace.evaluate(workspace.state()).chi2, sum, 1e-9 * sum);
+  Loaded loaded(graph);
+  EXPECT_NEAR(loaded.workspace.evaluate(loaded.workspace.state()).chi2, sum, 1e-9 * sum);
+  expect_batch_equals_one_by_one(loaded.workspace, 1e-12);
 }
 
 TEST_P(GroundDistance, ComesBackFromAFileWithTheSameBits) {

@@ -196,19 +196,15 @@ TEST_P(StaticBalance, IsInABatchWhatItIsEdgeByEdge) {
     graph.add_edge(dress(EdgeContactWrench(standing.contacts(), 1.0)), w);
     graph.add_edge(dress(EdgeWrenchNorm(graph.vertex(w), 1.0)), w);
   }
-  Problem problem;
-  problem.compile(graph);
-  Workspace workspace;
-  workspace.allocate(problem);
-  workspace.load_state();
+  Loaded loaded(graph);
   const long before = allocation_count();
-  workspace.evaluate(workspace.state());
-  workspace.linearise();
+  loaded.workspace.evaluate(loaded.workspace.state());
+  loaded.workspace.linearise();
   const long allocations = allocation_count() - before;
   if (allocations_are_counted()) {
     EXPECT_EQ(allocations, 0);
   }
-  expect_batch_equals_one_by_one(workspace, 1e-12);
+  expect_batch_equals_one_by_one(loaded.workspace, 1e-12);
 }
 
 TEST_P(StaticBalance, KeepsEveryBitInAFile) {

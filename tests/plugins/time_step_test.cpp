@@ -262,26 +262,18 @@ TEST_P(TimedLimits, AreTheSameInABatchAsOneByOne) {
   for (const bool kernels : {false, true}) {
     Graph graph = every_edge(94);
     if (kernels) graph.set_kernel(RobustKernel::parse("huber:0.5"));
-    Problem problem;
-    problem.compile(graph);
-    Workspace workspace;
-    workspace.allocate(problem);
-    workspace.load_state();
-    EXPECT_GT(expect_batch_equals_one_by_one(workspace, 1e-12).gradient.norm(), 1.0);
+    Loaded loaded(graph);
+    EXPECT_GT(expect_batch_equals_one_by_one(loaded.workspace, 1e-12).gradient.norm(), 1.0);
   }
 }
 
 TEST_P(TimedLimits, DoNotAllocateWhereTheyAreEvaluated) {
   if (!allocations_are_counted()) GTEST_SKIP() << "a sanitizer brings its own malloc";
   Graph graph = every_edge(97);
-  Problem problem;
-  problem.compile(graph);
-  Workspace workspace;
-  workspace.allocate(problem);
-  workspace.load_state();
+  Loaded loaded(graph);
   const long before = allocation_count();
-  workspace.evaluate(workspace.state());
-  workspace.linearise();
+  loaded.workspace.evaluate(loaded.workspace.state());
+  loaded.workspace.linearise();
   EXPECT_EQ(allocation_count(), before);
 }
 
@@ -390,12 +382,8 @@ TEST(TimeStep, CostsItsWeightForEachSecondHoweverItIsDivided) {
       graph.add_edge(EdgeDuration(7.0),
                      graph.add_vertex(graph.vertex_slots(), VertexTimeStep(seconds)));
     }
-    Problem problem;
-    problem.compile(graph);
-    Workspace workspace;
-    workspace.allocate(problem);
-    workspace.load_state();
-    EXPECT_NEAR(workspace.evaluate(workspace.state()).chi2, 14.0, 1e-13);
+    Loaded loaded(graph);
+    EXPECT_NEAR(loaded.workspace.evaluate(loaded.workspace.state()).chi2, 14.0, 1e-13);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "benchmarks/core/false_loop_closures.h"
+#include "core/dense_system.h"
 
 namespace locograph {
 namespace {
@@ -113,16 +114,6 @@ class DoubtfulClosures : public testing::Test {};
 using Both = testing::Types<Plane, Space>;
 TYPED_TEST_SUITE(DoubtfulClosures, Both);
 
-double distance(const Graph& a, const Graph& b) {
-  double worst = 0.0;
-  for (int v = 0; v < a.vertex_slots(); ++v) {
-    for (int i = 0; i < a.state_size(v); ++i) {
-      worst = std::max(worst, std::abs(a.state(v)[i] - b.state(v)[i]));
-    }
-  }
-  return worst;
-}
-
 TYPED_TEST(DoubtfulClosures, AreTheFalseOnes) {
   for (const unsigned seed : {1u, 2u, 3u}) {
     Field<TypeParam> field(seed);
@@ -164,7 +155,7 @@ TYPED_TEST(DoubtfulClosures, LeftOutLeadFromGarbageToTheOptimumOfTheTrueOnes) {
   EXPECT_EQ(result.rejected, static_cast<int>(wrong.size()));
   for (const int slot : wrong) EXPECT_EQ(result.weight[slot], 0.0);
   EXPECT_NEAR(result.optimiser.final.chi2, best.final.chi2, 1e-6 * best.final.chi2);
-  EXPECT_LT(distance(clean.graph, dirty.graph), 1e-5);
+  EXPECT_LT(test::state_difference(clean.graph, dirty.graph), 1e-5);
 }
 
 TYPED_TEST(DoubtfulClosures, MayPointEitherWay) {
@@ -273,7 +264,7 @@ TEST_P(TenPercentFalse, LoopClosuresAreSurvivedFromGarbage) {
   EXPECT_EQ(result.rejected, static_cast<int>(wrong.size()));
   for (const EdgeId edge : wrong) EXPECT_EQ(result.weight[edge.slot], 0.0);
   EXPECT_NEAR(result.optimiser.final.chi2, best, 1e-6 * best);
-  EXPECT_LT(distance(clean, graph), 1e-3);
+  EXPECT_LT(test::state_difference(clean, graph), 1e-3);
 }
 
 }  // namespace
