@@ -23,7 +23,7 @@ endfunction()
 # planning: whether what constraints on robots see is part of it.
 macro(locograph_hash_plugin_headers root planning)
   set(locograph_hashed
-    common/error core/constraint core/edge core/edge_evaluation core/edge_line core/edge_pool
+    common/error core/block_products core/constraint core/edge core/edge_evaluation core/edge_line core/edge_pool
     core/fields core/parameters core/plugin core/robust_kernel core/row_label core/scratch
     core/type_registry core/typed_edge_pool core/vertex core/vertex_difference core/vertex_pool)
   if(${planning})

@@ -15,8 +15,6 @@
 /// hinge by themselves (kOneSided) do not tell how far inside they are; they may be constraints of
 /// either kind, but have no multiplier: only their weight is raised.
 
-#include <Eigen/Core>
-
 namespace locograph {
 
 enum class ConstraintKind : unsigned char {
@@ -32,25 +30,12 @@ struct ConstraintRow {
   bool one_sided = false;
 };
 
-/// e ← scale·(e + shift), hinged where the row is one-sided.
-template <class Vector>
-void constrain_error(const ConstraintRow* rows, Vector& e) {
-  for (Eigen::Index r = 0; r < e.size(); ++r) {
-    e[r] = rows[r].scale * (e[r] + rows[r].shift);
-    if (rows[r].one_sided && e[r] < 0.0) e[r] = 0.0;
-  }
-}
+/// e ← scale·(e + shift) of n rows, hinged where the row is one-sided.
+void constrain_error(const ConstraintRow* rows, int n, double* e);
 
-/// The same for the derivative; `e` is the error after constrain_error().
-template <class Vector, class Matrix>
-void constrain_jacobian(const ConstraintRow* rows, const Vector& e, Matrix&& jacobian) {
-  for (Eigen::Index r = 0; r < e.size(); ++r) {
-    if (rows[r].one_sided && e[r] == 0.0) {
-      jacobian.row(r).setZero();
-    } else {
-      jacobian.row(r) *= rows[r].scale;
-    }
-  }
-}
+/// The same for the derivative (n × d), stored row by row or column by column; `e` is the error
+/// after constrain_error().
+void constrain_jacobian(const ConstraintRow* rows, int n, int d, const double* e, double* jacobian,
+                        bool by_row);
 
 }  // namespace locograph

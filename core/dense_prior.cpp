@@ -62,7 +62,7 @@ DensePriorPool::Vector DensePriorPool::shifted_error(const CompiledEdges& compil
   Vector e(x.scratch->array<double>(n), n);
   error(compiled, k, x, e.data());
   const ConstraintRow* rows = constraint_rows(compiled, k, x);
-  if (rows != nullptr) constrain_error(rows, e);
+  if (rows != nullptr) constrain_error(rows, n, e.data());
   return e;
 }
 
@@ -118,8 +118,8 @@ Cost DensePriorPool::linearise_one(const CompiledEdges& compiled, int k, const E
       slots[s].pool->ominus_jacobian(slots[s].vertex_index, x.state + slots[s].state_offset,
                                      reference, jacobians[s], *x.scratch);
       if (rows != nullptr) {
-        const Eigen::Map<const Eigen::VectorXd> own(e.data() + row, d);
-        constrain_jacobian(rows + row, own, Matrix(jacobians[s], d, d));
+        constrain_jacobian(rows + row, static_cast<int>(d), static_cast<int>(d), e.data() + row,
+                           jacobians[s], false);
       }
     }
     reference += state_size_of(slots[s]);

@@ -111,21 +111,28 @@ class EdgeEvaluator {
     const int d = vertex.dimension();
     const int n = dimension();
     constexpr double kStep = 6e-6;
-    Eigen::Map<JacobianMatrix<E, V::kDimension>> jacobian(data, n, d);
     const std::size_t mark = x_.scratch->mark();
     double* step = x_.scratch->array<double>(d);
     std::fill(step, step + d, 0.0);
-    Eigen::Map<Eigen::VectorXd> plus(x_.scratch->array<double>(n), n);
-    Eigen::Map<Eigen::VectorXd> minus(x_.scratch->array<double>(n), n);
+    double* plus = x_.scratch->array<double>(n);
+    double* minus = x_.scratch->array<double>(n);
     for (int c = 0; c < d; ++c) {
       step[c] = kStep;
-      perturbed_error<V>(slot, vertex, step, plus.data());
+      perturbed_error<V>(slot, vertex, step, plus);
       step[c] = -kStep;
-      perturbed_error<V>(slot, vertex, step, minus.data());
+      perturbed_error<V>(slot, vertex, step, minus);
       step[c] = 0.0;
-      jacobian.col(c) = (plus - minus) / (2.0 * kStep);
+      for (int r = 0; r < n; ++r) {
+        jacobian_entry<V>(data, n, d, r, c) = (plus[r] - minus[r]) / (2.0 * kStep);
+      }
     }
     x_.scratch->rewind(mark);
+  }
+
+  /// Entry (r, c) of a Jacobian (n × d) by a vertex of type V.
+  template <class V>
+  static double& jacobian_entry(double* data, int n, int d, int r, int c) {
+    return data[JacobianMatrix<E, V::kDimension>::IsRowMajor ? r * d + c : c * n + r];
   }
 
   /// Calls f(type_identity<V>, slot) for every slot with its vertex type.
@@ -350,8 +357,10 @@ class EdgeEvaluator {
     Eigen::Matrix<T, kD, 1> error;
     call_dual<T>(slot, Eigen::Ref<Eigen::Matrix<T, kD, 1>>(error), FixedSequence());
     x_.scratch->rewind(mark);
-    Eigen::Map<JacobianMatrix<E, V::kDimension>> jacobian(data);
-    for (int r = 0; r < kD; ++r) jacobian.row(r) = error[r].v.transpose();
+    constexpr int d = V::kDimension;
+    for (int r = 0; r < kD; ++r) {
+      for (int c = 0; c < d; ++c) jacobian_entry<V>(data, kD, d, r, c) = error[r].v[c];
+    }
   }
 
   /// Only the slot whose dimension fits T can be the seeded one.

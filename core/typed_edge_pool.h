@@ -1,6 +1,7 @@
 #pragma once
 /// The edge pool of one concrete type: include it where a type is registered or added to a graph.
 
+#include <locograph/core/block_products.h>
 #include <locograph/core/edge_evaluation.h>
 #include <locograph/core/edge_line.h>
 #include <locograph/core/information.h>
@@ -82,8 +83,8 @@ class TypedEdgePool final : public EdgePool {
       detail::LocalMatrix<Error> e = detail::make_local<Error>(edge.dimension(), 1, *x.scratch);
       Evaluator(edge, slots(compiled, k), x).error(e);
       const ConstraintRow* rows = constraint_rows(compiled, k, x);
-      if (rows != nullptr) constrain_error(rows, e);
-      const double chi2 = weighted_square(edge, e);
+      if (rows != nullptr) constrain_error(rows, edge.dimension(), e.data());
+      const double chi2 = weighted_square(edge, e.data());
       total += {robust_weights(edge, rows, chi2).cost, chi2};
     }
     return total;
@@ -107,17 +108,21 @@ class TypedEdgePool final : public EdgePool {
     Eigen::MatrixXd result;
     evaluator.each_slot([&]<class V>(std::type_identity<V>, int s) {
       if (s != slot) return;
-      const int d = detail::vertex_of<V>(slots(compiled, k)[s]).dimension();
-      JacobianMatrix<E, V::kDimension> typed(edge.dimension(), d);
+      const int n = edge.dimension(), d = detail::vertex_of<V>(slots(compiled, k)[s]).dimension();
+      double** data = x.scratch->array<double*>(slots(compiled, k).size());
+      std::fill(data, data + slots(compiled, k).size(), nullptr);
+      data[s] = x.scratch->array<double>(static_cast<std::size_t>(n) * d);
       if (numeric) {
-        evaluator.template numeric_jacobian<V>(s, typed.data());
+        evaluator.template numeric_jacobian<V>(s, data[s]);
       } else {
-        double** data = x.scratch->array<double*>(slots(compiled, k).size());
-        std::fill(data, data + slots(compiled, k).size(), nullptr);
-        data[s] = typed.data();
         evaluator.jacobians(data);
       }
-      result = typed;
+      result.resize(n, d);
+      for (int r = 0; r < n; ++r) {
+        for (int c = 0; c < d; ++c) {
+          result(r, c) = Evaluator::template jacobian_entry<V>(data[s], n, d, r, c);
+        }
+      }
     });
     return result;
   }
@@ -227,17 +232,6 @@ class TypedEdgePool final : public EdgePool {
                                               double chi2) {
     return rows == nullptr ? edge.kernel.weights(chi2) : RobustKernel::Weights{chi2, 1.0};
   }
-  template <class Vector>
-  static void constrain_jacobians(const ConstraintRow* rows, const Evaluator& evaluator,
-                                  std::span<const CompiledEdges::Slot> own, const Vector& e,
-                                  double* const* data) {
-    evaluator.each_slot([&]<class V>(std::type_identity<V>, int s) {
-      if (data[s] == nullptr) return;
-      const int d = detail::vertex_of<V>(own[s]).dimension();
-      constrain_jacobian(rows, e, jacobian_map<V>(data[s], evaluator.dimension(), d));
-    });
-  }
-
   template <class F>
   static void with_slot_type(int slot, F&& f) {
     if constexpr (E::kDynamicArity) {
@@ -270,17 +264,20 @@ class TypedEdgePool final : public EdgePool {
     return doubles * sizeof(double) + own.size() * (sizeof(CompiledEdges::Slot) + 512) + 8192;
   }
 
-  template <class Vector>
-  static double weighted_square(const E& edge, const Vector& e) {
+  static double weighted_square(const E& edge, const double* e) {
+    const int n = edge.dimension();
+    double sum = 0.0;
     if constexpr (kHasWeights<E>) {
-      return e.cwiseAbs2().dot(edge.weights);
-    } else if constexpr (kD == Eigen::Dynamic) {
-      double sum = 0.0;
-      for (int c = 0; c < e.size(); ++c) sum += e[c] * edge.information.col(c).dot(e);
-      return sum;
+      for (int r = 0; r < n; ++r) sum += edge.weights[r] * e[r] * e[r];
     } else {
-      return e.dot(edge.information.lazyProduct(e));
+      const double* information = edge.information.data();
+      for (int c = 0; c < n; ++c, information += n) {
+        double row = 0.0;
+        for (int r = 0; r < n; ++r) row += information[r] * e[r];
+        sum += e[c] * row;
+      }
     }
+    return sum;
   }
 
   /// What a robust kernel makes of Ω: first·(Ω + second·Ωe(Ωe)ᵀ).
@@ -298,123 +295,44 @@ class TypedEdgePool final : public EdgePool {
     detail::LocalMatrix<Error> e = detail::make_local<Error>(n, 1, *x.scratch);
     evaluator.error(e);
     const ConstraintRow* rows = constraint_rows(compiled, k, x);
-    if (rows != nullptr) constrain_error(rows, e);
-    const double chi2 = weighted_square(edge, e);
+    if (rows != nullptr) constrain_error(rows, edge.dimension(), e.data());
+    const double chi2 = weighted_square(edge, e.data());
     const RobustKernel::Weights robust = robust_weights(edge, rows, chi2);
     const Weight weight = {robust.weight,
                            rows == nullptr ? edge.kernel.correction(chi2, robust) : 0.0};
-    if constexpr (E::kDynamicArity) {
-      double** data = x.scratch->array<double*>(own.size());
+    double** data = x.scratch->array<double*>(own.size());
+    evaluator.each_slot([&]<class V>(std::type_identity<V>, int s) {
+      const int d = detail::vertex_of<V>(own[s]).dimension();
+      data[s] = own[s].tangent_offset < 0
+                    ? nullptr
+                    : x.scratch->array<double>(static_cast<std::size_t>(n) * d);
+    });
+    evaluator.jacobians(data);
+    if (rows != nullptr) {
       evaluator.each_slot([&]<class V>(std::type_identity<V>, int s) {
-        const int d = detail::vertex_of<V>(own[s]).dimension();
-        data[s] = own[s].tangent_offset < 0
-                      ? nullptr
-                      : x.scratch->array<double>(static_cast<std::size_t>(n) * d);
+        if (data[s] == nullptr) return;
+        constrain_jacobian(rows, n, detail::vertex_of<V>(own[s]).dimension(), e.data(), data[s],
+                           JacobianMatrix<E, V::kDimension>::IsRowMajor);
       });
-      evaluator.jacobians(data);
-      if (rows != nullptr) constrain_jacobians(rows, evaluator, own, e, data);
-      accumulate(compiled, k, evaluator, e, weight, data, x, hessian, gradient);
+    }
+    if constexpr (kHasWeights<E>) {
+      detail::add_rows(compiled, k, n, e.data(), edge.weights.data(), weight.first, E::kOneSided,
+                       data, *x.scratch, hessian, gradient);
     } else {
-      fixed_jacobians(compiled, k, evaluator, e, weight, x, hessian, gradient,
-                      typename Evaluator::FixedSequence());
+      accumulate(compiled, k, evaluator, e.data(), weight, data, x, hessian, gradient);
     }
     return {robust.cost, chi2};
   }
 
-  /// Jacobians of a fixed arity live on the stack where their size is known.
-  template <class Vector, int... I>
-  void fixed_jacobians(const CompiledEdges& compiled, int k, const Evaluator& evaluator,
-                       const Vector& e, const Weight& weight, const Evaluation& x, double* hessian,
-                       double* gradient, std::integer_sequence<int, I...>) const {
-    const std::span<const CompiledEdges::Slot> own = slots(compiled, k);
-    std::tuple<detail::LocalMatrix<JacobianMatrix<E, detail::FixedVertex<E, I>::kDimension>>...>
-    storage(detail::make_local<JacobianMatrix<E, detail::FixedVertex<E, I>::kDimension>>(
-        evaluator.dimension(), detail::vertex_of<detail::FixedVertex<E, I>>(own[I]).dimension(),
-        *x.scratch)...);
-    double* data[] = {(own[I].tangent_offset < 0 ? nullptr : std::get<I>(storage).data())...};
-    evaluator.jacobians(data);
-    const ConstraintRow* rows = constraint_rows(compiled, k, x);
-    if (rows != nullptr) constrain_jacobians(rows, evaluator, own, e, data);
-    if constexpr (kHasWeights<E>) {
-      accumulate_rows(compiled, k, evaluator, e, weight.first, data, x, hessian, gradient);
-    } else {
-      accumulate(compiled, k, evaluator, e, weight, data, x, hessian, gradient);
-    }
-  }
-
-  /// The entries other than zero of one row of a Jacobian.
-  struct RowEntries {
-    int count;
-    int* column;
-    double* value;
-  };
-
-  /// Diagonal Ω: H += w gᵀg row by row, over the entries that are not zero.
-  template <class Vector>
-  void accumulate_rows(const CompiledEdges& compiled, int k, const Evaluator& evaluator,
-                       const Vector& e, double weight, double* const* data, const Evaluation& x,
-                       double* hessian, double* gradient) const {
-    const E& edge = edges[compiled.edges[k]];
-    const std::span<const CompiledEdges::Slot> own = slots(compiled, k);
-    const int count = static_cast<int>(own.size());
-    RowEntries* entries = x.scratch->array<RowEntries>(count);
-    int* width = x.scratch->array<int>(count);
-    evaluator.each_slot([&]<class V>(std::type_identity<V>, int s) {
-      width[s] = detail::vertex_of<V>(own[s]).dimension();
-      entries[s] = {0, x.scratch->array<int>(width[s]), x.scratch->array<double>(width[s])};
-    });
-    for (int r = 0; r < edge.dimension(); ++r) {
-      const double w = weight * edge.weights[r];
-      if (w == 0.0 || (E::kOneSided && e[r] == 0.0)) continue;
-      for (int s = 0; s < count; ++s) {
-        RowEntries& row = entries[s];
-        row.count = 0;
-        if (data[s] == nullptr) continue;
-        const double* from = data[s] + static_cast<std::size_t>(r) * width[s];
-        for (int c = 0; c < width[s]; ++c) {
-          if (from[c] == 0.0) continue;
-          row.column[row.count] = c;
-          row.value[row.count++] = from[c];
-        }
-      }
-      const CompiledEdges::Block* block = compiled.blocks.data() + compiled.block_begin[k];
-      for (int i = 0; i < count; ++i) {
-        const RowEntries& left = entries[i];
-        double* g = gradient + own[i].gradient_offset;
-        for (int a = 0; a < left.count; ++a) g[left.column[a]] += w * e[r] * left.value[a];
-        for (int j = i; j < count; ++j, ++block) {
-          const RowEntries& right = entries[j];
-          if (left.count == 0 || right.count == 0) continue;
-          double* h = hessian + (*block >> 1);
-          // Block (i, j) is width[i] × width[j], column-major; transposed where i comes later.
-          const bool transposed = (*block & 1) != 0;
-          const int row_step = transposed ? width[j] : 1;
-          const int column_step = transposed ? 1 : width[i];
-          for (int b = 0; b < right.count; ++b) {
-            const double factor = w * right.value[b];
-            double* column = h + static_cast<std::ptrdiff_t>(right.column[b]) * column_step;
-            for (int a = 0; a < left.count; ++a) {
-              column[left.column[a] * row_step] += factor * left.value[a];
-            }
-          }
-        }
-      }
-    }
-  }
-
-  template <class V>
-  static auto jacobian_map(double* data, int n, int d) {
-    return Eigen::Map<JacobianMatrix<E, V::kDimension>>(data, n, d);
-  }
-
   /// H_ij += J_iᵀ W J_j for i ≤ j, g_i += J_iᵀ (wΩ) e, at the precomputed offsets; W is Ω as the
   /// kernel weights it.
-  template <class Vector>
-  void accumulate(const CompiledEdges& compiled, int k, const Evaluator& evaluator, const Vector& e,
+  void accumulate(const CompiledEdges& compiled, int k, const Evaluator& evaluator, const double* e,
                   const Weight& weight, double* const* data, const Evaluation& x, double* hessian,
-                  double* gradient) const {
+                  double* gradient) const requires(!kHasWeights<E>) {
     if (weight.first == 0.0) return;
     const E& edge = edges[compiled.edges[k]];
+    const int n = edge.dimension();
+    const double* information = edge.information.data();
     const std::span<const CompiledEdges::Slot> own = slots(compiled, k);
     const int count = static_cast<int>(own.size());
     const CompiledEdges::Block* block = compiled.blocks.data() + compiled.block_begin[k];
@@ -423,61 +341,27 @@ class TypedEdgePool final : public EdgePool {
       block += count - i;
       if (data[i] == nullptr) return;
       const std::size_t mark = x.scratch->mark();
-      const int di = detail::vertex_of<A>(own[i]).dimension();
-      const auto ji = jacobian_map<A>(data[i], edge.dimension(), di);
-      using Weighted = Eigen::Matrix<double, A::kDimension, kD>;
-      detail::LocalMatrix<Weighted> weighted =
-          detail::make_local<Weighted>(di, edge.dimension(), *x.scratch);
-      if constexpr (A::kDimension == Eigen::Dynamic || kD == Eigen::Dynamic) {
-        weighted.noalias() = ji.transpose() * edge.information;
-        weighted *= weight.first;
-      } else {
-        weighted.noalias() = ji.transpose().lazyProduct(edge.information * weight.first);
+      const int a = detail::vertex_of<A>(own[i]).dimension();
+      double* weighted = x.scratch->array<double>(static_cast<std::size_t>(a) * n);
+      detail::weight_jacobian<kD, A::kDimension>(n, a, data[i], information, weight.first,
+                                                 weighted);
+      double* g = gradient + own[i].gradient_offset;
+      for (int r = 0; r < n; ++r) {
+        for (int c = 0; c < a; ++c) g[c] += weighted[r * a + c] * e[r];
       }
-      Eigen::Map<Eigen::Matrix<double, A::kDimension, 1>> g(gradient + own[i].gradient_offset, di);
-      g.noalias() += weighted * e;
-      if (weight.second != 0.0) bend<A>(weighted, edge, e, weight.second, *x.scratch);
+      if (weight.second != 0.0) {
+        detail::bend_weighted(n, a, information, e, weight.second, weighted,
+                              x.scratch->array<double>(a));
+      }
       evaluator.each_slot([&]<class B>(std::type_identity<B>, int j) {
         if (j < i || data[j] == nullptr) return;
+        const int b = detail::vertex_of<B>(own[j]).dimension();
         const CompiledEdges::Block where = row[j - i];
-        const int dj = detail::vertex_of<B>(own[j]).dimension();
-        const auto jj = jacobian_map<B>(data[j], edge.dimension(), dj);
-        if ((where & 1) == 0) {
-          Eigen::Map<Eigen::Matrix<double, A::kDimension, B::kDimension>> h(hessian + (where >> 1),
-                                                                            di, dj);
-          add_product(weighted, jj, h);
-        } else {
-          Eigen::Map<Eigen::Matrix<double, B::kDimension, A::kDimension>> h(hessian + (where >> 1),
-                                                                            dj, di);
-          add_product(jj.transpose(), weighted.transpose(), h);
-        }
+        detail::add_product<kD, A::kDimension, B::kDimension>(
+            n, a, b, weighted, data[j], (where & 1) != 0, hessian + (where >> 1));
       });
       x.scratch->rewind(mark);
     });
-  }
-
-  /// weighted = JᵀΩ becomes Jᵀ(Ω + β Ωe(Ωe)ᵀ).
-  template <class V, class Weighted, class Vector>
-  static void bend(Weighted& weighted, const E& edge, const Vector& e, double beta,
-                   Scratch& scratch) {
-    using Along = Eigen::Matrix<double, V::kDimension, 1>;
-    detail::LocalMatrix<Along> along =
-        detail::make_local<Along>(static_cast<int>(weighted.rows()), 1, scratch);
-    along.noalias() = weighted * e;
-    for (int c = 0; c < weighted.cols(); ++c) {
-      weighted.col(c) += beta * edge.information.col(c).dot(e) * along;
-    }
-  }
-
-  template <class Left, class Right, class Block>
-  static void add_product(const Left& left, const Right& right, Block& block) {
-    if constexpr (Left::RowsAtCompileTime == Eigen::Dynamic ||
-                  Left::ColsAtCompileTime == Eigen::Dynamic ||
-                  Right::ColsAtCompileTime == Eigen::Dynamic) {
-      block.noalias() += left * right;
-    } else {
-      block.noalias() += left.lazyProduct(right);
-    }
   }
 };
 

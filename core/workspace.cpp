@@ -165,7 +165,7 @@ Workspace::Linearised Workspace::linearise_edge(int pool_number, int k) {
   edge.error.resize(pool.dimension(index));
   error(pool_number, k, edge.error.data());
   if (first >= 0) {
-    constrain_error(constraint_rows_.data() + first, edge.error);
+    constrain_error(constraint_rows_.data() + first, pool.dimension(index), edge.error.data());
   } else {
     edge.weight =
         pool.kernel(index).weights(edge.error.dot(pool.information(index) * edge.error)).weight;
@@ -175,7 +175,11 @@ Workspace::Linearised Workspace::linearise_edge(int pool_number, int k) {
     if (compiled.slots[s].tangent_offset < 0) continue;
     Eigen::MatrixXd& jacobian = edge.jacobians.back();
     jacobian = pool.jacobian(compiled, k, s - compiled.slot_begin[k], evaluation(state_, 0), false);
-    if (first >= 0) constrain_jacobian(constraint_rows_.data() + first, edge.error, jacobian);
+    if (first >= 0) {
+      constrain_jacobian(constraint_rows_.data() + first, static_cast<int>(jacobian.rows()),
+                         static_cast<int>(jacobian.cols()), edge.error.data(), jacobian.data(),
+                         false);
+    }
     // A hinge that is not violated has no derivative.
     for (Eigen::Index r = 0; pool.one_sided() && r < edge.error.size(); ++r) {
       if (edge.error[r] == 0.0) jacobian.row(r).setZero();

@@ -6,6 +6,14 @@
 #include <locograph/types/standard_types.h>
 
 namespace locograph {
+template class TypedVertexPool<VertexCam>;
+template class TypedEdgePool<EdgeProjectP2MC>;
+template class TypedEdgePool<EdgeProjectP2SC>;
+template class TypedVertexPool<VertexInverseDepth>;
+template class TypedEdgePool<EdgeProjectInverseDepth>;
+template class TypedEdgePool<EdgeProjectPinhole>;
+template class TypedEdgePool<EdgeProjectStereo>;
+
 namespace {
 
 /// A point in the frame of a camera and its derivatives: by the tangent of the pose that carries

@@ -4,6 +4,8 @@
 #include <cmath>
 
 namespace locograph {
+template class TypedVertexPool<VertexCameraBAL>;
+template class TypedEdgePool<EdgeProjectBAL>;
 
 void VertexCameraBAL::derive(const double* state, Derived& derived) const {
   const Eigen::Vector3d w(state[0], state[1], state[2]);

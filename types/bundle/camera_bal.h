@@ -7,7 +7,7 @@
 /// A point X [world] is seen at f·(1 + k₁r² + k₂r⁴)·p [px], with P = R X + t, p = −(P_x, P_y) / P_z
 /// and r = |p|: the camera looks along its negative z axis.
 
-#include <locograph/core/edge.h>
+#include <locograph/core/typed_edge_pool.h>
 #include <locograph/types/slam3d/vertices.h>
 
 namespace locograph {
@@ -50,5 +50,9 @@ struct EdgeProjectBAL : Edge<2, VertexCameraBAL, VertexPointXYZ> {
                  JacobianRef<EdgeProjectBAL, 1> j_point) const;
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_PROJECT_BAL", EdgeProjectBAL)
+
+// Compiled once, with the registration.
+extern template class TypedVertexPool<VertexCameraBAL>;
+extern template class TypedEdgePool<EdgeProjectBAL>;
 
 }  // namespace locograph

@@ -6,7 +6,7 @@
 ///     VERTEX_XYZ 1  0.5 0.2 4
 ///     EDGE_PROJECT_P2MC 1 0  407.5 275  1 0 1
 
-#include <locograph/core/edge.h>
+#include <locograph/core/typed_edge_pool.h>
 #include <locograph/types/slam3d/vertices.h>
 
 namespace locograph {
@@ -83,5 +83,10 @@ struct EdgeProjectP2SC : Edge<3, VertexPointXYZ, VertexCam> {
                  JacobianRef<EdgeProjectP2SC, 0> jp, JacobianRef<EdgeProjectP2SC, 1> jc) const;
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_PROJECT_P2SC", EdgeProjectP2SC)
+
+// Compiled once, with the registration.
+extern template class TypedVertexPool<VertexCam>;
+extern template class TypedEdgePool<EdgeProjectP2MC>;
+extern template class TypedEdgePool<EdgeProjectP2SC>;
 
 }  // namespace locograph

@@ -6,7 +6,7 @@
 ///     VERTEX_INVERSE_DEPTH 7  0.125 0.05 0.25
 ///     EDGE_PROJECT_INVERSE_DEPTH 0 1 7  0  390 275  1 0 1
 
-#include <locograph/core/edge.h>
+#include <locograph/core/typed_edge_pool.h>
 #include <locograph/types/slam3d/parameters.h>
 #include <locograph/types/slam3d/vertices.h>
 
@@ -65,5 +65,9 @@ struct EdgeProjectInverseDepth : Edge<2, VertexSE3, VertexSE3, VertexInverseDept
   }
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_PROJECT_INVERSE_DEPTH", EdgeProjectInverseDepth)
+
+// Compiled once, with the registration.
+extern template class TypedVertexPool<VertexInverseDepth>;
+extern template class TypedEdgePool<EdgeProjectInverseDepth>;
 
 }  // namespace locograph

@@ -9,7 +9,7 @@
 /// A camera looks along its positive z axis; c = (A·o)⁻¹ X is the point in its frame [m], o the
 /// offset of the calibration.
 
-#include <locograph/core/edge.h>
+#include <locograph/core/typed_edge_pool.h>
 #include <locograph/types/slam3d/parameters.h>
 #include <locograph/types/slam3d/vertices.h>
 
@@ -76,5 +76,9 @@ struct EdgeProjectStereo : Edge<3, VertexSE3, VertexPointXYZ> {
                  JacobianRef<EdgeProjectStereo, 0> ja, JacobianRef<EdgeProjectStereo, 1> jp) const;
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_PROJECT_STEREO", EdgeProjectStereo)
+
+// Compiled once, with the registration.
+extern template class TypedEdgePool<EdgeProjectPinhole>;
+extern template class TypedEdgePool<EdgeProjectStereo>;
 
 }  // namespace locograph

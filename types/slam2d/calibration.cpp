@@ -2,6 +2,10 @@
 #include <locograph/types/standard_types.h>
 
 namespace locograph {
+template class TypedVertexPool<VertexOdomDifferential>;
+template class TypedEdgePool<EdgeSE2XYCalib>;
+template class TypedEdgePool<EdgeSE2Calib>;
+template class TypedEdgePool<EdgeSE2OdomDifferentialCalib>;
 
 void add_slam2d_calibration_types(TypeRegistry& types) {
   types.add_vertex<VertexOdomDifferential>();

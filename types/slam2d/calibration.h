@@ -4,7 +4,7 @@
 ///
 /// The mount of a sensor is a VERTEX_SE2 like any other, shared by all edges of that sensor.
 
-#include <locograph/core/edge.h>
+#include <locograph/core/typed_edge_pool.h>
 #include <locograph/types/slam2d/edges.h>
 
 namespace locograph {
@@ -90,5 +90,11 @@ struct EdgeSE2OdomDifferentialCalib : Edge<3, VertexSE2, VertexSE2, VertexOdomDi
   }
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_SE2_ODOM_DIFFERENTIAL_CALIB", EdgeSE2OdomDifferentialCalib)
+
+// Compiled once, with the registration.
+extern template class TypedVertexPool<VertexOdomDifferential>;
+extern template class TypedEdgePool<EdgeSE2XYCalib>;
+extern template class TypedEdgePool<EdgeSE2Calib>;
+extern template class TypedEdgePool<EdgeSE2OdomDifferentialCalib>;
 
 }  // namespace locograph

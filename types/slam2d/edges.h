@@ -189,11 +189,18 @@ struct EdgeSE2PointXYOffset : Edge<2, VertexSE2, VertexXY> {
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_SE2_POINTXY_OFFSET", EdgeSE2PointXYOffset)
 
-// Compiled once, with the registration: the most used of them.
+// Compiled once, with the registration.
 extern template class TypedVertexPool<VertexSE2>;
 extern template class TypedVertexPool<VertexXY>;
 extern template class TypedEdgePool<EdgeSE2>;
 extern template class TypedEdgePool<EdgeSE2XY>;
+extern template class TypedEdgePool<EdgeBearingSE2XY>;
 extern template class TypedEdgePool<EdgePriorSE2>;
+extern template class TypedEdgePool<EdgePriorSE2XY>;
+extern template class TypedEdgePool<EdgePriorXY>;
+extern template class TypedEdgePool<EdgePointXY>;
+extern template class TypedEdgePool<EdgeSE2Offset>;
+extern template class TypedEdgePool<EdgeSE2XYOffset>;
+extern template class TypedEdgePool<EdgeSE2PointXYOffset>;
 
 }  // namespace locograph

@@ -2,6 +2,14 @@
 #include <locograph/types/standard_types.h>
 
 namespace locograph {
+template class TypedVertexPool<VertexLine2D>;
+template class TypedVertexPool<VertexSegment2D>;
+template class TypedEdgePool<EdgeSE2Line2D>;
+template class TypedEdgePool<EdgeLine2D>;
+template class TypedEdgePool<EdgeLine2DPointXY>;
+template class TypedEdgePool<EdgeSE2Segment2D>;
+template class TypedEdgePool<EdgeSE2Segment2DLine>;
+template class TypedEdgePool<EdgeSE2Segment2DPointLine>;
 
 void add_slam2d_line_types(TypeRegistry& types) {
   types.add_vertex<VertexLine2D>();

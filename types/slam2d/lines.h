@@ -5,7 +5,7 @@
 /// points. Seen from a pose with heading φ at t, a line has the angle θ − φ and the distance ρ −
 /// n·t.
 
-#include <locograph/core/edge.h>
+#include <locograph/core/typed_edge_pool.h>
 #include <locograph/types/slam2d/vertices.h>
 
 namespace locograph {
@@ -187,5 +187,15 @@ struct EdgeSE2Segment2DPointLine : Edge<3, VertexSE2, VertexSegment2D> {
   }
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_SE2_SEGMENT2D_POINTLINE", EdgeSE2Segment2DPointLine)
+
+// Compiled once, with the registration.
+extern template class TypedVertexPool<VertexLine2D>;
+extern template class TypedVertexPool<VertexSegment2D>;
+extern template class TypedEdgePool<EdgeSE2Line2D>;
+extern template class TypedEdgePool<EdgeLine2D>;
+extern template class TypedEdgePool<EdgeLine2DPointXY>;
+extern template class TypedEdgePool<EdgeSE2Segment2D>;
+extern template class TypedEdgePool<EdgeSE2Segment2DLine>;
+extern template class TypedEdgePool<EdgeSE2Segment2DPointLine>;
 
 }  // namespace locograph

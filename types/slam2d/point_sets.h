@@ -6,7 +6,7 @@
 ///     scan.measurement << 1.0, 0.0, 0.0, 2.0, -1.0, 0.5;   // x y of each, in the pose
 ///     graph.add_dynamic_edge(scan, {a, b, c}, pose);
 
-#include <locograph/core/edge.h>
+#include <locograph/core/typed_edge_pool.h>
 #include <locograph/types/slam2d/vertices.h>
 
 namespace locograph {
@@ -45,5 +45,9 @@ struct EdgeSE2LotsOfXY : DynamicEdge<Eigen::Dynamic, VertexXY, VertexSE2> {
                  std::span<JacobianMap> j) const;
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_SE2_LOTSOFXY", EdgeSE2LotsOfXY)
+
+// Compiled once, with the registration.
+extern template class TypedEdgePool<EdgeSE2TwoPointsXY>;
+extern template class TypedEdgePool<EdgeSE2LotsOfXY>;
 
 }  // namespace locograph

@@ -3,6 +3,21 @@
 #include <locograph/types/standard_types.h>
 
 namespace locograph {
+template class TypedVertexPool<VertexSE2>;
+template class TypedVertexPool<VertexXY>;
+template class TypedEdgePool<EdgeSE2>;
+template class TypedEdgePool<EdgeSE2XY>;
+template class TypedEdgePool<EdgeBearingSE2XY>;
+template class TypedEdgePool<EdgePriorSE2>;
+template class TypedEdgePool<EdgePriorSE2XY>;
+template class TypedEdgePool<EdgePriorXY>;
+template class TypedEdgePool<EdgePointXY>;
+template class TypedEdgePool<EdgeSE2Offset>;
+template class TypedEdgePool<EdgeSE2XYOffset>;
+template class TypedEdgePool<EdgeSE2PointXYOffset>;
+template class TypedEdgePool<EdgeSE2TwoPointsXY>;
+template class TypedEdgePool<EdgeSE2LotsOfXY>;
+
 namespace {
 
 /// The inverse rotation of a pose, and the derivatives of A⁻¹ p: by the position −Rᵀ, by the
@@ -81,12 +96,6 @@ void EdgeSE2LotsOfXY::jacobians(const SE2<double>& a, std::span<const Eigen::Vec
     j[1 + i].middleRows<2>(row) = back;
   }
 }
-
-template class TypedVertexPool<VertexSE2>;
-template class TypedVertexPool<VertexXY>;
-template class TypedEdgePool<EdgeSE2>;
-template class TypedEdgePool<EdgeSE2XY>;
-template class TypedEdgePool<EdgePriorSE2>;
 
 void add_slam2d_types(TypeRegistry& types) {
   types.add_parameter<OffsetSE2>("PARAMS_SE2OFFSET");

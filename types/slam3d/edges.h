@@ -177,10 +177,16 @@ struct EdgeProjectDisparity : Edge<3, VertexSE3, VertexPointXYZ> {
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_PROJECT_DISPARITY", EdgeProjectDisparity)
 
-// Compiled once, with the registration: the most used of them.
+// Compiled once, with the registration.
 extern template class TypedVertexPool<VertexSE3>;
 extern template class TypedVertexPool<VertexPointXYZ>;
 extern template class TypedEdgePool<EdgeSE3>;
 extern template class TypedEdgePool<EdgeSE3PointXYZ>;
+extern template class TypedEdgePool<EdgeSE3Offset>;
+extern template class TypedEdgePool<EdgeSE3LotsOfXYZ>;
+extern template class TypedEdgePool<EdgeSE3Calib>;
+extern template class TypedEdgePool<EdgePointXYZ>;
+extern template class TypedEdgePool<EdgeProjectDepth>;
+extern template class TypedEdgePool<EdgeProjectDisparity>;
 
 }  // namespace locograph

@@ -3,6 +3,11 @@
 #include <locograph/types/standard_types.h>
 
 namespace locograph {
+template class TypedVertexPool<VertexSE3Expmap>;
+template class TypedEdgePool<EdgeSE3Expmap>;
+template class TypedEdgePool<EdgeProjectXYZ2UV>;
+template class TypedEdgePool<EdgeProjectXYZ2UVU>;
+
 namespace {
 
 /// A point in the camera, and the derivatives of that by point and pose.

@@ -11,8 +11,8 @@
 /// Files hold world_from_camera. g2o inverts it when it reads and writes; here the state is what
 /// the file holds, and errors are written accordingly.
 
-#include <locograph/core/edge.h>
 #include <locograph/core/parameters.h>
+#include <locograph/core/typed_edge_pool.h>
 #include <locograph/types/slam3d/vertices.h>
 
 namespace locograph {
@@ -109,5 +109,11 @@ struct EdgeProjectXYZ2UVU : Edge<3, VertexPointXYZ, VertexSE3Expmap> {
                  JacobianRef<EdgeProjectXYZ2UVU, 1> ja) const;
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_PROJECT_XYZ2UVU:EXPMAP", EdgeProjectXYZ2UVU)
+
+// Compiled once, with the registration.
+extern template class TypedVertexPool<VertexSE3Expmap>;
+extern template class TypedEdgePool<EdgeSE3Expmap>;
+extern template class TypedEdgePool<EdgeProjectXYZ2UV>;
+extern template class TypedEdgePool<EdgeProjectXYZ2UVU>;
 
 }  // namespace locograph

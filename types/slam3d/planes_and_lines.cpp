@@ -3,6 +3,12 @@
 #include <locograph/types/standard_types.h>
 
 namespace locograph {
+template class TypedVertexPool<VertexPlane>;
+template class TypedVertexPool<VertexLine3D>;
+template class TypedEdgePool<EdgeSE3Plane>;
+template class TypedEdgePool<EdgeSE3PlaneCalib>;
+template class TypedEdgePool<EdgePlane>;
+template class TypedEdgePool<EdgeSE3Line3D>;
 
 void VertexPlane::read(FieldReader& in) {
   Plane<double> plane;

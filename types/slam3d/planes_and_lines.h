@@ -10,7 +10,7 @@
 /// its points p. Tangents and errors are those of g2o, which fix no more than their first order
 /// around zero; here both are smooth also where the normal is vertical.
 
-#include <locograph/core/edge.h>
+#include <locograph/core/typed_edge_pool.h>
 #include <locograph/types/slam3d/vertices.h>
 
 namespace locograph {
@@ -280,5 +280,13 @@ struct EdgeSE3Line3D : Edge<4, VertexSE3, VertexLine3D> {
   }
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_SE3_LINE3D", EdgeSE3Line3D)
+
+// Compiled once, with the registration.
+extern template class TypedVertexPool<VertexPlane>;
+extern template class TypedVertexPool<VertexLine3D>;
+extern template class TypedEdgePool<EdgeSE3Plane>;
+extern template class TypedEdgePool<EdgeSE3PlaneCalib>;
+extern template class TypedEdgePool<EdgePlane>;
+extern template class TypedEdgePool<EdgeSE3Line3D>;
 
 }  // namespace locograph

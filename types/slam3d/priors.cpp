@@ -3,6 +3,13 @@
 #include <locograph/types/standard_types.h>
 
 namespace locograph {
+template class TypedEdgePool<EdgeSE3Prior>;
+template class TypedEdgePool<EdgeSE3XYZPrior>;
+template class TypedEdgePool<EdgeSE3PriorXYZ>;
+template class TypedEdgePool<EdgeSE3PriorXY>;
+template class TypedEdgePool<EdgeSE3PriorVec>;
+template class TypedEdgePool<EdgePointXYZPrior>;
+
 namespace {
 
 /// Of the position by the step of its pose, which is in the pose's own frame.

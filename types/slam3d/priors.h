@@ -5,7 +5,7 @@
 ///     gravity.direction = -Eigen::Vector3d::UnitZ();    // in the world
 ///     gravity.measurement = down_in_the_sensor;
 
-#include <locograph/core/edge.h>
+#include <locograph/core/typed_edge_pool.h>
 #include <locograph/types/slam3d/edges.h>
 
 namespace locograph {
@@ -118,5 +118,13 @@ struct EdgePointXYZPrior : Edge<3, VertexPointXYZ> {
   }
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_POINTXYZ_PRIOR", EdgePointXYZPrior)
+
+// Compiled once, with the registration.
+extern template class TypedEdgePool<EdgeSE3Prior>;
+extern template class TypedEdgePool<EdgeSE3XYZPrior>;
+extern template class TypedEdgePool<EdgeSE3PriorXYZ>;
+extern template class TypedEdgePool<EdgeSE3PriorXY>;
+extern template class TypedEdgePool<EdgeSE3PriorVec>;
+extern template class TypedEdgePool<EdgePointXYZPrior>;
 
 }  // namespace locograph

@@ -3,6 +3,16 @@
 #include <locograph/types/standard_types.h>
 
 namespace locograph {
+template class TypedVertexPool<VertexSE3>;
+template class TypedVertexPool<VertexPointXYZ>;
+template class TypedEdgePool<EdgeSE3>;
+template class TypedEdgePool<EdgeSE3PointXYZ>;
+template class TypedEdgePool<EdgeSE3Offset>;
+template class TypedEdgePool<EdgeSE3LotsOfXYZ>;
+template class TypedEdgePool<EdgeSE3Calib>;
+template class TypedEdgePool<EdgePointXYZ>;
+template class TypedEdgePool<EdgeProjectDepth>;
+template class TypedEdgePool<EdgeProjectDisparity>;
 
 void EdgeSE3::jacobians(const SE3<double>& a, const SE3<double>& b, JacobianRef<EdgeSE3, 0> ja,
                         JacobianRef<EdgeSE3, 1> jb) const {
@@ -63,11 +73,6 @@ void EdgeSE3LotsOfXYZ::jacobians(const SE3<double>& a, std::span<const Eigen::Ve
     j[1 + i].middleRows<3>(row) = back;
   }
 }
-
-template class TypedVertexPool<VertexSE3>;
-template class TypedVertexPool<VertexPointXYZ>;
-template class TypedEdgePool<EdgeSE3>;
-template class TypedEdgePool<EdgeSE3PointXYZ>;
 
 void add_slam3d_types(TypeRegistry& types) {
   types.add_parameter<OffsetSE3>("PARAMS_SE3OFFSET");

@@ -1,0 +1,23 @@
+#include <locograph/core/constraint.h>
+
+namespace locograph {
+
+void constrain_error(const ConstraintRow* rows, int n, double* e) {
+  for (int r = 0; r < n; ++r) {
+    e[r] = rows[r].scale * (e[r] + rows[r].shift);
+    if (rows[r].one_sided && e[r] < 0.0) e[r] = 0.0;
+  }
+}
+
+void constrain_jacobian(const ConstraintRow* rows, int n, int d, const double* e, double* jacobian,
+                        bool by_row) {
+  for (int r = 0; r < n; ++r) {
+    const bool inside = rows[r].one_sided && e[r] == 0.0;
+    for (int c = 0; c < d; ++c) {
+      double& entry = jacobian[by_row ? r * d + c : c * n + r];
+      entry = inside ? 0.0 : entry * rows[r].scale;
+    }
+  }
+}
+
+}  // namespace locograph
