@@ -4,7 +4,6 @@
 #include <locograph/apps/plan_file.h>
 #include <locograph/common/deadline.h>
 
-#include <CLI/Validators.hpp>
 #include <memory>
 #include <string>
 #include <vector>
@@ -98,22 +97,22 @@ ExitCode check(const CommandOptions& options) {
 
 }  // namespace
 
-Command add_check(CLI::App& app) {
+Command add_check(OptionParser& app) {
   const auto options = std::make_shared<CommandOptions>();
   CommandOptions& o = *options;
-  CLI::App* parser =
+  OptionParser parser =
       app.add_subcommand("check", "Check a plan's feasibility, at every vertex and in between");
-  parser->add_option("PLAN", o.input, "Plan file (.g2o)")->required();
-  parser->add_option("--map", o.map, "OctoMap to check against instead of the plan's own world");
-  parser->add_option("--obstacles", o.obstacles, "Obstacle file (.xml); may go with --map");
-  parser->add_option("--clearance", o.clearance_m, "Distance to keep to obstacles [m]")
-      ->check(CLI::Range(0.0, 0.5))
-      ->capture_default_str();
-  parser->add_option("--threads", o.threads, "Most threads to use (this version uses one)")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  add_plugin_option(*parser, o.plugins);
-  parser->add_flag("--json", o.json, "Print one JSON object");
+  parser.add_option("PLAN", o.input, "Plan file (.g2o)").required();
+  parser.add_option("--map", o.map, "OctoMap to check against instead of the plan's own world");
+  parser.add_option("--obstacles", o.obstacles, "Obstacle file (.xml); may go with --map");
+  parser.add_option("--clearance", o.clearance_m, "Distance to keep to obstacles [m]")
+      .between(0.0, 0.5)
+      .show_default();
+  parser.add_option("--threads", o.threads, "Most threads to use (this version uses one)")
+      .positive()
+      .show_default();
+  add_plugin_option(parser, o.plugins);
+  parser.add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] { return check(*options); }};
 }
 

@@ -5,6 +5,6 @@
 
 namespace locograph {
 
-Command add_check(CLI::App& app);
+Command add_check(OptionParser& app);
 
 }  // namespace locograph

@@ -1,19 +1,18 @@
 #pragma once
 /// How a command joins `locograph`: one function that adds it to the command line.
 ///
-///     Command add_greet(CLI::App& app) {
+///     Command add_greet(OptionParser& app) {
 ///       auto name = std::make_shared<std::string>();
-///       CLI::App* parser = app.add_subcommand("greet", "Say hello");
-///       parser->add_option("NAME", *name, "Whom to greet")->required();
+///       OptionParser parser = app.add_subcommand("greet", "Say hello");
+///       parser.add_option("NAME", *name, "Whom to greet").required();
 ///       return {parser, [name] { return std::cout << "Hello " << *name << '\n', kDone; }};
 ///     }
 ///
 /// Each command is a file pair NAME_command.{h,cpp}; main.cpp lists them. Bad input is thrown as
 /// locograph::Error: main() turns it into one line and exit code 2.
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
+#include <locograph/apps/option_parser.h>
+
 #include <functional>
 
 namespace locograph {
@@ -25,7 +24,7 @@ enum ExitCode {
 };
 
 struct Command {
-  CLI::App* parser;
+  OptionParser parser;
   std::function<ExitCode()> run;
 };
 

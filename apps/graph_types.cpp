@@ -3,7 +3,6 @@
 #include <locograph/plugins/robot_types.h>
 #include <locograph/types/standard_types.h>
 
-#include <CLI/Option.hpp>
 #include <filesystem>
 #include <system_error>
 
@@ -35,12 +34,12 @@ TypeRegistry graph_types(const std::vector<std::string>& plugins) {
   return types;
 }
 
-void add_plugin_option(CLI::App& parser, std::vector<std::string>& plugins) {
+void add_plugin_option(OptionParser& parser, std::vector<std::string>& plugins) {
   parser
       .add_option("--plugin", plugins,
                   "Library (.so) with more types; a bare name is looked for in lib/locograph")
-      ->type_name("LIB.so")
-      ->allow_extra_args(false);
+      .value_name("LIB.so")
+      .one_at_a_time();
 }
 
 }  // namespace locograph

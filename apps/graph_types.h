@@ -2,16 +2,16 @@
 /// The types that the commands know in a graph file, plug-ins (--plugin) included.
 ///
 ///     std::vector<std::string> plugins;
-///     add_plugin_option(*parser, plugins);
+///     add_plugin_option(parser, plugins);
 ///     …
 ///     Graph graph = read_graph("plan.g2o", graph_types(plugins));
 ///
 /// A plug-in is a path, or a bare name that is looked for in `lib/locograph` beside the folder of
 /// the running program or beside one of those above it: build/lib/locograph for build/bin.
 
+#include <locograph/apps/option_parser.h>
 #include <locograph/core/type_registry.h>
 
-#include <CLI/App.hpp>
 #include <string>
 #include <vector>
 
@@ -21,6 +21,6 @@ namespace locograph {
 TypeRegistry graph_types(const std::vector<std::string>& plugins = {});
 
 /// Adds `--plugin LIB.so`, which may be given many times. plugins must outlive the parsing.
-void add_plugin_option(CLI::App& parser, std::vector<std::string>& plugins);
+void add_plugin_option(OptionParser& parser, std::vector<std::string>& plugins);
 
 }  // namespace locograph

@@ -5,6 +5,6 @@
 
 namespace locograph {
 
-Command add_info(CLI::App& app);
+Command add_info(OptionParser& app);
 
 }  // namespace locograph

@@ -6,7 +6,6 @@
 #include <locograph/planners/plan/scenario.h>
 #include <locograph/solvers/linear_solvers.h>
 
-#include <CLI/Validators.hpp>
 #include <algorithm>
 #include <memory>
 #include <string>
@@ -36,17 +35,17 @@ std::vector<std::string> names_of(const std::string& what,
 
 }  // namespace
 
-Command add_list(CLI::App& app) {
+Command add_list(OptionParser& app) {
   struct Options {
     std::string what;
     std::vector<std::string> plugins;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* parser = app.add_subcommand("list", "What is registered, one name per line");
-  parser->add_option("WHAT", options->what, "types, solvers, kernels, robots or scenarios")
-      ->required()
-      ->check(CLI::IsMember({"types", "solvers", "kernels", "robots", "scenarios"}));
-  add_plugin_option(*parser, options->plugins);
+  OptionParser parser = app.add_subcommand("list", "What is registered, one name per line");
+  parser.add_option("WHAT", options->what, "types, solvers, kernels, robots or scenarios")
+      .required()
+      .one_of({"types", "solvers", "kernels", "robots", "scenarios"});
+  add_plugin_option(parser, options->plugins);
   return {parser, [options] {
             std::string text;
             for (const std::string& name : names_of(options->what, options->plugins))

@@ -5,6 +5,6 @@
 
 namespace locograph {
 
-Command add_list(CLI::App& app);
+Command add_list(OptionParser& app);
 
 }  // namespace locograph

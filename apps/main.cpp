@@ -12,35 +12,20 @@
 #include <locograph/apps/view_command.h>
 #include <locograph/common/error.h>
 
-#include <CLI/Error.hpp>
 #include <vector>
 
 namespace locograph {
 namespace {
 
-/// The chosen command's name, for messages about its usage.
-std::string help_hint(const CLI::App& app) {
-  const std::vector<CLI::App*> chosen = app.get_subcommands();
-  return "see: locograph " + (chosen.empty() ? "" : chosen.front()->get_name() + ' ') + "--help";
-}
-
 int run(int argc, char** argv) {
-  CLI::App app("Hyper-graph optimisation and loco-manipulation planning", "locograph");
-  app.set_version_flag("--version", "locograph " LOCOGRAPH_VERSION);
-  app.require_subcommand(1);
+  OptionParser app("Hyper-graph optimisation and loco-manipulation planning", "locograph");
+  app.add_version("locograph " LOCOGRAPH_VERSION);
   const std::vector<Command> commands = {add_optimize(app), add_plan(app), add_refine(app),
                                          add_check(app),    add_info(app), add_list(app),
                                          add_view(app),     add_plot(app), add_posture(app)};
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& help_or_version) {
-    return app.exit(help_or_version);
-  } catch (const CLI::ParseError& usage) {
-    print_error(std::string(usage.what()) + " (" + help_hint(app) + ")");
-    return kBadInput;
-  }
+  if (!app.parse(argc, argv)) return kDone;
   for (const Command& command : commands) {
-    if (command.parser->parsed()) return command.run();
+    if (command.parser.chosen()) return command.run();
   }
   return kBadInput;
 }
@@ -51,6 +36,8 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return locograph::run(argc, argv);
+  } catch (const locograph::UsageError& error) {
+    locograph::print_error(error.what());
   } catch (const locograph::Error& error) {
     locograph::print_error(error.what());
   } catch (const std::exception& error) {

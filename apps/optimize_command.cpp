@@ -18,7 +18,6 @@
 #include <locograph/types/chordal_guess.h>
 #include <locograph/types/doubtful_closures.h>
 
-#include <CLI/Validators.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -341,55 +340,54 @@ ExitCode optimize(const OptimizeOptions& options) {
 
 }  // namespace
 
-Command add_optimize(CLI::App& app) {
+Command add_optimize(OptionParser& app) {
   const auto options = std::make_shared<OptimizeOptions>();
   OptimizeOptions& o = *options;
-  CLI::App* parser = app.add_subcommand("optimize", "Optimise a graph file");
+  OptionParser parser = app.add_subcommand("optimize", "Optimise a graph file");
   parser
-      ->add_option("IN", o.input,
-                   "Graph file (.g2o) or bundle adjustment in the large (.txt, .bal); - reads "
-                   "standard input")
-      ->required();
-  parser->add_option("-o,--output", o.output, "Where to write the optimised graph");
-  parser->add_option("--algorithm", o.algorithm, "lm, gn or dogleg")
-      ->check(CLI::IsMember({"lm", "gn", "dogleg"}))
-      ->capture_default_str();
+      .add_option("IN", o.input,
+                  "Graph file (.g2o) or bundle adjustment in the large (.txt, .bal); - reads "
+                  "standard input")
+      .required();
+  parser.add_option("-o,--output", o.output, "Where to write the optimised graph");
+  parser.add_option("--algorithm", o.algorithm, "lm, gn or dogleg")
+      .one_of({"lm", "gn", "dogleg"})
+      .show_default();
   parser
-      ->add_option("--linear-solver", o.linear_solver,
-                   "NAME (see: locograph list solvers), auto, or ceres: the whole graph by Ceres")
-      ->capture_default_str();
+      .add_option("--linear-solver", o.linear_solver,
+                  "NAME (see: locograph list solvers), auto, or ceres: the whole graph by Ceres")
+      .show_default();
   parser
-      ->add_option("--kernel", o.kernel,
-                   "Robust kernel of every edge, NAME[:WIDTH][:second-order] or barron:WIDTH:ALPHA "
-                   "(see: locograph list kernels)")
-      ->capture_default_str();
+      .add_option("--kernel", o.kernel,
+                  "Robust kernel of every edge, NAME[:WIDTH][:second-order] or barron:WIDTH:ALPHA "
+                  "(see: locograph list kernels)")
+      .show_default();
   parser
-      ->add_option("--initial-guess", o.initial_guess,
-                   "none, odometry, spanning-tree or chordal; chordal with --gnc or --kernel does "
-                   "without the loop closures that no short cycle confirms")
-      ->check(CLI::IsMember({"none", "odometry", "spanning-tree", "chordal"}))
-      ->capture_default_str();
-  parser->add_flag(
+      .add_option("--initial-guess", o.initial_guess,
+                  "none, odometry, spanning-tree or chordal; chordal with --gnc or --kernel does "
+                  "without the loop closures that no short cycle confirms")
+      .one_of({"none", "odometry", "spanning-tree", "chordal"})
+      .show_default();
+  parser.add_flag(
       "--gnc", o.graduated,
       "Find wrong loop closures by graduated non-convexity and leave them out; odometry "
       "(edges between consecutive ids) is trusted");
-  parser->add_option("--iterations", o.optimiser.max_iterations, "Most iterations to make")
-      ->capture_default_str();
+  parser.add_option("--iterations", o.optimiser.max_iterations, "Most iterations to make")
+      .show_default();
   parser
-      ->add_option("--gain", o.optimiser.gain,
-                   "Converged when a step lowers the cost by less than this fraction")
-      ->capture_default_str();
-  parser->add_option("--threads", o.threads, "Most threads to use; the result never depends on it")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
-  add_plugin_option(*parser, o.plugins);
-  parser->add_flag(
-      "--lenient", o.lenient,
-      "Leave out unknown tags, project indefinite information, hold unconnected parts");
-  parser->add_flag("--diagnose", o.diagnose,
-                   "Tell what the measurements leave free and which matrices are not positive; "
-                   "done unasked when the system is singular");
-  parser->add_flag("--json", o.json, "Print one JSON object");
+      .add_option("--gain", o.optimiser.gain,
+                  "Converged when a step lowers the cost by less than this fraction")
+      .show_default();
+  parser.add_option("--threads", o.threads, "Most threads to use; the result never depends on it")
+      .between(1, 64)
+      .show_default();
+  add_plugin_option(parser, o.plugins);
+  parser.add_flag("--lenient", o.lenient,
+                  "Leave out unknown tags, project indefinite information, hold unconnected parts");
+  parser.add_flag("--diagnose", o.diagnose,
+                  "Tell what the measurements leave free and which matrices are not positive; "
+                  "done unasked when the system is singular");
+  parser.add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] {
             options->optimiser.algorithm = kAlgorithms.at(options->algorithm);
             options->bal = options->input != "-" && is_bal_file(options->input);

@@ -5,6 +5,6 @@
 
 namespace locograph {
 
-Command add_optimize(CLI::App& app);
+Command add_optimize(OptionParser& app);
 
 }  // namespace locograph

@@ -6,7 +6,6 @@
 #include <locograph/planners/offline/wheeled_drive.h>
 #include <locograph/planners/plan/plan.h>
 
-#include <CLI/Validators.hpp>
 #include <memory>
 #include <string>
 
@@ -62,23 +61,22 @@ ExitCode plan(const PlanOptions& options) {
 
 }  // namespace
 
-Command add_plan(CLI::App& app) {
+Command add_plan(OptionParser& app) {
   const auto options = std::make_shared<PlanOptions>();
   PlanOptions& o = *options;
-  CLI::App* parser =
+  OptionParser parser =
       app.add_subcommand("plan", "Plan a scenario offline and emit the plan's graph");
-  parser
-      ->add_option("SCENARIO", o.scenario, "File, or a name that `locograph list scenarios` gives")
-      ->required();
-  parser->add_option("-o,--output", o.output, "Plan file to write (.g2o)")->required();
-  parser->add_option("--seed", o.seed, "Of everything random (a drive has nothing random)")
-      ->capture_default_str();
-  parser->add_option("--timeout", o.timeout_s, "Seconds the planner may take; 0: no limit")
-      ->check(CLI::NonNegativeNumber);
-  parser->add_option("--threads", o.threads, "Most threads to use (this version uses one)")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  parser->add_flag("--json", o.json, "Print one JSON object");
+  parser.add_option("SCENARIO", o.scenario, "File, or a name that `locograph list scenarios` gives")
+      .required();
+  parser.add_option("-o,--output", o.output, "Plan file to write (.g2o)").required();
+  parser.add_option("--seed", o.seed, "Of everything random (a drive has nothing random)")
+      .show_default();
+  parser.add_option("--timeout", o.timeout_s, "Seconds the planner may take; 0: no limit")
+      .not_negative();
+  parser.add_option("--threads", o.threads, "Most threads to use (this version uses one)")
+      .positive()
+      .show_default();
+  parser.add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] { return plan(*options); }};
 }
 

@@ -5,6 +5,6 @@
 
 namespace locograph {
 
-Command add_plan(CLI::App& app);
+Command add_plan(OptionParser& app);
 
 }  // namespace locograph

@@ -24,16 +24,16 @@ ExitCode plot(const CommandOptions& options) {
 
 }  // namespace
 
-Command add_plot(CLI::App& app) {
+Command add_plot(OptionParser& app) {
   const auto options = std::make_shared<CommandOptions>();
   CommandOptions& o = *options;
-  CLI::App* parser = app.add_subcommand("plot", "Draw a diagram of a result");
+  OptionParser parser = app.add_subcommand("plot", "Draw a diagram of a result");
   parser
-      ->add_option("RESULT", o.input,
-                   "JSON of optimize, refine or check, a plan (.g2o) or a table (.csv)")
-      ->required();
-  parser->add_option("-o,--output", o.output, "Diagram to write (.svg)")->required();
-  add_plugin_option(*parser, o.plugins);
+      .add_option("RESULT", o.input,
+                  "JSON of optimize, refine or check, a plan (.g2o) or a table (.csv)")
+      .required();
+  parser.add_option("-o,--output", o.output, "Diagram to write (.svg)").required();
+  add_plugin_option(parser, o.plugins);
   return {parser, [options] { return plot(*options); }};
 }
 

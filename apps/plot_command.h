@@ -5,6 +5,6 @@
 
 namespace locograph {
 
-Command add_plot(CLI::App& app);
+Command add_plot(OptionParser& app);
 
 }  // namespace locograph

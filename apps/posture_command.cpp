@@ -7,7 +7,6 @@
 #include <locograph/planners/posture/contacts_file.h>
 #include <locograph/planners/posture/posture_solver.h>
 
-#include <CLI/Validators.hpp>
 #include <algorithm>
 #include <memory>
 #include <string>
@@ -161,36 +160,34 @@ ExitCode posture(const CommandOptions& options) {
 
 }  // namespace
 
-Command add_posture(CLI::App& app) {
+Command add_posture(OptionParser& app) {
   const auto options = std::make_shared<CommandOptions>();
   CommandOptions& o = *options;
-  CLI::App* parser = app.add_subcommand(
+  OptionParser parser = app.add_subcommand(
       "posture", "Find a balanced, collision-free configuration for given contacts");
-  parser->add_option("ROBOT", o.robot, "URDF file, or a name that `locograph list robots` gives")
-      ->required();
-  parser->add_option("--contacts", o.contacts, "File of the contacts (.xml), see doc/posture.md")
-      ->required();
-  parser->add_option("--srdf", o.srdf, "SRDF file instead of the one beside the URDF");
-  parser->add_option("--state", o.state,
-                     "Group state of the SRDF to stay near (home, else standing, else neutral)");
-  parser->add_option("--map", o.map, "OctoMap of what is around");
-  parser->add_option("--obstacles", o.obstacles, "Obstacle file (.xml); may go with --map");
-  parser->add_option("-o,--output", o.output, "Graph file to write (.g2o)");
-  parser->add_option("--seed", o.seed, "Of the restarts")->capture_default_str();
-  parser->add_option("--restarts", o.restarts, "Most restarts")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  parser->add_option("--deadline-ms", o.deadline_ms, "Time to find it in; 0: no limit")
-      ->check(CLI::NonNegativeNumber);
+  parser.add_option("ROBOT", o.robot, "URDF file, or a name that `locograph list robots` gives")
+      .required();
+  parser.add_option("--contacts", o.contacts, "File of the contacts (.xml), see doc/posture.md")
+      .required();
+  parser.add_option("--srdf", o.srdf, "SRDF file instead of the one beside the URDF");
+  parser.add_option("--state", o.state,
+                    "Group state of the SRDF to stay near (home, else standing, else neutral)");
+  parser.add_option("--map", o.map, "OctoMap of what is around");
+  parser.add_option("--obstacles", o.obstacles, "Obstacle file (.xml); may go with --map");
+  parser.add_option("-o,--output", o.output, "Graph file to write (.g2o)");
+  parser.add_option("--seed", o.seed, "Of the restarts").show_default();
+  parser.add_option("--restarts", o.restarts, "Most restarts").not_negative().show_default();
+  parser.add_option("--deadline-ms", o.deadline_ms, "Time to find it in; 0: no limit")
+      .not_negative();
   parser
-      ->add_option("--torque-limits", o.torques,
-                   "enforce: torques keep to the URDF's efforts; report: only tell them")
-      ->check(CLI::IsMember({"enforce", "report"}))
-      ->capture_default_str();
-  parser->add_option("--threads", o.threads, "Most threads to use (this version uses one)")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  parser->add_flag("--json", o.json, "Print one JSON object");
+      .add_option("--torque-limits", o.torques,
+                  "enforce: torques keep to the URDF's efforts; report: only tell them")
+      .one_of({"enforce", "report"})
+      .show_default();
+  parser.add_option("--threads", o.threads, "Most threads to use (this version uses one)")
+      .positive()
+      .show_default();
+  parser.add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] { return posture(*options); }};
 }
 

@@ -5,6 +5,6 @@
 
 namespace locograph {
 
-Command add_posture(CLI::App& app);
+Command add_posture(OptionParser& app);
 
 }  // namespace locograph

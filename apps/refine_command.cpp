@@ -6,7 +6,6 @@
 #include <locograph/apps/statistics.h>
 #include <locograph/planners/online/refine.h>
 
-#include <CLI/Validators.hpp>
 #include <memory>
 #include <string>
 #include <vector>
@@ -119,25 +118,25 @@ ExitCode refine_plan(const CommandOptions& options) {
 
 }  // namespace
 
-Command add_refine(CLI::App& app) {
+Command add_refine(OptionParser& app) {
   const auto options = std::make_shared<CommandOptions>();
   CommandOptions& o = *options;
-  CLI::App* parser =
+  OptionParser parser =
       app.add_subcommand("refine", "Walk along a plan and re-optimise a moving horizon of it");
-  parser->add_option("PLAN", o.input, "Plan file (.g2o)")->required();
-  parser->add_option("-o,--output", o.output, "Refined plan to write (.g2o)")->required();
-  parser->add_option("--map", o.map, "OctoMap that is seen instead of the plan's own world");
-  parser->add_option("--obstacles", o.obstacles, "Obstacle file (.xml), also moving ones");
-  parser->add_option("--horizon", o.horizon, "Configurations that one cycle optimises")
-      ->capture_default_str();
-  parser->add_option("--deadline-ms", o.deadline_ms, "Time one cycle may take; 0: no limit")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  parser->add_option("--threads", o.threads, "Most threads to use (this version uses one)")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  add_plugin_option(*parser, o.plugins);
-  parser->add_flag("--json", o.json, "Print one JSON object");
+  parser.add_option("PLAN", o.input, "Plan file (.g2o)").required();
+  parser.add_option("-o,--output", o.output, "Refined plan to write (.g2o)").required();
+  parser.add_option("--map", o.map, "OctoMap that is seen instead of the plan's own world");
+  parser.add_option("--obstacles", o.obstacles, "Obstacle file (.xml), also moving ones");
+  parser.add_option("--horizon", o.horizon, "Configurations that one cycle optimises")
+      .show_default();
+  parser.add_option("--deadline-ms", o.deadline_ms, "Time one cycle may take; 0: no limit")
+      .not_negative()
+      .show_default();
+  parser.add_option("--threads", o.threads, "Most threads to use (this version uses one)")
+      .positive()
+      .show_default();
+  add_plugin_option(parser, o.plugins);
+  parser.add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] { return refine_plan(*options); }};
 }
 

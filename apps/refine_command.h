@@ -5,6 +5,6 @@
 
 namespace locograph {
 
-Command add_refine(CLI::App& app);
+Command add_refine(OptionParser& app);
 
 }  // namespace locograph

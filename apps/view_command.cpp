@@ -7,7 +7,6 @@
 #include <locograph/apps/view_command.h>
 #include <locograph/common/atomic_file.h>
 
-#include <CLI/Validators.hpp>
 #include <memory>
 #include <string>
 
@@ -103,41 +102,41 @@ ExitCode view(const CommandOptions& options) {
 
 }  // namespace
 
-Command add_view(CLI::App& app) {
+Command add_view(OptionParser& app) {
   const auto options = std::make_shared<CommandOptions>();
   CommandOptions& o = *options;
-  CLI::App* parser =
+  OptionParser parser =
       app.add_subcommand("view", "Show a plan, a pose graph or a robot in one self-contained page");
-  parser->add_option("FILE", o.input, "Plan or pose graph (.g2o), or robot (.urdf)")->required();
-  parser->add_option("-o,--output", o.output, "Page to write (.html); opens without a network");
-  parser->add_option("--map", o.scene.map, "OctoMap to show instead of the plan's own world");
-  parser->add_option("--obstacles", o.scene.obstacles, "Obstacle file (.xml); may go with --map");
-  parser->add_option("--png", o.png, "Picture to write, taken by headless Chromium");
-  parser->add_option("--at", o.at_s, "Time of the picture [s]")->capture_default_str();
+  parser.add_option("FILE", o.input, "Plan or pose graph (.g2o), or robot (.urdf)").required();
+  parser.add_option("-o,--output", o.output, "Page to write (.html); opens without a network");
+  parser.add_option("--map", o.scene.map, "OctoMap to show instead of the plan's own world");
+  parser.add_option("--obstacles", o.scene.obstacles, "Obstacle file (.xml); may go with --map");
+  parser.add_option("--png", o.png, "Picture to write, taken by headless Chromium");
+  parser.add_option("--at", o.at_s, "Time of the picture [s]").show_default();
   parser
-      ->add_option("--serve", o.port,
-                   "Serve the page on 127.0.0.1:PORT and refine the plan live (0: any port)")
-      ->check(CLI::Range(0, 65535));
-  parser->add_option("--speed", o.speed, "Of the live plan, in times of its own pace")
-      ->check(CLI::Range(1e-3, 1e3))
-      ->capture_default_str();
+      .add_option("--serve", o.port,
+                  "Serve the page on 127.0.0.1:PORT and refine the plan live (0: any port)")
+      .between(0, 65535);
+  parser.add_option("--speed", o.speed, "Of the live plan, in times of its own pace")
+      .between(1e-3, 1e3)
+      .show_default();
   parser
-      ->add_option("--executed", o.scene.executed,
-                   "Show the plan as when the robot is at this configuration")
-      ->check(CLI::NonNegativeNumber);
-  parser->add_option("--horizon", o.scene.window, "Configurations that one cycle refines")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  parser->add_flag("--no-check", o.no_check, "Do not judge the plan");
-  parser->add_flag("--optimize", o.scene.optimize, "Pose graphs: show before and after");
-  add_plugin_option(*parser, o.scene.plugins);
-  parser->add_flag("--lenient", o.scene.lenient,
-                   "Leave out unknown tags, project indefinite information");
-  parser->add_option("--srdf", o.scene.srdf, "Robots: the SRDF, if not beside the URDF");
-  parser->add_option("--state", o.scene.state, "Robots: group_state to stand in");
-  parser->add_flag("--capsules", o.scene.capsules,
-                   "Robots: draw the capsules that self-collision edges see");
-  parser->add_flag("--json", o.json, "Print one JSON object");
+      .add_option("--executed", o.scene.executed,
+                  "Show the plan as when the robot is at this configuration")
+      .not_negative();
+  parser.add_option("--horizon", o.scene.window, "Configurations that one cycle refines")
+      .positive()
+      .show_default();
+  parser.add_flag("--no-check", o.no_check, "Do not judge the plan");
+  parser.add_flag("--optimize", o.scene.optimize, "Pose graphs: show before and after");
+  add_plugin_option(parser, o.scene.plugins);
+  parser.add_flag("--lenient", o.scene.lenient,
+                  "Leave out unknown tags, project indefinite information");
+  parser.add_option("--srdf", o.scene.srdf, "Robots: the SRDF, if not beside the URDF");
+  parser.add_option("--state", o.scene.state, "Robots: group_state to stand in");
+  parser.add_flag("--capsules", o.scene.capsules,
+                  "Robots: draw the capsules that self-collision edges see");
+  parser.add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] {
             options->scene.check = !options->no_check;
             return view(*options);

@@ -5,6 +5,6 @@
 
 namespace locograph {
 
-Command add_view(CLI::App& app);
+Command add_view(OptionParser& app);
 
 }  // namespace locograph

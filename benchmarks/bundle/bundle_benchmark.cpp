@@ -327,14 +327,14 @@ int main(int argc, char** argv) {
   BundleOptions generated;
   std::vector<std::filesystem::path> files;
   std::vector<std::string> skip;
-  CLI::App app("Bundle adjustment to convergence", "bundle_benchmark");
+  OptionParser app("Bundle adjustment to convergence", "bundle_benchmark");
   app.add_option("BAL", files, "Problems; default: one of the shared data and a generated one");
-  app.add_option("--cameras", generated.cameras, "Generated")->check(CLI::PositiveNumber);
-  app.add_option("--points", generated.points, "Generated")->check(CLI::PositiveNumber);
-  app.add_option("--seed", generated.seed, "Of what is generated")->check(CLI::PositiveNumber);
-  app.add_option("--runs", settings.runs, "Measurements of each")->check(CLI::PositiveNumber);
-  app.add_option("--threads", settings.threads, "Threads to use")->check(CLI::PositiveNumber);
-  app.add_option("--skip", skip, "A linear solver to leave out")->allow_extra_args(false);
+  app.add_option("--cameras", generated.cameras, "Generated").positive();
+  app.add_option("--points", generated.points, "Generated").positive();
+  app.add_option("--seed", generated.seed, "Of what is generated").positive();
+  app.add_option("--runs", settings.runs, "Measurements of each").positive();
+  app.add_option("--threads", settings.threads, "Threads to use").positive();
+  app.add_option("--skip", skip, "A linear solver to leave out").one_at_a_time();
   return run_benchmark(app, argc, argv, [&] {
     settings.skip = {skip.begin(), skip.end()};
     Json all = {{"unit", "s"}, {"threads", settings.threads}, {"runs", settings.runs}};

@@ -117,9 +117,9 @@ int main(int argc, char** argv) {
   std::vector<std::filesystem::path> files = {pose_graph_file("intel"),
                                               pose_graph_file("manhattan")};
   int every = 1;
-  CLI::App app("Pose graphs solved after every pose", "incremental_benchmark");
+  OptionParser app("Pose graphs solved after every pose", "incremental_benchmark");
   app.add_option("FILE", files, "Planar pose graphs (.g2o); default: intel and manhattan");
-  app.add_option("--every", every, "Poses between two solutions")->check(CLI::PositiveNumber);
+  app.add_option("--every", every, "Poses between two solutions").positive();
   return run_benchmark(app, argc, argv, [&] {
     std::printf("{\n");
     for (std::size_t i = 0; i < files.size(); ++i) {

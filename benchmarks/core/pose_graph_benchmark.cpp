@@ -304,10 +304,10 @@ int main(int argc, char** argv) {
   using namespace locograph;
   Options options;
   std::string guess, g2o, gtsam;
-  CLI::App app("Pose graphs to convergence", "pose_graph_benchmark");
+  OptionParser app("Pose graphs to convergence", "pose_graph_benchmark");
   app.add_option("FILE", options.files, "Pose graphs (.g2o); default: the shared data");
-  app.add_option("--runs", options.runs, "Measurements of each")->check(CLI::PositiveNumber);
-  app.add_option("--guess", guess, "What everybody starts from")->check(CLI::IsMember({"chordal"}));
+  app.add_option("--runs", options.runs, "Measurements of each").positive();
+  app.add_option("--guess", guess, "What everybody starts from").one_of({"chordal"});
   app.add_option("--g2o", g2o, "Program to compare with");
   app.add_option("--gtsam", gtsam, "Program to compare with");
   return run_benchmark(app, argc, argv, [&] {

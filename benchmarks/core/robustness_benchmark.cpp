@@ -213,12 +213,12 @@ int main(int argc, char** argv) {
        {"manhattan", "intel", "CSAIL", "sphere2500", "torus3D", "parking-garage"}) {
     files.push_back(pose_graph_file(name));
   }
-  CLI::App app("Pose graphs with false loop closures", "robustness_benchmark");
+  OptionParser app("Pose graphs with false loop closures", "robustness_benchmark");
   app.add_option("FILE", files, "Pose graphs (.g2o); default: six of the shared data");
   app.add_option("--fraction", fraction, "Of the loop closures that are false, in (0, 1)");
   app.add_option("--seed", seed, "Of the false ones");
   app.add_option("--method", methods, "Only these; a kernel of locograph optimize is one, too")
-      ->allow_extra_args(false);
+      .one_at_a_time();
   return run_benchmark(app, argc, argv, [&] {
     if (!(fraction > 0.0 && fraction < 1.0)) {
       throw Error("option --fraction", "a number in (0, 1)");

@@ -224,14 +224,14 @@ Json in_a_process(int size, const std::string& solver, const Options& options) {
 int main(int argc, char** argv) {
   using namespace locograph;
   Options options;
-  CLI::App app("Grid pose graphs by size", "scaling_benchmark");
-  app.add_option("POSES", options.sizes, "Sizes")->check(CLI::Range(4, 1 << 30));
+  OptionParser app("Grid pose graphs by size", "scaling_benchmark");
+  app.add_option("POSES", options.sizes, "Sizes").between(4, 1 << 30);
   app.add_flag("--spatial", options.spatial, "SE(3) instead of SE(2)");
-  app.add_option("--threads", options.threads, "Threads to use")->check(CLI::PositiveNumber);
+  app.add_option("--threads", options.threads, "Threads to use").positive();
   app.add_option("--ceres-up-to", options.ceres_up_to, "Largest size for Ceres");
   app.add_option("--solvers", options.solvers, "Linear solvers, separated by commas")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+      .separated_by(',')
+      .one_at_a_time();
   return run_benchmark(app, argc, argv, [&] {
     Json all = {{"unit", "s"}, {"kind", options.spatial ? "SE(3)" : "SE(2)"}};
     for (const int size : options.sizes) {

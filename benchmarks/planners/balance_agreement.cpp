@@ -117,9 +117,9 @@ Json measure(const BalanceRobot& robot, int cases, unsigned long long seed) {
 int main(int argc, char** argv) {
   unsigned long long seed = 1;
   int cases = 1000;
-  CLI::App app("Balance by a graph and by the certificate", "balance_agreement");
+  locograph::OptionParser app("Balance by a graph and by the certificate", "balance_agreement");
   app.add_option("--seed", seed, "Of the postures");
-  app.add_option("--cases", cases, "For each robot")->check(CLI::PositiveNumber);
+  app.add_option("--cases", cases, "For each robot").positive();
   return locograph::run_benchmark(app, argc, argv, [&] {
     locograph::Json robots = locograph::Json::array();
     for (const char* name : {"coman_plus", "centauro"}) {

@@ -192,8 +192,8 @@ void run(unsigned long long seed, int cases) {
 int main(int argc, char** argv) {
   unsigned long long seed = 1;
   int cases = 20;
-  CLI::App app("Boxes at random in a walled corridor", "box_campaign");
+  locograph::OptionParser app("Boxes at random in a walled corridor", "box_campaign");
   app.add_option("SEED", seed, "Of the boxes");
-  app.add_option("CASES", cases, "How many")->check(CLI::PositiveNumber);
+  app.add_option("CASES", cases, "How many").positive();
   return locograph::run_benchmark(app, argc, argv, [&] { locograph::run(seed, cases); });
 }

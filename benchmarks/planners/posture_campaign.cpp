@@ -100,18 +100,18 @@ Json campaign(const std::string& name, int wanted, std::uint64_t seed, PostureOp
 }  // namespace locograph
 
 int main(int argc, char** argv) {
-  CLI::App app("Postures on random contacts", "posture_campaign");
+  locograph::OptionParser app("Postures on random contacts", "posture_campaign");
   std::vector<std::string> robots = {"centauro", "coman_plus", "go2", "anymal"};
   int sets = 200;
   std::uint64_t seed = 1;
   std::string torques = "enforce";
   locograph::PostureOptions options;
-  app.add_option("--robot", robots)->check(CLI::IsMember(robots));
-  app.add_option("--sets", sets)->check(CLI::PositiveNumber);
+  app.add_option("--robot", robots).one_of(robots);
+  app.add_option("--sets", sets).positive();
   app.add_option("--seed", seed);
-  app.add_option("--torque-limits", torques)->check(CLI::IsMember({"enforce", "report"}));
-  app.add_option("--restarts", options.max_restarts)->check(CLI::NonNegativeNumber);
-  app.add_option("--patience", options.patience)->check(CLI::PositiveNumber);
+  app.add_option("--torque-limits", torques).one_of({"enforce", "report"});
+  app.add_option("--restarts", options.max_restarts).not_negative();
+  app.add_option("--patience", options.patience).positive();
   return locograph::run_benchmark(app, argc, argv, [&] {
     options.enforce_torque_limits = options.check.enforce_torque_limits = torques == "enforce";
     locograph::Json all = locograph::Json::array();

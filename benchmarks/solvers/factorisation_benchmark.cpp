@@ -111,9 +111,9 @@ int main(int argc, char** argv) {
   int runs = 15;
   bool peers = true;
   std::vector<std::filesystem::path> files = pose_graph_files();
-  CLI::App app("Factorisations of pose graphs", "factorisation_benchmark");
+  OptionParser app("Factorisations of pose graphs", "factorisation_benchmark");
   app.add_option("FILE", files, "Pose graphs (.g2o); default: the shared data");
-  app.add_option("--runs", runs, "Measurements of each")->check(CLI::PositiveNumber);
+  app.add_option("--runs", runs, "Measurements of each").positive();
   app.add_option("--peers", peers, "Measure CHOLMOD and Eigen as well");
   return run_benchmark(app, argc, argv, [&] {
     if (files.empty()) throw Error("no graph files", "FILE.g2o arguments");

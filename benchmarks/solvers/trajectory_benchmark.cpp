@@ -93,8 +93,8 @@ Json compare(int vertices, int dimension, int band, int runs) {
 int main(int argc, char** argv) {
   using namespace locograph;
   int runs = 501;
-  CLI::App app("Factorisations of trajectories", "trajectory_benchmark");
-  app.add_option("--runs", runs, "Measurements of each")->check(CLI::PositiveNumber);
+  OptionParser app("Factorisations of trajectories", "trajectory_benchmark");
+  app.add_option("--runs", runs, "Measurements of each").positive();
   return run_benchmark(app, argc, argv, [&] {
     Json all = {{"unit", "ms"}, {"runs", runs}};
     all["trajectories"] = Json::array();

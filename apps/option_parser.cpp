@@ -1,0 +1,88 @@
+#include <locograph/apps/option_parser.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+namespace locograph {
+
+ParserOption& ParserOption::required() { return option_->required(), *this; }
+ParserOption& ParserOption::positive() { return option_->check(CLI::PositiveNumber), *this; }
+ParserOption& ParserOption::not_negative() { return option_->check(CLI::NonNegativeNumber), *this; }
+ParserOption& ParserOption::show_default() { return option_->capture_default_str(), *this; }
+ParserOption& ParserOption::one_at_a_time() { return option_->allow_extra_args(false), *this; }
+
+ParserOption& ParserOption::between(int least, int most) {
+  return option_->check(CLI::Range(least, most)), *this;
+}
+
+ParserOption& ParserOption::between(double least, double most) {
+  return option_->check(CLI::Range(least, most)), *this;
+}
+
+ParserOption& ParserOption::one_of(const std::vector<std::string>& values) {
+  return option_->check(CLI::IsMember(values)), *this;
+}
+
+ParserOption& ParserOption::separated_by(char delimiter) {
+  return option_->delimiter(delimiter), *this;
+}
+
+ParserOption& ParserOption::value_name(const std::string& name) {
+  return option_->type_name(name), *this;
+}
+
+OptionParser::OptionParser(const std::string& description, const std::string& name)
+    : app_(std::make_shared<CLI::App>(description, name)) {}
+
+template <class Value>
+ParserOption OptionParser::add_option(const std::string& names, Value& value,
+                                      const std::string& help) {
+  return ParserOption(*app_->add_option(names, value, help));
+}
+
+#define LOCOGRAPH_OPTION(VALUE) \
+  template ParserOption OptionParser::add_option(const std::string&, VALUE&, const std::string&);
+LOCOGRAPH_OPTION(int)
+LOCOGRAPH_OPTION(long)
+LOCOGRAPH_OPTION(unsigned)
+LOCOGRAPH_OPTION(unsigned long)
+LOCOGRAPH_OPTION(unsigned long long)
+LOCOGRAPH_OPTION(double)
+LOCOGRAPH_OPTION(std::string)
+LOCOGRAPH_OPTION(std::filesystem::path)
+LOCOGRAPH_OPTION(std::vector<int>)
+LOCOGRAPH_OPTION(std::vector<std::string>)
+LOCOGRAPH_OPTION(std::vector<std::filesystem::path>)
+
+ParserOption OptionParser::add_flag(const std::string& names, bool& value,
+                                    const std::string& help) {
+  return ParserOption(*app_->add_flag(names, value, help));
+}
+
+void OptionParser::add_version(const std::string& text) {
+  app_->set_version_flag("--version", text);
+}
+
+OptionParser OptionParser::add_subcommand(const std::string& name, const std::string& description) {
+  app_->require_subcommand(1);
+  return OptionParser(std::shared_ptr<CLI::App>(app_, app_->add_subcommand(name, description)));
+}
+
+bool OptionParser::parse(int argc, const char* const* argv) {
+  try {
+    app_->parse(argc, argv);
+  } catch (const CLI::Success& help_or_version) {
+    return app_->exit(help_or_version), false;
+  } catch (const CLI::ParseError& usage) {
+    const std::vector<CLI::App*> chosen = app_->get_subcommands();
+    throw UsageError(std::string(usage.what()) + " (see: " + name() + ' ' +
+                     (chosen.empty() ? "" : chosen.front()->get_name() + ' ') + "--help)");
+  }
+  return true;
+}
+
+bool OptionParser::chosen() const { return app_->parsed(); }
+
+std::string OptionParser::name() const { return app_->get_name(); }
+
+}  // namespace locograph
