@@ -107,17 +107,11 @@ Json capsule_scene(const Robot& robot) {
   for (Json& link : scene["links"]) link["visual"] = link["collision"] = Json::array();
   for (const CollisionCapsule& c :
        covering_capsules(robot, {.max_overshoot_m = kSelfOvershoot_m})) {
-    const Eigen::Vector3d along = c.capsule.to - c.capsule.from;
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.translation() = 0.5 * (c.capsule.from + c.capsule.to);
-    if (along.norm() > 0.0) {
-      pose.linear() =
-          Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), along).toRotationMatrix();
-    }
-    scene["links"][c.link]["collision"].push_back(Json{{"type", type_name(ShapeType::kCapsule)},
-                                                       {"pose", pose_json(pose)},
-                                                       {"length", along.norm()},
-                                                       {"radius", c.capsule.radius}});
+    scene["links"][c.link]["collision"].push_back(
+        Json{{"type", type_name(ShapeType::kCapsule)},
+             {"pose", pose_json(pose_between(c.capsule.from, c.capsule.to))},
+             {"length", (c.capsule.to - c.capsule.from).norm()},
+             {"radius", c.capsule.radius}});
   }
   return scene;
 }

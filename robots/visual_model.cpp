@@ -135,10 +135,7 @@ void add_bones(const Robot& robot, int link, std::vector<VisualShape>& shapes) {
     if (end.norm() < kBoneRadius_m) continue;
     bone.type = ShapeType::kCapsule;
     bone.length = end.norm();
-    bone.link_from_shape = Eigen::Isometry3d::Identity();
-    bone.link_from_shape.translation() = 0.5 * end;
-    bone.link_from_shape.linear() =
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), end).toRotationMatrix();
+    bone.link_from_shape = pose_between(Eigen::Vector3d::Zero(), end);
     shapes.push_back(bone);
   }
   if (shapes.size() > before) return;
@@ -253,6 +250,21 @@ double lowest_point(const Robot& robot, const Eigen::VectorXd& q) {
     lowest = std::min(lowest, state.world_from_link(static_cast<int>(link)).translation().z());
   }
   return lowest;
+}
+
+Eigen::Isometry3d pose_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = 0.5 * (from + to);
+  const double length = (to - from).norm();
+  if (length == 0.0) return pose;
+  const Eigen::Vector3d z = (to - from) / length;
+  // The shortest turn of e_z onto z is the quaternion (1 + e_z·z, e_z × z), normalised; upside down
+  // every half turn is as short.
+  const Eigen::Quaterniond turn = z.z() > -1.0 + 1e-12
+                                      ? Eigen::Quaterniond(1.0 + z.z(), -z.y(), z.x(), 0.0)
+                                      : Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0);
+  pose.linear() = turn.normalized().toRotationMatrix();
+  return pose;
 }
 
 }  // namespace locograph

@@ -57,4 +57,7 @@ double lowest_point(const Robot& robot, const Eigen::VectorXd& q);
 /// A collision shape as it would be drawn.
 VisualShape as_visual(const CollisionShape& shape, const Eigen::Vector4d& color);
 
+/// Pose of a capsule or cylinder whose axis goes from one point to another.
+Eigen::Isometry3d pose_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
 }  // namespace locograph

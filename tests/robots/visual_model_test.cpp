@@ -132,6 +132,21 @@ TEST(VisualModel, LowestPointsOfPrimitivesAreExact) {
   EXPECT_NEAR(lowest_point(shape, tilted), -0.5 * std::sin(M_PI / 6) - std::cos(M_PI / 6), 1e-12);
 }
 
+TEST(VisualModel, PoseBetweenPutsTheAxisOnBothEnds) {
+  const Eigen::Vector3d from(0.3, -0.2, 0.5);
+  for (const Eigen::Vector3d& along :
+       {Eigen::Vector3d(0.0, 0.0, 2.0), Eigen::Vector3d(0.0, 0.0, -2.0),
+        Eigen::Vector3d(0.01, 0.0, -2.0), Eigen::Vector3d(1.0, -2.0, 0.5),
+        Eigen::Vector3d(-3.0, 0.1, -0.7)}) {
+    const Eigen::Isometry3d pose = pose_between(from, from + along);
+    const Eigen::Vector3d half = 0.5 * along.norm() * Eigen::Vector3d::UnitZ();
+    EXPECT_LT((pose * half - from - along).norm(), 1e-12) << along.transpose();
+    EXPECT_LT((pose * -half - from).norm(), 1e-12) << along.transpose();
+    EXPECT_NEAR(pose.linear().determinant(), 1.0, 1e-12) << along.transpose();
+  }
+  EXPECT_TRUE(pose_between(from, from).linear().isIdentity());
+}
+
 TEST(VisualModel, CentauroIsCompleteAndStandsOnItsWheels) {
   const Robot robot = Robot::load(model("centauro/centauro.urdf"), model("centauro/centauro.srdf"));
   const std::vector<VisualShape> shapes = load_visuals(robot);
