@@ -7,6 +7,7 @@
 
 #include <cstring>
 #include <limits>
+#include <random>
 
 #include "common/allocation_counter.h"
 #include "solvers/random_system.h"
@@ -28,7 +29,7 @@ std::vector<RandomSystem> systems() {
 
 TEST(PcgSolver, IsAsExactAsAsked) {
   for (const RandomSystem& a : systems()) {
-    const Eigen::VectorXd expected = a.expected();
+    const Eigen::VectorXd& expected = a.expected();
     double last_error = 1.0;
     for (const double tolerance : {1e-3, 1e-8, 1e-14}) {
       PcgOptions options;

@@ -7,6 +7,7 @@
 #include <locograph/types/bundle/camera_bal.h>
 
 #include <cstring>
+#include <random>
 
 #include "common/allocation_counter.h"
 #include "solvers/expect_solution.h"
