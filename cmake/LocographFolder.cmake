@@ -48,8 +48,8 @@ function(locograph_folder name)
 endfunction()
 
 # locograph_test(NAME SOURCES... LINK targets... [PRECOMPILE headers...] [SHARDS n]): one GoogleTest
-# program. Name the headers that most of its files need, so that their templates are instantiated
-# once. For ctest it is one test, a long one n of them, not one for each case: a process for each of
+# program. Of a large one name the headers that most of its files need; the others share what
+# gtest_instances has precompiled. For ctest it is one test, a long one n of them, not one for each case: a process for each of
 # thousands of cases takes longer than the cases.
 function(locograph_test name)
   cmake_parse_arguments(arg "" "SHARDS" "SOURCES;LINK;PRECOMPILE" ${ARGN})
@@ -59,8 +59,12 @@ function(locograph_test name)
   target_compile_definitions(${name} PRIVATE
     LOCOGRAPH_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data"
     LOCOGRAPH_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  target_precompile_headers(${name} PRIVATE <common/gtest_instances.h> ${locograph_precompiled}
-    ${arg_PRECOMPILE})
+  if(arg_PRECOMPILE)
+    target_precompile_headers(${name} PRIVATE <common/gtest_instances.h> ${locograph_precompiled}
+      ${arg_PRECOMPILE})
+  else()
+    target_precompile_headers(${name} REUSE_FROM gtest_instances)
+  endif()
   set_target_properties(${name} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests/bin)
   if(NOT arg_SHARDS)
@@ -78,7 +82,8 @@ function(locograph_test name)
   endforeach()
 endfunction()
 
-# locograph_benchmark(NAME SOURCES... LINK targets...): one Google Benchmark program.
+# locograph_benchmark(NAME SOURCES... LINK targets...): one Google Benchmark program. The first one
+# precompiles headers for all.
 function(locograph_benchmark name)
   cmake_parse_arguments(arg "" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
@@ -87,6 +92,17 @@ function(locograph_benchmark name)
     LOCOGRAPH_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data"
     LOCOGRAPH_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/benchmarks)
+  get_property(first GLOBAL PROPERTY locograph_first_benchmark)
+  if(first)
+    target_precompile_headers(${name} REUSE_FROM ${first})
+  else()
+    set(headers ${locograph_precompiled} <iostream> <random> <locograph/core/graph.h>)
+    if(nlohmann_json_FOUND)
+      list(APPEND headers <nlohmann/json.hpp>)
+    endif()
+    target_precompile_headers(${name} PRIVATE ${headers})
+    set_property(GLOBAL PROPERTY locograph_first_benchmark ${name})
+  endif()
   set_target_properties(${name} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/benchmarks/bin)
 endfunction()

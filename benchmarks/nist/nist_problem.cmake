@@ -2,5 +2,4 @@
 if(NOT TARGET nist_problem)
   add_library(nist_problem STATIC ${CMAKE_CURRENT_LIST_DIR}/nist_problem.cpp)
   target_link_libraries(nist_problem PUBLIC locograph::solvers PRIVATE locograph_private_options)
-  target_precompile_headers(nist_problem PRIVATE ${locograph_precompiled})
 endif()
