@@ -42,6 +42,7 @@ ParserOption OptionParser::add_option(const std::string& names, Value& value,
 
 #define LOCOGRAPH_OPTION(VALUE) \
   template ParserOption OptionParser::add_option(const std::string&, VALUE&, const std::string&);
+LOCOGRAPH_OPTION(bool)
 LOCOGRAPH_OPTION(int)
 LOCOGRAPH_OPTION(long)
 LOCOGRAPH_OPTION(unsigned)

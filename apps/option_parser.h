@@ -56,7 +56,7 @@ class OptionParser {
  public:
   OptionParser(const std::string& description, const std::string& name);
 
-  /// names: "NAME" for a positional argument, "-o,--output" for an option. Value: a signed or
+  /// names: "NAME" for a positional argument, "-o,--output" for an option. Value: bool, a signed or
   /// unsigned integer, double, std::string, std::filesystem::path, or a list of int, std::string or
   /// std::filesystem::path.
   template <class Value>

@@ -1,6 +1,7 @@
 # One library target per folder of the house, all built alike.
 
-# What nearly every source includes, read once for each target.
+# What nearly every source includes: read once for all folders, and once more for each that names
+# headers of its own.
 set(locograph_precompiled <Eigen/Dense> <locograph/common/eigen_instances.h>
     <algorithm> <filesystem> <memory> <span> <string> <vector>)
 
@@ -22,7 +23,11 @@ function(locograph_folder name)
     set(scope PUBLIC)
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:locograph_private_options>)
-    target_precompile_headers(${target} PRIVATE ${locograph_precompiled} ${arg_PRECOMPILE})
+    if(arg_PRECOMPILE OR name STREQUAL "common")
+      target_precompile_headers(${target} PRIVATE ${locograph_precompiled} ${arg_PRECOMPILE})
+    else()
+      target_precompile_headers(${target} REUSE_FROM locograph_common)
+    endif()
     if(arg_PRIVATE)
       target_link_libraries(${target} PRIVATE ${arg_PRIVATE})
     endif()
@@ -49,8 +54,8 @@ endfunction()
 
 # locograph_test(NAME SOURCES... LINK targets... [PRECOMPILE headers...] [SHARDS n]): one GoogleTest
 # program. Of a large one name the headers that most of its files need; the others share what
-# gtest_instances has precompiled. For ctest it is one test, a long one n of them, not one for each case: a process for each of
-# thousands of cases takes longer than the cases.
+# gtest_instances has precompiled. For ctest it is one test, a long one n of them, not one for each
+# case: a process for each of thousands of cases takes longer than the cases.
 function(locograph_test name)
   cmake_parse_arguments(arg "" "SHARDS" "SOURCES;LINK;PRECOMPILE" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
@@ -82,8 +87,7 @@ function(locograph_test name)
   endforeach()
 endfunction()
 
-# locograph_benchmark(NAME SOURCES... LINK targets...): one Google Benchmark program. The first one
-# precompiles headers for all.
+# locograph_benchmark(NAME SOURCES... LINK targets...): one Google Benchmark program.
 function(locograph_benchmark name)
   cmake_parse_arguments(arg "" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
@@ -92,16 +96,8 @@ function(locograph_benchmark name)
     LOCOGRAPH_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data"
     LOCOGRAPH_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/benchmarks)
-  get_property(first GLOBAL PROPERTY locograph_first_benchmark)
-  if(first)
-    target_precompile_headers(${name} REUSE_FROM ${first})
-  else()
-    set(headers ${locograph_precompiled} <iostream> <random> <locograph/core/graph.h>)
-    if(nlohmann_json_FOUND)
-      list(APPEND headers <nlohmann/json.hpp>)
-    endif()
-    target_precompile_headers(${name} PRIVATE ${headers})
-    set_property(GLOBAL PROPERTY locograph_first_benchmark ${name})
+  if(TARGET option_parser)
+    target_precompile_headers(${name} REUSE_FROM option_parser)
   endif()
   set_target_properties(${name} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/benchmarks/bin)

@@ -32,15 +32,15 @@ bool is_positive_semidefinite(const Eigen::Ref<const Eigen::MatrixXd>& informati
     }
     if (positive) return true;
   }
-  const Eigen::VectorXd eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(information, Eigen::EigenvaluesOnly)
-          .eigenvalues();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(information),
+                                                              Eigen::EigenvaluesOnly);
+  const Eigen::VectorXd& eigenvalues = solver.eigenvalues();
   return eigenvalues.minCoeff() >= -kInformationTolerance * eigenvalues.cwiseAbs().maxCoeff();
 }
 
 Eigen::MatrixXd nearest_positive_semidefinite(
     const Eigen::Ref<const Eigen::MatrixXd>& information) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver{Eigen::MatrixXd(information)};
   const Eigen::VectorXd clipped = solver.eigenvalues().cwiseMax(0.0);
   const Eigen::MatrixXd projected =
       solver.eigenvectors() * clipped.asDiagonal() * solver.eigenvectors().transpose();

@@ -17,8 +17,8 @@ Eigen::MatrixXd generalised_inverse(const Eigen::MatrixXd& a) {
   for (Eigen::Index i = 0; i < a.rows(); ++i) {
     scale[i] = a(i, i) > 0.0 ? 1.0 / std::sqrt(a(i, i)) : 1.0;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * a *
-                                                             scale.asDiagonal());
+  const Eigen::MatrixXd unit = scale.asDiagonal() * a * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(unit);
   Eigen::VectorXd inverse = eigen.eigenvalues();
   for (double& value : inverse) value = value > 1e-11 ? 1.0 / value : 0.0;
   const Eigen::MatrixXd scaled = scale.asDiagonal() * eigen.eigenvectors();

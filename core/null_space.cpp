@@ -288,7 +288,8 @@ void NullSpace::keep_free(const Group& group) {
   const Eigen::MatrixXd half = r.triangularView<Eigen::Upper>().transpose().solve(group.energy);
   const Eigen::MatrixXd energy =
       r.triangularView<Eigen::Upper>().transpose().solve(half.transpose());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (energy + energy.transpose()));
+  const Eigen::MatrixXd symmetric = 0.5 * (energy + energy.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(symmetric);
   const Eigen::Index free = (eigen.eigenvalues().array() <= kFreeEnergy).count();
   if (free == 0) return;
   Part part;

@@ -304,6 +304,11 @@ class Relaxation {
     return true;
   }
 
+  /// Where the measured point of pose a stands.
+  Vector<N> lever_end(const Anchor<N>& anchor) const {
+    return translation_[anchor.a] + rotation_[anchor.a] * anchor.lever;
+  }
+
   /// Moves each part that only its first vertex held onto the positions measured in it.
   void align_to_positions() {
     for (const int first : held_) {
@@ -313,17 +318,23 @@ class Relaxation {
         if (parts_.first(a.a) == first && a.translation_weight.trace() > 0.0) own.push_back(&a);
       }
       if (own.size() < N) continue;
-      Eigen::Matrix<double, N, Eigen::Dynamic> from(N, own.size()), to(N, own.size());
-      for (std::size_t i = 0; i < own.size(); ++i) {
-        from.col(i) = translation_[own[i]->a] + rotation_[own[i]->a] * own[i]->lever;
-        to.col(i) = own[i]->position;
+      // Umeyama 1991, eq. 39 to 41, without scale.
+      const double share = 1.0 / static_cast<double>(own.size());
+      Vector<N> from = Vector<N>::Zero(), to = Vector<N>::Zero();
+      for (const Anchor<N>* a : own) {
+        from += share * lever_end(*a);
+        to += share * a->position;
       }
-      const Eigen::Matrix<double, N + 1, N + 1> motion = Eigen::umeyama(from, to, false);
-      const Matrix<N> turn = motion.template topLeftCorner<N, N>();
+      Matrix<N> moments = Matrix<N>::Zero();
+      for (const Anchor<N>* a : own) {
+        moments += (a->position - to) * (lever_end(*a) - from).transpose();
+      }
+      const Matrix<N> turn = nearest_rotation(moments);
+      const Vector<N> move = to - turn * from;
       for (int v = first; v < graph_.vertex_slots(); ++v) {
         if (parts_.first(v) != first) continue;
         rotation_[v] = turn * rotation_[v];
-        translation_[v] = turn * translation_[v] + motion.template topRightCorner<N, 1>();
+        translation_[v] = turn * translation_[v] + move;
       }
     }
   }

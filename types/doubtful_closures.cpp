@@ -6,7 +6,6 @@
 #include <locograph/types/slam3d/edges.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -221,8 +220,10 @@ class Cycles {
   }
 
   bool tells(const Covariance& covariance) const {
-    const double half_axes =
-        std::sqrt(std::max(covariance.determinant(), 0.0) * std::pow(passes_below_, S::kDimension));
+    const Eigen::LLT<Covariance> factor(covariance);
+    const double root_of_determinant =
+        factor.info() == Eigen::Success ? factor.matrixLLT().diagonal().prod() : 0.0;
+    const double half_axes = root_of_determinant * std::pow(passes_below_, 0.5 * S::kDimension);
     return S::kUnitBall * half_axes <= options_.accident_probability * volume_;
   }
 

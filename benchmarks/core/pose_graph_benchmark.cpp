@@ -117,7 +117,7 @@ Run run_locograph(const Graph& start, int threads, std::string* solver_name) {
 /// A matrix S with SᵀS = Ω; Ω may be semi-definite.
 template <int N>
 Eigen::Matrix<double, N, N> square_root(const Eigen::Matrix<double, N, N>& information) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> solver(information);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
   return solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
          solver.eigenvectors().transpose();
 }

@@ -19,7 +19,8 @@ struct DenseInverse {
     workspace.load_state();
     workspace.evaluate(workspace.state());
     workspace.linearise();
-    inverse = dense_hessian(workspace).inverse();
+    const Eigen::MatrixXd hessian = dense_hessian(workspace);
+    inverse = hessian.ldlt().solve(Eigen::MatrixXd::Identity(hessian.rows(), hessian.cols()));
   }
   Eigen::MatrixXd block(int a, int b) const {
     int begin[2] = {}, size[2] = {};
