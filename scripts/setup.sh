@@ -51,7 +51,6 @@ $(listed_packages)"
 configure() {
   local folder=$root/$1 options=(-DCMAKE_BUILD_TYPE=Release)
   shift
-  command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   mkdir -p "$folder"
   cmake -S "$root" -B "$folder" -G Ninja "${options[@]}" "$@" >"$folder/configure.log" 2>&1 ||
     {
