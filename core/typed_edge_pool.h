@@ -232,6 +232,7 @@ class TypedEdgePool final : public EdgePool {
                                               double chi2) {
     return rows == nullptr ? edge.kernel.weights(chi2) : RobustKernel::Weights{chi2, 1.0};
   }
+
   template <class F>
   static void with_slot_type(int slot, F&& f) {
     if constexpr (E::kDynamicArity) {
