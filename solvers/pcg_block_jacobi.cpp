@@ -7,8 +7,6 @@
 namespace locograph {
 namespace {
 
-constexpr int kTasks = 64;
-
 template <int N>
 void multiply(const double* __restrict a, [[maybe_unused]] int size, const double* __restrict x,
               double* __restrict y) {
@@ -31,13 +29,10 @@ void BlockJacobi::analyse(const BlockPattern& pattern) {
     widest_ = std::max(widest_, d);
   }
   blocks_.resize(place_.back());
-  const int tasks = std::max(1, std::min(kTasks, n / 16));
-  task_begin_.clear();
-  for (int t = 0; t <= tasks; ++t) {
-    task_begin_.push_back(static_cast<int>(std::int64_t{n} * t / tasks));
-  }
+  task_begin_ = task_beginnings(n);
+  const std::size_t tasks = task_begin_.size() - 1;
   failed_.resize(tasks);
-  work_.resize(static_cast<std::size_t>(tasks) * widest_ * widest_);
+  work_.resize(tasks * widest_ * widest_);
 }
 
 void BlockJacobi::load(const double* values, const double* damping) {

@@ -6,8 +6,6 @@
 namespace locograph {
 namespace {
 
-constexpr int kTasks = 64;
-
 /// N × N blocks, N = 0: of any size.
 template <int N>
 struct Kernels {
@@ -68,11 +66,7 @@ void BlockProduct::analyse(const BlockPattern& pattern) {
       if (pattern.row[k] != c) row_blocks_[next[pattern.row[k]]++] = {k, c};
     }
   }
-  const int tasks = std::max(1, std::min(kTasks, n / 16));
-  task_begin_.clear();
-  for (int t = 0; t <= tasks; ++t) {
-    task_begin_.push_back(static_cast<int>(std::int64_t{n} * t / tasks));
-  }
+  task_begin_ = task_beginnings(n);
 }
 
 /// What column c gives its own row: the blocks above the diagonal, transposed, and the diagonal.

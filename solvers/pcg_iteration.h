@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace locograph {
@@ -31,6 +32,16 @@ void run_chunks(ThreadPool* threads, int count, Task&& task) {
   } else {
     for (int i = 0; i < count; ++i) task(i);
   }
+}
+
+/// Where tasks over n rows begin, and n: 64 of them, fewer where each would get less than 16 rows.
+inline std::vector<int> task_beginnings(int n) {
+  const int tasks = std::clamp(n / 16, 1, 64);
+  std::vector<int> begin;
+  for (int t = 0; t <= tasks; ++t) {
+    begin.push_back(static_cast<int>(std::int64_t{n} * t / tasks));
+  }
+  return begin;
 }
 
 class PcgIteration {
