@@ -93,13 +93,19 @@ TEST_P(EveryEdgeType, HasTheCostAndGradientThatCeresComputes) {
 /// A minimum where the cost is smooth, told by the cosine between errors and each column of their
 /// Jacobian: measurements that contradict each other wildly can also leave the optimiser at a jump
 /// of the cost, where a rotation error passes half a turn. Nor may it lie in a valley so flat that
-/// the step to its bottom still lowers the cost: neither optimiser gets there in time.
+/// the step to its bottom still lowers the cost: neither optimiser gets there in time. Nor at
+/// infinity, where a camera that sees a point through contradicting images may go: the cost falls
+/// with every step, and where to stop is a matter of rounding.
 bool is_smooth_minimum(Graph& graph) {
   Problem problem;
   problem.compile(graph);
   Workspace workspace;
   workspace.allocate(problem);
   workspace.load_state();
+  constexpr double kFar = 1e4;  // measurements are of the size of one
+  for (const double value : workspace.state()) {
+    if (std::abs(value) > kFar) return false;
+  }
   const double chi2 = workspace.evaluate(workspace.state()).chi2;
   workspace.linearise();
   std::vector<double> diagonal(problem.dimension());
