@@ -11,7 +11,7 @@
 namespace locograph {
 namespace {
 
-const char kBox[] =
+const char kBoxOnThePath[] =
     "<obstacles version=\"1\">\n"
     "  <box name=\"box\" center=\"2 0 0.25\" size=\"0.5 0.5 0.5\"/>\n"
     "</obstacles>\n";
@@ -78,7 +78,7 @@ TEST(PlanCommands, APlanIsFeasibleUntilSomethingStandsInTheWay) {
   ASSERT_EQ(good.exit_code, 0) << good.err << good.out;
   EXPECT_EQ(good.json()["feasible"], true);
   EXPECT_EQ(good.json()["configurations"], 50);
-  runner.write("box.xml", kBox);
+  runner.write("box.xml", kBoxOnThePath);
   const Outcome bad = runner.run("check plan.g2o --obstacles box.xml --json");
   EXPECT_EQ(bad.exit_code, 1) << bad.err;
   EXPECT_EQ(bad.json()["feasible"], false);
@@ -175,7 +175,7 @@ TEST(PlanCommands, RefinePrintsOneJsonObjectWithEveryField) {
 
 TEST(PlanCommands, ARefinedPlanPassesTheBoxAndTakesItsWorldAlong) {
   const PlanRunner runner;
-  runner.write("box.xml", kBox);
+  runner.write("box.xml", kBoxOnThePath);
   runner.write_map("box.bt");
   for (const char* world : {"--obstacles box.xml", "--map box.bt"}) {
     SCOPED_TRACE(world);
@@ -214,7 +214,7 @@ TEST(PlanCommands, RefineSaysNoInFrontOfAWallAndWritesWhatIsFeasible) {
 
 TEST(PlanCommands, GiveTheSameBitsAgain) {
   const PlanRunner runner;
-  runner.write("box.xml", kBox);
+  runner.write("box.xml", kBoxOnThePath);
   ASSERT_EQ(runner.run("plan centauro_drive -o again.g2o").exit_code, 0);
   EXPECT_EQ(runner.read("again.g2o"), runner.read("plan.g2o"));
   ASSERT_EQ(runner.run("refine plan.g2o --obstacles box.xml -o a.g2o").exit_code, 0);

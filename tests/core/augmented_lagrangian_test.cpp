@@ -74,8 +74,6 @@ struct Sum : DynamicEdge<2, VertexXY> {
 };
 LOCOGRAPH_REGISTER_EDGE("TEST_SUM", Sum)
 
-using Reason = ConstrainedResult::Reason;
-
 struct OnePoint {
   Graph graph;
   VertexId<VertexXY> point;
@@ -201,7 +199,7 @@ TEST(AugmentedLagrangian, ReportsAnInfeasibleProblemAndItsWorstConstraint) {
   const EdgeId circle = problem.circle(1.0, ConstraintKind::kEquality);
   const ConstrainedResult result = problem.solve();
   EXPECT_FALSE(result.converged);
-  EXPECT_EQ(result.reason, Reason::kInfeasible);
+  EXPECT_EQ(result.reason, ConstrainedResult::Reason::kInfeasible);
   // min (x − 2)² + (x² − 1)² lies at 2x³ − x = 2, x = 1.1654.
   ASSERT_EQ(result.worst, 0);
   EXPECT_NEAR(result.constraints[0].violation, 0.8346, 1e-3);
@@ -337,7 +335,7 @@ TEST(AugmentedLagrangian, SaysWhyAnInnerRunFailed) {
   ConstrainedOptions options;
   options.inner.algorithm = Algorithm::kGaussNewton;
   const ConstrainedResult result = problem.solve(options);
-  EXPECT_EQ(result.reason, Reason::kInnerFailed);
+  EXPECT_EQ(result.reason, ConstrainedResult::Reason::kInnerFailed);
   EXPECT_NE(result.reason_text(problem.graph).find("singular"), std::string::npos);
 }
 

@@ -12,13 +12,11 @@
 namespace locograph::test {
 namespace {
 
-constexpr Derivatives kDual = Derivatives::kDual;
-
 TypeRegistry types_with_toys() {
   TypeRegistry types = standard_types();
   types.add_vertex<VertexJoints>();
-  types.add_edge<ToyMoments<kDual>>();
-  types.add_edge<ToyView<kDual>>();
+  types.add_edge<ToyMoments<Derivatives::kDual>>();
+  types.add_edge<ToyView<Derivatives::kDual>>();
   types.add_edge<ToySignal>();
   types.add_edge<ToyPosture>();
   return types;

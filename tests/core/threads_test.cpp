@@ -27,12 +27,12 @@ Graph large_helix() {
   return graph;
 }
 
-struct Numbers {
+struct NumbersOnThreads {
   std::vector<double> hessian, gradient;
   Cost evaluated, linearised;
 };
 
-Numbers numbers(Graph& graph, ThreadPool* threads) {
+NumbersOnThreads numbers(Graph& graph, ThreadPool* threads) {
   Problem problem;
   problem.compile(graph);
   EXPECT_GT(problem.chunks(), 1);
@@ -40,7 +40,7 @@ Numbers numbers(Graph& graph, ThreadPool* threads) {
   workspace.allocate(problem);
   workspace.use_threads(threads);
   workspace.load_state();
-  Numbers result;
+  NumbersOnThreads result;
   result.evaluated = workspace.evaluate(workspace.state());
   result.linearised = workspace.linearise();
   result.hessian.assign(workspace.hessian().begin(), workspace.hessian().end());
@@ -75,10 +75,10 @@ TEST(Chunks, SumUpToTheWholeSystem) {
 
 TEST(Chunks, GiveTheSameBitsOnAnyNumberOfThreads) {
   Graph graph = large_helix();
-  const Numbers alone = numbers(graph, nullptr);
+  const NumbersOnThreads alone = numbers(graph, nullptr);
   for (const int size : {1, 2, 3}) {
     ThreadPool threads(size);
-    const Numbers shared = numbers(graph, &threads);
+    const NumbersOnThreads shared = numbers(graph, &threads);
     EXPECT_TRUE(shared.hessian == alone.hessian) << size;
     EXPECT_TRUE(shared.gradient == alone.gradient) << size;
     EXPECT_EQ(shared.evaluated.chi2, alone.evaluated.chi2);

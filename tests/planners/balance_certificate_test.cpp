@@ -12,12 +12,14 @@
 #include <thread>
 
 #include "common/temporary_folder.h"
+#include "planners/coman_plus.h"
 
 namespace locograph {
 namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using test::coman_plus;
 
 constexpr double kGravity = 9.81;
 constexpr double kWeight = 10.0 * kGravity;  // of the block
@@ -318,13 +320,6 @@ struct RandomStance {
   VectorXd configuration;
   std::vector<ContactDescription> contacts;
 };
-
-const Robot& coman_plus() {
-  static const Robot robot =
-      Robot::load(LOCOGRAPH_SOURCE_DIR "/robots/models/coman_plus/coman_plus.urdf",
-                  LOCOGRAPH_SOURCE_DIR "/robots/models/coman_plus/coman_plus.srdf");
-  return robot;
-}
 
 RandomStance random_stance(std::mt19937& random) {
   const Robot& robot = coman_plus();

@@ -7,17 +7,11 @@
 
 #include <algorithm>
 
+#include "planners/coman_plus.h"
 #include "robots/coman_plus_postures.h"
 
 namespace locograph::test {
 namespace {
-
-const Robot& coman_plus() {
-  static const Robot robot =
-      Robot::load(LOCOGRAPH_SOURCE_DIR "/robots/models/coman_plus/coman_plus.urdf",
-                  LOCOGRAPH_SOURCE_DIR "/robots/models/coman_plus/coman_plus.srdf");
-  return robot;
-}
 
 ComanPosture posture_of(const std::string& name) {
   for (const ComanPosture& posture : coman_postures()) {

@@ -12,7 +12,7 @@
 namespace locograph::test {
 namespace {
 
-std::shared_ptr<const RobotParameter> coman_plus() {
+std::shared_ptr<const RobotParameter> coman_plus_parameter() {
   static const auto robot = std::make_shared<const RobotParameter>(
       LOCOGRAPH_SOURCE_DIR "/robots/models/coman_plus/coman_plus.urdf",
       LOCOGRAPH_SOURCE_DIR "/robots/models/coman_plus/coman_plus.srdf", RobotOptions{});
@@ -22,7 +22,7 @@ std::shared_ptr<const RobotParameter> coman_plus() {
 /// COMAN+ in its published posture A0, three times, with contacts at both soles: parameters 4, 5.
 struct Squat {
   Squat() {
-    graph.parameters().set(kRobotNumber, coman_plus());
+    graph.parameters().set(kRobotNumber, coman_plus_parameter());
     for (const int number : {4, 5}) {
       ContactDescription sole;
       sole.link = number == 4 ? "l_sole" : "r_sole";
@@ -30,21 +30,21 @@ struct Squat {
       sole.half_y_m = 0.035;
       sole.mu = 0.5;
       sole.max_force_N = 1000.0;
-      graph.parameters().set(
-          number, std::make_shared<const ContactParameter>(coman_plus(), kRobotNumber, sole));
+      graph.parameters().set(number, std::make_shared<const ContactParameter>(
+                                         coman_plus_parameter(), kRobotNumber, sole));
     }
     for (int i = 0; i < 3; ++i) {
-      q.push_back(graph.add_vertex(
-          10 * i,
-          VertexConfiguration(kRobotNumber, coman_plus(), i, coman_postures()[0].configuration())));
+      q.push_back(
+          graph.add_vertex(10 * i, VertexConfiguration(kRobotNumber, coman_plus_parameter(), i,
+                                                       coman_postures()[0].configuration())));
     }
   }
   VertexId<VertexWrenches> add_wrenches(int id, std::vector<int> contacts) {
     return graph.add_vertex(id, VertexWrenches(graph.parameters(), std::move(contacts)));
   }
   CheckReport check() {
-    const CollisionWorld world(*coman_plus()->robot, nullptr, {});
-    return check_motion(*coman_plus()->robot, world, motion_of(graph, plan_of(graph)));
+    const CollisionWorld world(*coman_plus_parameter()->robot, nullptr, {});
+    return check_motion(*coman_plus_parameter()->robot, world, motion_of(graph, plan_of(graph)));
   }
 
   Graph graph;
@@ -62,7 +62,7 @@ TEST(CheckedBalance, IsJudgedAtTheVerticesThatHaveWrenches) {
   EXPECT_EQ(report.constraint("torque_limits").limit, 1.0);
 
   // On one foot it falls. Any edge says which wrenches are whose.
-  squat.graph.add_edge(EdgeTorqueLimits(*coman_plus()->robot, 1.0, 1.0), squat.q[2],
+  squat.graph.add_edge(EdgeTorqueLimits(*coman_plus_parameter()->robot, 1.0, 1.0), squat.q[2],
                        squat.add_wrenches(2, {5}));
   report = squat.check();
   const Violation& balance = report.constraint("static_balance");

@@ -6,10 +6,9 @@
 namespace locograph::test {
 namespace {
 
-constexpr double kMargin = 0.05;
-
 class GroundDistance : public RobotCaseTest {
  protected:
+  static constexpr double kMargin = 0.05;
   /// Lowest points of the spheres above the ground.
   std::vector<double> heights(const Eigen::VectorXd& q) const {
     ConfigurationState state(robot.robot);

@@ -6,16 +6,12 @@
 ///     for (int k = 0; k < kStates; ++k) compare(evaluated, k, 0, kEverywhere, compared);
 ///     EXPECT_EQ(compared.zero, 0);
 
+#include "common/sanitized.h"
 #include "plugins/plugin_test_support.h"
 
 namespace locograph::test {
 
-/// Sanitizers look for bad memory, not at accuracy, and take ten times as long.
-#ifdef __SANITIZE_ADDRESS__
-inline constexpr int kStates = 12;
-#else
-inline constexpr int kStates = 120;
-#endif
+inline constexpr int kStates = kSanitized ? 12 : 120;
 inline constexpr double kTolerance = 1e-6;
 /// Numeric differences reach 6e-6 rad or m to either side, times an arm of a metre or two.
 inline constexpr double kKink = 1e-4;

@@ -3,10 +3,9 @@
 namespace locograph::test {
 namespace {
 
-constexpr double kMargin = 0.05;
-
 class ObstacleDistance : public testing::Test {
  protected:
+  static constexpr double kMargin = 0.05;
   RobotCase robot = centauro_lower_body();
   std::shared_ptr<WorldParameter> world = std::make_shared<WorldParameter>();
   EdgeObstacleDistance edge{*robot.robot, kWorld, kMargin, 1.0};

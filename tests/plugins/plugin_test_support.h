@@ -66,7 +66,7 @@ bool available(const std::string& name);
 class RobotCaseTest : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
-    if (!available(GetParam())) GTEST_SKIP() << go2_urdf() << " is not on this machine";
+    if (!available(GetParam())) GTEST_SKIP() << GetParam() << " is not tested here";
     robot = robot_case(GetParam());
   }
   RobotCase robot;

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 class RoundTrip : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
-    if (!available(GetParam())) GTEST_SKIP() << go2_urdf() << " is not on this machine";
+    if (!available(GetParam())) GTEST_SKIP() << GetParam() << " is not tested here";
     for (const char* name : {"robots", "maps", "plans/deep"}) fs::create_directories(root / name);
     const RobotCase original = robot_case(GetParam());
     robot.name = original.name;

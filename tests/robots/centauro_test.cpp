@@ -25,12 +25,12 @@ double segment_distance(const Eigen::Vector3d& p1, const Eigen::Vector3d& q1,
 }
 
 /// A capsule that contains the shape; the shape itself if it is one.
-struct Capsule {
+struct EnclosingCapsule {
   Eigen::Vector3d start, end;
   double radius;
 };
 
-Capsule enclosing_capsule(const CollisionShape& shape, const RobotState& state) {
+EnclosingCapsule enclosing_capsule(const CollisionShape& shape, const RobotState& state) {
   const Eigen::Isometry3d pose = state.world_from_link(shape.link) * shape.link_from_shape;
   Eigen::Vector3d half(0.0, 0.0, 0.5 * shape.length);
   double radius = shape.radius;
@@ -60,7 +60,7 @@ class Centauro : public testing::Test {
     double least = std::numeric_limits<double>::infinity();
     for (const CollisionShape& a : robot.links()[static_cast<std::size_t>(first)].collision) {
       for (const CollisionShape& b : robot.links()[static_cast<std::size_t>(second)].collision) {
-        const Capsule u = enclosing_capsule(a, state), v = enclosing_capsule(b, state);
+        const EnclosingCapsule u = enclosing_capsule(a, state), v = enclosing_capsule(b, state);
         least =
             std::min(least, segment_distance(u.start, u.end, v.start, v.end) - u.radius - v.radius);
       }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/sanitized.h"
 #include "robots/robot_test_support.h"
 
 namespace locograph::test {
@@ -418,6 +419,7 @@ TEST(Approximation, NamesTheFileOfAnUnusableMesh) {
 }
 
 TEST(Approximation, OfThePublicGo2CoversEveryMesh) {
+  if (kSanitized) GTEST_SKIP() << "half a minute, like Meshes.OfThePublicGo2AreFoundAndCovered";
   if (!std::filesystem::exists(public_robot("go2.urdf"))) {
     GTEST_SKIP() << public_robot("go2.urdf") << " is not on this machine";
   }

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "common/allocation_counter.h"
+#include "common/sanitized.h"
 #include "solvers/expect_solution.h"
 
 namespace locograph::test {
@@ -50,8 +51,8 @@ std::vector<Case> cases() {
   all.push_back({"MixedRandom", random_pairs(30, 70, 8), mixed(30, 4)});
   all.push_back({"WideChain", chain_pairs(20, 1), uniform(20, 30)});
   all.push_back({"WideBand", chain_pairs(20, 2), uniform(20, 24)});
-  all.push_back({"VeryWideBand", chain_pairs(12, 8), uniform(12, 40)});
-  all.push_back({"HugeBlocks", chain_pairs(3, 2), uniform(3, 200)});
+  all.push_back({"VeryWideBand", chain_pairs(12, 8), uniform(12, kSanitized ? 24 : 40)});
+  all.push_back({"HugeBlocks", chain_pairs(3, 2), uniform(3, kSanitized ? 100 : 200)});
   all.push_back({"WideMixed", chain_pairs(12, 3), {40, 3, 17, 90, 1, 6, 33, 24, 8, 16, 64, 2}});
   return all;
 }

@@ -15,18 +15,18 @@
 namespace locograph::test {
 namespace {
 
-constexpr double kTolerance = 1e-11;  ///< of solutions, relative
+constexpr double kSchurTolerance = 1e-11;  ///< of solutions, relative
 
 using Reduced = SchurSolver::Reduced;
 
-struct Case {
+struct SchurCase {
   std::string name;
   int kept_size, eliminated_size;  ///< of the blocks; 0: mixed sizes
   int kept, eliminated, seen;      ///< each eliminated row touches `seen` kept ones
 };
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+void PrintTo(const SchurCase& c, std::ostream* out) { *out << c.name; }
 
-std::vector<Case> cases() {
+std::vector<SchurCase> schur_cases() {
   return {{"Bal", 9, 3, 12, 90, 4},
           {"Poses", 6, 3, 15, 60, 3},
           {"InverseDepth", 6, 1, 15, 60, 4},
@@ -43,7 +43,7 @@ std::vector<Case> cases() {
           {"ManyChunks", 3, 2, 20, 300, 3}};
 }
 
-RandomSystem make_system(const Case& c, unsigned seed) {
+RandomSystem make_system(const SchurCase& c, unsigned seed) {
   std::mt19937 engine(seed);
   std::vector<int> dimension;
   for (int i = 0; i < c.kept + c.eliminated; ++i) {
@@ -73,21 +73,21 @@ std::unique_ptr<SchurSolver> make_schur(Reduced reduced) {
   return std::make_unique<SchurSolver>(reduced, tight());
 }
 
-class EverySchurSolver : public testing::TestWithParam<std::tuple<Reduced, Case>> {
+class EverySchurSolver : public testing::TestWithParam<std::tuple<Reduced, SchurCase>> {
  protected:
   std::unique_ptr<SchurSolver> solver() const { return make_schur(std::get<0>(GetParam())); }
   RandomSystem system(unsigned seed = 1) const {
     return make_system(std::get<1>(GetParam()), seed);
   }
 };
-std::string test_name(const testing::TestParamInfo<std::tuple<Reduced, Case>>& info) {
+std::string test_name(const testing::TestParamInfo<std::tuple<Reduced, SchurCase>>& info) {
   const std::string names[] = {"Automatic", "Dense", "Sparse", "Pcg"};
   return names[static_cast<int>(std::get<0>(info.param))] + std::get<1>(info.param).name;
 }
 INSTANTIATE_TEST_SUITE_P(Schur, EverySchurSolver,
                          testing::Combine(testing::Values(Reduced::kAutomatic, Reduced::kDense,
                                                           Reduced::kSparse, Reduced::kPcg),
-                                          testing::ValuesIn(cases())),
+                                          testing::ValuesIn(schur_cases())),
                          test_name);
 
 TEST_P(EverySchurSolver, AgreesWithDenseLdltDampingIncluded) {
@@ -98,7 +98,7 @@ TEST_P(EverySchurSolver, AgreesWithDenseLdltDampingIncluded) {
     for (int again = 0; again < 2; ++again) {
       ASSERT_TRUE(s->factorise(a.values.data(), a.damping.data()));
       EXPECT_EQ(s->failed_row(), -1);
-      expect_solution(*s, a, kTolerance);
+      expect_solution(*s, a, kSchurTolerance);
     }
   }
 }
@@ -148,7 +148,7 @@ TEST_P(EverySchurSolver, NamesTheBlockThatIsNotPositiveDefiniteAndRecovers) {
     const std::unique_ptr<SchurSolver> s = solver();
     s->use_threads(&threads);
     s->analyse(good.pattern);
-    expect_bad_blocks_named(*s, good, kTolerance);
+    expect_bad_blocks_named(*s, good, kSchurTolerance);
   }
 }
 
@@ -170,18 +170,18 @@ TEST(SchurSolver, RefusesTwoEliminatedRowsThatShareAnEdgeAndNamesThem) {
   const std::unique_ptr<LinearSolver> automatic = make_linear_solver("auto");
   automatic->analyse(a.pattern);
   ASSERT_TRUE(automatic->factorise(a.values.data(), a.damping.data()));
-  expect_solution(*automatic, a, kTolerance);
+  expect_solution(*automatic, a, kSchurTolerance);
 }
 
 TEST(SchurSolver, IsAnalysedAgainWhenThePatternChanges) {
   for (const Reduced reduced :
        {Reduced::kAutomatic, Reduced::kDense, Reduced::kSparse, Reduced::kPcg}) {
     const std::unique_ptr<SchurSolver> s = make_schur(reduced);
-    for (const Case& c : cases()) {
+    for (const SchurCase& c : schur_cases()) {
       const RandomSystem a = make_system(c, 5);
       s->analyse(a.pattern);
       ASSERT_TRUE(s->factorise(a.values.data(), a.damping.data())) << c.name;
-      expect_solution(*s, a, kTolerance);
+      expect_solution(*s, a, kSchurTolerance);
     }
   }
 }
@@ -189,7 +189,7 @@ TEST(SchurSolver, IsAnalysedAgainWhenThePatternChanges) {
 TEST(SchurSolver, ChoosesHowToSolveWhatIsLeft) {
   SchurSolver s;
   EXPECT_EQ(s.name(), "schur");
-  Case c{"", 6, 3, 20, 300, 15};
+  SchurCase c{"", 6, 3, 20, 300, 15};
   s.analyse(make_system(c, 1).pattern);
   EXPECT_EQ(s.name(), "schur-dense");
   Pairs street = chain_pairs(300, 1);
@@ -210,7 +210,7 @@ TEST(AutoSolver, EliminatesWhatIsMarkedWhenThatIsCheaper) {
   automatic->analyse(bundle.pattern);
   EXPECT_EQ(automatic->name().substr(0, 5), "schur");
   ASSERT_TRUE(automatic->factorise(bundle.values.data(), bundle.damping.data()));
-  expect_solution(*automatic, bundle, kTolerance);
+  expect_solution(*automatic, bundle, kSchurTolerance);
   // Marking the hub of a wheel fills in everything: not followed.
   Pairs wheel = arrow_pairs(301, 300);
   for (int i = 0; i + 1 < 300; ++i) wheel.emplace_back(i, i + 1);

@@ -73,8 +73,8 @@ using Spatial = Exact<VertexSE3, EdgeSE3, SE3<double>, OffsetSE3, EdgeSE3Offset>
 
 template <class T>
 class ChordalGuess : public testing::Test {};
-using Both = testing::Types<Planar, Spatial>;
-TYPED_TEST_SUITE(ChordalGuess, Both);
+using PlanarAndSpatial = testing::Types<Planar, Spatial>;
+TYPED_TEST_SUITE(ChordalGuess, PlanarAndSpatial);
 
 TYPED_TEST(ChordalGuess, IsExactWithoutNoiseFromGarbage) {
   TypeParam exact;

@@ -111,8 +111,8 @@ struct Field {
 
 template <class S>
 class DoubtfulClosures : public testing::Test {};
-using Both = testing::Types<Plane, Space>;
-TYPED_TEST_SUITE(DoubtfulClosures, Both);
+using PlaneAndSpace = testing::Types<Plane, Space>;
+TYPED_TEST_SUITE(DoubtfulClosures, PlaneAndSpace);
 
 TYPED_TEST(DoubtfulClosures, AreTheFalseOnes) {
   for (const unsigned seed : {1u, 2u, 3u}) {
