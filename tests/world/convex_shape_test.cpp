@@ -15,7 +15,7 @@
 namespace locograph {
 namespace {
 
-using test::TemporaryFolder;
+using test::kSanitized, test::TemporaryFolder;
 
 class Random {
  public:
