@@ -19,10 +19,10 @@ say "checking the layout of the sources"
 "$root/scripts/format.sh" --check
 
 # Without NDEBUG, so that Eigen's own assertions count too. The libraries' unit tests; the command
-# itself and the installed package are tested in Release below. Six sources at a time, as nobody
-# edits here: what they share is compiled once. -Og takes a quarter less to compile than -O1.
+# itself and the installed package are tested in Release below. Several sources at a time, as
+# nobody edits here: what they share is compiled once. -Og takes a quarter less to compile than -O1.
 configure build-asan -DLOCOGRAPH_SANITIZE=address,undefined -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-  -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=6 \
+  -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=4 -DLOCOGRAPH_UNITY_TESTS=ON \
   "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-Og -g1" -DLOCOGRAPH_BENCHMARKS=OFF
 mapfile -t unit_tests < <(
   cd "$root/tests"
