@@ -1,4 +1,5 @@
 #include "common/allocation_counter.h"
+#include "common/sanitized.h"
 #include "plugins/plugin_test_support.h"
 
 namespace locograph::test {
@@ -67,6 +68,7 @@ class Batch : public testing::TestWithParam<std::string> {};
 TEST_P(Batch, IsTheSumOverItsEdgesOneByOne) {
   const RobotCase robot = robot_case(GetParam());
   for (const bool kernels : {false, true}) {
+    if (kSanitized && !kernels) continue;
     Graph graph = plan_with_everything(robot, everything_around(), true, kernels);
     ASSERT_EQ(graph.edge_pools().size(), 9u);
     Problem problem;

@@ -407,8 +407,9 @@ TEST_F(SweptObstacleDistance, MissesNothingThatALookEverywhereFinds) {
   }
   Random random(57);
   const Robot& model = robot.model();
+  constexpr int kRuns = kStates / 2;
   int found = 0;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < kRuns; ++i) {
     const Eigen::VectorXd q = random.configuration(model, 1.0, 0.0);
     Eigen::VectorXd step = random.vector(model.tangent_size(), 0.5), to(q.size());
     model.integrate(q.data(), step.data(), to.data());
@@ -432,7 +433,7 @@ TEST_F(SweptObstacleDistance, MissesNothingThatALookEverywhereFinds) {
       ++found;
     }
   }
-  EXPECT_GT(found, 100);
+  EXPECT_GT(found, 5 * kRuns / 3);
 }
 
 }  // namespace
