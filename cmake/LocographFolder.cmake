@@ -116,8 +116,11 @@ target_compile_options(locograph_private_options INTERFACE
 if(LOCOGRAPH_WERROR AND NOT LOCOGRAPH_SANITIZE)
   target_compile_options(locograph_private_options INTERFACE -Werror)
 endif()
-if(LOCOGRAPH_NATIVE AND NOT LOCOGRAPH_SANITIZE)
-  target_compile_options(locograph_private_options INTERFACE -march=native)
+if(LOCOGRAPH_NATIVE AND NOT LOCOGRAPH_SANITIZE AND NOT CMAKE_CROSSCOMPILING)
+  # It would override the flags of sources that are compiled for several processors
+  # (solvers/CMakeLists.txt).
+  target_compile_options(locograph_private_options INTERFACE
+    $<$<NOT:$<BOOL:$<TARGET_PROPERTY:LOCOGRAPH_PROCESSOR>>>:-march=native>)
 endif()
 target_compile_options(locograph_private_options INTERFACE -fno-math-errno)
 if(LOCOGRAPH_SANITIZE)

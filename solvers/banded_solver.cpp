@@ -1,7 +1,6 @@
 #include <locograph/solvers/banded_solver.h>
 #include <locograph/solvers/cost_model.h>
-#include <locograph/solvers/dense_kernels.h>
-#include <locograph/solvers/panel_solve.h>
+#include <locograph/solvers/kernels.h>
 
 #include <algorithm>
 
@@ -48,6 +47,7 @@ void BandedSolver::analyse(const BlockPattern& pattern) {
 
 bool BandedSolver::factorise(const double* values, const double* damping) {
   failed_row_ = -1;
+  const DenseKernels& dense = kernels().dense;
   std::fill(panels_.begin(), panels_.end(), 0.0);
   // The upper block (r, c) of the pattern is the transpose of the lower block (c, r) of panel r.
   for (int c = 0; c < pattern_.size(); ++c) {
@@ -66,14 +66,14 @@ bool BandedSolver::factorise(const double* values, const double* damping) {
     const int n = pattern_.dimension[c], height = height_[c];
     double* panel = panels_.data() + panel_begin_[c];
     for (int i = 0; i < n; ++i) panel[i * height + i] += damping[pattern_.scalar_begin[c] + i];
-    if (cholesky_in_place(panel, height, height, n) >= 0) {
+    if (dense.cholesky_in_place(panel, height, height, n) >= 0) {
       failed_row_ = c;
       return false;
     }
     for (int t = c + 1; t <= last_[c]; ++t) {
       const int row = pattern_.scalar_begin[t] - pattern_.scalar_begin[c];
-      subtract_lower_product(panels_.data() + panel_begin_[t], height_[t], panel + row, height,
-                             height - row, pattern_.dimension[t], n);
+      dense.subtract_lower_product(panels_.data() + panel_begin_[t], height_[t], panel + row,
+                                   height, height - row, pattern_.dimension[t], n);
     }
   }
   return true;
@@ -81,13 +81,14 @@ bool BandedSolver::factorise(const double* values, const double* damping) {
 
 void BandedSolver::solve(const double* right_hand_side, double* x) const {
   if (x != right_hand_side) std::copy_n(right_hand_side, pattern_.scalar_size(), x);
+  const PanelSolve& panels = kernels().panel;
   for (int c = 0; c < pattern_.size(); ++c) {
-    solve_panel(panels_.data() + panel_begin_[c], height_[c], height_[c], pattern_.dimension[c],
-                x + pattern_.scalar_begin[c]);
+    panels.forward(panels_.data() + panel_begin_[c], height_[c], height_[c], pattern_.dimension[c],
+                   x + pattern_.scalar_begin[c], false);
   }
   for (int c = pattern_.size() - 1; c >= 0; --c) {
-    solve_panel_transposed(panels_.data() + panel_begin_[c], height_[c], height_[c],
-                           pattern_.dimension[c], x + pattern_.scalar_begin[c]);
+    panels.backward(panels_.data() + panel_begin_[c], height_[c], height_[c], pattern_.dimension[c],
+                    x + pattern_.scalar_begin[c], false);
   }
 }
 

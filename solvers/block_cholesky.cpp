@@ -1,7 +1,5 @@
 #include <locograph/solvers/block_cholesky.h>
 #include <locograph/solvers/cost_model.h>
-#include <locograph/solvers/dense_kernels.h>
-#include <locograph/solvers/simd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -19,7 +17,7 @@ constexpr int kRowChunk = 96;      // rows of a shared panel that one task divid
 constexpr int kTileColumns = 48, kTileRows = 192;  // of a shared product
 
 template <int N>
-LOCOGRAPH_INLINE void copy_square(double* to, long leading, const double* from, bool transposed) {
+void copy_square(double* to, long leading, const double* from, bool transposed) {
   if (transposed) {
     for (int i = 0; i < N; ++i) {
       for (int j = 0; j < N; ++j) to[i * leading + j] = from[j * N + i];
@@ -33,6 +31,7 @@ LOCOGRAPH_INLINE void copy_square(double* to, long leading, const double* from, 
 
 /// The lower trapezoid of an m × n product in tiles, each of which one call computes.
 struct LowerTiles {
+  const DenseKernels& dense;
   int m, n;
   int count() const {
     int total = 0;
@@ -49,11 +48,11 @@ struct LowerTiles {
     const int rows = std::min(kTileRows, m - i), columns = std::min(kTileColumns, n - j);
     double* target = c + static_cast<long>(j) * ldc + i;
     if (overwrite) {
-      negative_product(target, ldc, a + i, lda, a + j, lda, rows, columns, k, tile == 0);
+      dense.negative_product(target, ldc, a + i, lda, a + j, lda, rows, columns, k, tile == 0);
     } else if (tile == 0) {
-      subtract_lower_product(target, ldc, a + i, lda, rows, columns, k);
+      dense.subtract_lower_product(target, ldc, a + i, lda, rows, columns, k);
     } else {
-      subtract_product(target, ldc, a + i, lda, a + j, lda, rows, columns, k);
+      dense.subtract_product(target, ldc, a + i, lda, a + j, lda, rows, columns, k);
     }
   }
 };
@@ -130,7 +129,7 @@ void BlockCholesky::place_entries() {
   for (int s = 0; s < s_.count(); ++s) {
     const int first = s_.first[s], end = s_.first[s + 1];
     for (int c = first; c < end; ++c) place[c] = s_.scalar_begin[c] - s_.scalar_begin[first];
-    int row = padded(s_.width[s]);
+    int row = kernels_.padded(s_.width[s]);
     for (std::int64_t k = s_.row_begin[s]; k < s_.row_begin[s + 1]; ++k) {
       place[s_.row[k]] = row;
       row += s_.scalar_begin[s_.row[k] + 1] - s_.scalar_begin[s_.row[k]];
@@ -198,48 +197,32 @@ double* BlockCholesky::update_matrix(int s, int thread) {
 /// pivots there, or else to the parent's update matrix.
 void BlockCholesky::add_child(int child, int thread, bool pivots, int begin, int end) {
   const int parent = s_.parent[child];
-  const long from_leading = padded(s_.below[child]);
+  const long from_leading = kernels_.padded(s_.below[child]);
   const double* from = update_matrix(child, thread);
-  const int skipped = pivots ? 0 : padded(s_.width[parent]);
-  const long to_leading = pivots ? s_.leading[parent] : padded(s_.below[parent]);
+  const int skipped = pivots ? 0 : kernels_.padded(s_.width[parent]);
+  const long to_leading = pivots ? s_.leading[parent] : kernels_.padded(s_.below[parent]);
   double* to = pivots ? factor_.data() + s_.panel_begin[parent] : update_matrix(parent, thread);
-  const Supernodes::Run* runs = s_.run.data();
+  const FrontRun* runs = s_.run.data();
   const std::int64_t middle = s_.run_begin[child] + s_.pivot_runs[child];
   const std::int64_t last = s_.run_end[child];
-  for (std::int64_t a = pivots ? s_.run_begin[child] : middle; a < (pivots ? middle : last); ++a) {
-    const Supernodes::Run across = runs[a];
-    const int j = std::max(0, begin - across.from);
-    const int columns = std::min(across.length, end - across.from) - j;
-    if (columns <= 0) continue;
-    const double* source = from + (across.from + j) * from_leading;
-    double* target = to + (across.to - skipped + j) * to_leading - skipped;
-    // On and below the diagonal, in steps; the little above it means nothing on either side.
-    for (int step = 0; step < columns; step += kLanes) {
-      const int row = j + step;
-      add(target + step * to_leading + across.to + row, to_leading,
-          source + step * from_leading + across.from + row, from_leading, across.length - row,
-          std::min(kLanes, columns - step));
-    }
-    for (std::int64_t b = a + 1; b < last; ++b) {
-      add(target + runs[b].to, to_leading, source + runs[b].from, from_leading, runs[b].length,
-          columns);
-    }
-  }
+  kernels_.front.add_columns(to, to_leading, skipped, from, from_leading,
+                             runs + (pivots ? s_.run_begin[child] : middle),
+                             runs + (pivots ? middle : last), runs + last, begin, end);
 }
 
 int BlockCholesky::factorise_front(int s, const double* values, const double* damping, int thread) {
   const int width = s_.width[s], below = s_.below[s], leading = s_.leading[s];
   double* panel = factor_.data() + s_.panel_begin[s];
-  clear(panel, std::int64_t{leading} * width);
+  kernels_.front.clear(panel, std::int64_t{leading} * width);
   assemble_entries(s, values, damping);
   const int* begin = s_.child.data() + s_.child_begin[s];
   const int* end = s_.child.data() + s_.child_begin[s + 1];
   for (const int* c = begin; c != end; ++c) add_child(*c, thread, true, 0, s_.below[*c]);
-  const int failed = cholesky_in_place(panel, leading, leading, width);
+  const int failed = kernels_.dense.cholesky_in_place(panel, leading, leading, width);
   if (failed >= 0 || below == 0) return failed;
-  const double* under = panel + padded(width);
-  negative_product(update_matrix(s, thread), padded(below), under, leading, under, leading,
-                   padded(below), below, width, true);
+  const double* under = panel + kernels_.padded(width);
+  kernels_.dense.negative_product(update_matrix(s, thread), kernels_.padded(below), under, leading,
+                                  under, leading, kernels_.padded(below), below, width, true);
   for (const int* c = begin; c != end; ++c) add_child(*c, thread, false, 0, s_.below[*c]);
   return -1;
 }
@@ -265,33 +248,33 @@ int BlockCholesky::factorise_front_together(int s, const double* values, const d
   };
   crew.share(chunks(width, kColumnChunk), [&](int i) {
     const int begin = i * kColumnChunk, end = std::min(width, begin + kColumnChunk);
-    clear(panel + begin * ld, ld * (end - begin));
+    kernels_.front.clear(panel + begin * ld, ld * (end - begin));
   });
   assemble_entries(s, values, damping);
   add_children(true);
   for (int first = 0; first < width; first += kPanelColumns) {
     const int end = std::min(width, first + kPanelColumns);
-    const int next = end == width ? padded(width) : end;
+    const int next = end == width ? kernels_.padded(width) : end;
     double* square = panel + first * ld + first;
-    const int failed = cholesky_in_place(square, leading, next - first, end - first);
+    const int failed = kernels_.dense.cholesky_in_place(square, leading, next - first, end - first);
     if (failed >= 0) return first + failed;
     double* rest = panel + first * ld + next;
     crew.share(chunks(leading - next, kRowChunk), [&](int i) {
       const int row = i * kRowChunk;
-      divide_rows(rest + row, leading, std::min(kRowChunk, leading - next - row), square, leading,
-                  end - first);
+      kernels_.dense.divide_rows(rest + row, leading, std::min(kRowChunk, leading - next - row),
+                                 square, leading, end - first);
     });
     if (end == width) break;
-    const LowerTiles tiles{leading - end, width - end};
+    const LowerTiles tiles{kernels_.dense, leading - end, width - end};
     crew.share(tiles.count(), [&](int i) {
       tiles.compute(i, panel + end * ld + end, leading, rest, leading, end - first, false);
     });
   }
   if (below == 0) return -1;
-  const LowerTiles tiles{padded(below), below};
+  const LowerTiles tiles{kernels_.dense, kernels_.padded(below), below};
   crew.share(tiles.count(), [&](int i) {
-    tiles.compute(i, update_matrix(s, crew.thread()), padded(below), panel + padded(width), leading,
-                  width, true);
+    tiles.compute(i, update_matrix(s, crew.thread()), kernels_.padded(below),
+                  panel + kernels_.padded(width), leading, width, true);
   });
   add_children(false);
   return -1;

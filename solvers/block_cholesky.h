@@ -15,6 +15,7 @@
 
 #include <locograph/core/linear_solver.h>
 #include <locograph/solvers/aligned_memory.h>
+#include <locograph/solvers/kernels.h>
 #include <locograph/solvers/supernodes.h>
 
 #include <cstdint>
@@ -71,6 +72,7 @@ class BlockCholesky final : public LinearSolver {
   void forward(int supernode, const double* right_hand_side) const;
   void backward(int supernode, double* x) const;
 
+  const Kernels& kernels_ = kernels();
   BlockPattern pattern_;
   Supernodes s_;
   std::vector<Entry> entries_;

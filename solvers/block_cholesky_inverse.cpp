@@ -1,5 +1,5 @@
 #include <locograph/solvers/block_cholesky.h>
-#include <locograph/solvers/simd.h>
+#include <locograph/solvers/kernels.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -69,7 +69,7 @@ bool BlockCholesky::inverse_blocks(const BlockPattern& pattern,
     const int width = s_.width[s], below = s_.below[s], parent = s_.parent[s];
     const double* panel = factor_.data() + s_.panel_begin[s];
     const ConstPanel l(panel, width, width, Eigen::OuterStride<>(s_.leading[s]));
-    const ConstPanel under(panel + padded(width), below, width,
+    const ConstPanel under(panel + kernels().padded(width), below, width,
                            Eigen::OuterStride<>(s_.leading[s]));
     Eigen::MatrixXd& z = inverse[s];
     z.resize(width + below, width + below);
@@ -78,13 +78,13 @@ bool BlockCholesky::inverse_blocks(const BlockPattern& pattern,
     z.topLeftCorner(width, width).noalias() = triangle.transpose() * triangle;
     if (below > 0) {
       const Eigen::MatrixXd& above = inverse[parent];
-      const int gap = padded(s_.width[parent]) - s_.width[parent];
-      const auto in_parent = [&](const Supernodes::Run& run) {
+      const int gap = kernels().padded(s_.width[parent]) - s_.width[parent];
+      const auto in_parent = [&](const FrontRun& run) {
         return run.to < s_.width[parent] ? run.to : run.to - gap;
       };
       for (std::int64_t a = s_.run_begin[s]; a < s_.run_end[s]; ++a) {
         for (std::int64_t b = s_.run_begin[s]; b < s_.run_end[s]; ++b) {
-          const Supernodes::Run &rows = s_.run[a], &columns = s_.run[b];
+          const FrontRun &rows = s_.run[a], &columns = s_.run[b];
           z.block(width + rows.from, width + columns.from, rows.length, columns.length) =
               above.block(in_parent(rows), in_parent(columns), rows.length, columns.length);
         }

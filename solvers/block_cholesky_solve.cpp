@@ -1,6 +1,5 @@
 #include <locograph/solvers/block_cholesky.h>
-#include <locograph/solvers/panel_solve.h>
-#include <locograph/solvers/simd.h>
+#include <locograph/solvers/kernels.h>
 
 #include <algorithm>
 
@@ -18,14 +17,12 @@ void BlockCholesky::forward(int s, const double* right_hand_side) const {
   std::fill(next, own + s_.leading[s], 0.0);
   for (int k = s_.child_begin[s]; k < s_.child_begin[s + 1]; ++k) {
     const int child = s_.child[k];
-    const double* from = vectors_.data() + s_.vector_begin[child] + padded(s_.width[child]);
-    for (std::int64_t r = s_.run_begin[child]; r < s_.run_end[child]; ++r) {
-      const Supernodes::Run& run = s_.run[r];
-      add(own + run.to, from + run.from, run.length);
-    }
+    kernels_.front.add_rows(
+        own, vectors_.data() + s_.vector_begin[child] + kernels_.padded(s_.width[child]),
+        s_.run.data() + s_.run_begin[child], s_.run.data() + s_.run_end[child]);
   }
-  solve_panel(factor_.data() + s_.panel_begin[s], s_.leading[s], s_.leading[s], s_.width[s], own,
-              true);
+  kernels_.panel.forward(factor_.data() + s_.panel_begin[s], s_.leading[s], s_.leading[s],
+                         s_.width[s], own, true);
 }
 
 /// The rows under the pivots come from the parent, which is solved by now.
@@ -33,14 +30,14 @@ void BlockCholesky::backward(int s, double* x) const {
   double* own = vectors_.data() + s_.vector_begin[s];
   if (s_.parent[s] != -1) {
     const double* from = vectors_.data() + s_.vector_begin[s_.parent[s]];
-    double* to = own + padded(s_.width[s]);
+    double* to = own + kernels_.padded(s_.width[s]);
     for (std::int64_t r = s_.run_begin[s]; r < s_.run_end[s]; ++r) {
-      const Supernodes::Run& run = s_.run[r];
+      const FrontRun& run = s_.run[r];
       std::copy_n(from + run.to, run.length, to + run.from);
     }
   }
-  solve_panel_transposed(factor_.data() + s_.panel_begin[s], s_.leading[s], s_.leading[s],
-                         s_.width[s], own, true);
+  kernels_.panel.backward(factor_.data() + s_.panel_begin[s], s_.leading[s], s_.leading[s],
+                          s_.width[s], own, true);
   const double* next = own;
   for (int c = s_.first[s]; c < s_.first[s + 1]; ++c) {
     const int old = s_.old_of_new[c];

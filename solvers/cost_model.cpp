@@ -1,5 +1,5 @@
 #include <locograph/solvers/cost_model.h>
-#include <locograph/solvers/simd.h>
+#include <locograph/solvers/kernels.h>
 
 namespace locograph {
 namespace {
@@ -11,19 +11,21 @@ constexpr double kNumber = 0.16e-9;
 
 /// Whole registers and tiles are computed: what is padded costs as well.
 double products(int width, int below) {
-  const double w = padded(width), m = padded(below);
-  return kMultiplyAdd * (w * w * w / 6.0 + 0.5 * w * w * m + 0.5 * w * m * (m + kLanes));
+  const Kernels& k = kernels();
+  const double w = k.padded(width), m = k.padded(below);
+  return kMultiplyAdd * (w * w * w / 6.0 + 0.5 * w * w * m + 0.5 * w * m * (m + k.lanes()));
 }
 
 }  // namespace
 
 double front_seconds(int width, int below) {
-  const double w = padded(width), m = padded(below);
+  const Kernels& k = kernels();
+  const double w = k.padded(width), m = k.padded(below);
   return kFront + kPivot * width + products(width, below) + kNumber * (m * m + width * (w + m));
 }
 
 double panel_seconds(int width, int below) {
-  const double height = padded(width + below);
+  const double height = kernels().padded(width + below);
   return kFront + kPivot * width + products(width, below) + kNumber * width * height;
 }
 

@@ -1,11 +1,7 @@
-#include <locograph/solvers/dense_kernels.h>
+#include <locograph/solvers/level_tables.h>
 #include <locograph/solvers/simd.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-namespace locograph {
+namespace locograph::LOCOGRAPH_SIMD_NAMESPACE {
 namespace {
 
 constexpr int kStrip = kLanes;   // columns of a tile: its top is a square of one register high
@@ -39,9 +35,9 @@ LOCOGRAPH_INLINE void accumulate(Vector (&t)[R][N], const double* a, long lda, c
     for (int r = 0; r < R; ++r) left[r] = load_row<R, kPartial>(a, r, last);
 #pragma GCC unroll 8
     for (int n = 0; n < N; ++n) {
-      const double factor = b[n];
+      const Vector factor = broadcast<Vector>(b[n]);
 #pragma GCC unroll 3
-      for (int r = 0; r < R; ++r) t[r][n] -= left[r] * factor;
+      for (int r = 0; r < R; ++r) t[r][n] = minus_product(t[r][n], left[r], factor);
     }
     a += lda;
     b += ldb;
@@ -103,9 +99,9 @@ void divide_tile(const Strip& s, long row, const double* l, long ldl, const doub
   for (int n = 0; n < N; ++n) {
 #pragma GCC unroll 8
     for (int q = 0; q < n; ++q) {
-      const double factor = l[q * ldl + n];
+      const Vector factor = broadcast<Vector>(l[q * ldl + n]);
 #pragma GCC unroll 3
-      for (int r = 0; r < R; ++r) t[r][n] -= t[r][q] * factor;
+      for (int r = 0; r < R; ++r) t[r][n] = minus_product(t[r][n], t[r][q], factor);
     }
     const double factor = inverse[n];
 #pragma GCC unroll 3
@@ -114,30 +110,38 @@ void divide_tile(const Strip& s, long row, const double* l, long ldl, const doub
   store_tile<R, N, kPartial>(t, s.c + row, s.ldc, last);
 }
 
+/// A number that a lambda knows when it is compiled.
+template <int kNumber>
+struct Constant {
+  static constexpr int value = kNumber;
+};
+
 /// Calls tile<R, partial>(row, last) over `rows` rows.
 template <class Tile>
-LOCOGRAPH_INLINE void for_each_tile(long row, long end, Tile&& tile) {
-  constexpr auto one = std::integral_constant<int, 1>();
-  constexpr auto two = std::integral_constant<int, 2>();
-  constexpr auto three = std::integral_constant<int, 3>();
-  for (; row + kTileRows <= end; row += kTileRows) tile(three, std::false_type(), row, kLanes);
+LOCOGRAPH_INLINE void for_each_tile(long row, long end, const Tile& tile) {
+  constexpr Constant<1> one, yes;
+  constexpr Constant<2> two;
+  constexpr Constant<3> three;
+  constexpr Constant<0> no;
+  for (; row + kTileRows <= end; row += kTileRows) tile(three, no, row, kLanes);
   const int rest = static_cast<int>(end - row);
   if (rest == 0) return;
   const int vectors = (rest + kLanes - 1) / kLanes, last = rest - (vectors - 1) * kLanes;
   if (last == kLanes) {
-    if (vectors == 1) tile(one, std::false_type(), row, last);
-    if (vectors == 2) tile(two, std::false_type(), row, last);
+    if (vectors == 1) tile(one, no, row, last);
+    if (vectors == 2) tile(two, no, row, last);
   } else {
-    if (vectors == 1) tile(one, std::true_type(), row, last);
-    if (vectors == 2) tile(two, std::true_type(), row, last);
-    if (vectors == 3) tile(three, std::true_type(), row, last);
+    if (vectors == 1) tile(one, yes, row, last);
+    if (vectors == 2) tile(two, yes, row, last);
+    if (vectors == 3) tile(three, yes, row, last);
   }
 }
 
 template <int N>
 void product_strip(const Strip& s, long row, long end, bool overwrite) {
   for_each_tile(row, end, [&](auto vectors, auto partial, long at, int last) {
-    product_tile<vectors, N, partial>(s, at, overwrite, last);
+    product_tile<decltype(vectors)::value, N, decltype(partial)::value != 0>(s, at, overwrite,
+                                                                             last);
   });
 }
 
@@ -145,7 +149,8 @@ template <int N>
 void divide_strip(const Strip& s, long row, long end, const double* l, long ldl,
                   const double* inverse) {
   for_each_tile(row, end, [&](auto vectors, auto partial, long at, int last) {
-    divide_tile<vectors, N, partial>(s, at, l, ldl, inverse, last);
+    divide_tile<decltype(vectors)::value, N, decltype(partial)::value != 0>(s, at, l, ldl, inverse,
+                                                                            last);
   });
 }
 
@@ -161,16 +166,18 @@ int factor_square(const Strip& s, int last, double* inverse) {
 #pragma GCC unroll 8
   for (int j = 0; j < N; ++j) {
     const double pivot = t[0][j][j];
-    if (!(pivot > 0.0 && pivot <= std::numeric_limits<double>::max())) {
+    if (!(pivot > 0.0 && pivot <= __DBL_MAX__)) {
       failed = j;
       break;
     }
     const double reciprocal = 1.0 / pivot;
 #pragma GCC unroll 8
-    for (int n = j + 1; n < N; ++n) t[0][n] -= t[0][j] * (t[0][j][n] * reciprocal);
+    for (int n = j + 1; n < N; ++n) {
+      t[0][n] = minus_product(t[0][n], t[0][j], broadcast<Vector>(t[0][j][n] * reciprocal));
+    }
     inverse[j] = reciprocal;
   }
-  for (int j = 0; j < N; ++j) inverse[j] = std::sqrt(inverse[j]);
+  for (int j = 0; j < N; ++j) inverse[j] = __builtin_sqrt(inverse[j]);
 #pragma GCC unroll 8
   for (int j = 0; j < N; ++j) t[0][j] *= inverse[j];
   store_tile<1, N, kPartial>(t, s.c, s.ldc, last);
@@ -179,7 +186,7 @@ int factor_square(const Strip& s, int last, double* inverse) {
 
 template <int N>
 int cholesky_strip(const Strip& s, long rows, double* inverse) {
-  const int top = static_cast<int>(std::min<long>(rows, kLanes));
+  const int top = rows < kLanes ? static_cast<int>(rows) : kLanes;
   const int failed = top == kLanes ? factor_square<N, false>(s, top, inverse)
                                    : factor_square<N, true>(s, top, inverse);
   if (failed >= 0) return failed;
@@ -187,50 +194,32 @@ int cholesky_strip(const Strip& s, long rows, double* inverse) {
   return -1;
 }
 
-/// Calls f(std::integral_constant<int, width>) for a width of 1 … kStrip.
-template <class F>
-LOCOGRAPH_INLINE auto with_width(int width, F&& f) {
-  switch (width) {
-    case 1:
-      return f(std::integral_constant<int, 1>());
-#if defined(__AVX__)
-    case 3:
-      return f(std::integral_constant<int, 3>());
-    case 2:
-      return f(std::integral_constant<int, 2>());
-#endif
-#if defined(__AVX512F__)
-    case 4:
-      return f(std::integral_constant<int, 4>());
-    case 5:
-      return f(std::integral_constant<int, 5>());
-    case 6:
-      return f(std::integral_constant<int, 6>());
-    case 7:
-      return f(std::integral_constant<int, 7>());
-#endif
-    default:
-      return f(std::integral_constant<int, kStrip>());
+/// Calls f(Constant<width>()) for a width of 1 … kStrip.
+template <int kWidth = 1, class F>
+LOCOGRAPH_INLINE auto with_width(int width, const F& f) {
+  if constexpr (kWidth == kStrip) {
+    return f(Constant<kStrip>());
+  } else {
+    return width == kWidth ? f(Constant<kWidth>()) : with_width<kWidth + 1>(width, f);
   }
 }
 
 void product(double* c, long ldc, const double* a, long lda, const double* b, long ldb, int m,
              int n, int k, bool lower, bool overwrite) {
   for (int p = 0; p < k || (p == 0 && overwrite); p += kInner) {
-    const int inner = std::min(kInner, k - p);
+    const int inner = smaller(kInner, k - p);
     for (int top = 0; top < m; top += kRows) {
-      const int bottom = std::min(m, top + kRows);
+      const int bottom = smaller(m, top + kRows);
       for (int j = 0; j < n && !(lower && j >= bottom); j += kStrip) {
         const Strip s = {c + j * ldc, ldc, a + p * lda, lda, b + p * ldb + j, ldb, inner};
-        with_width(std::min(kStrip, n - j), [&](auto width) {
-          product_strip<width>(s, lower ? std::max(top, j) : top, bottom, overwrite && p == 0);
+        with_width(smaller(kStrip, n - j), [&](auto width) {
+          product_strip<decltype(width)::value>(s, lower ? larger(top, j) : top, bottom,
+                                                overwrite && p == 0);
         });
       }
     }
   }
 }
-
-}  // namespace
 
 void subtract_product(double* c, int ldc, const double* a, int lda, const double* b, int ldb, int m,
                       int n, int k) {
@@ -250,12 +239,12 @@ int cholesky_in_place(double* panel, int leading_dimension, int rows, int column
   const long ld = leading_dimension;
   double inverse[kStrip];
   for (int first = 0; first < columns; first += kPanel) {
-    const int end = std::min(columns, first + kPanel);
+    const int end = smaller(columns, first + kPanel);
     for (int j = first; j < end; j += kStrip) {
       const double* left = panel + first * ld + j;
       const Strip s = {panel + j * ld + j, ld, left, ld, left, ld, j - first};
-      const int failed = with_width(std::min(kStrip, end - j), [&](auto width) {
-        return cholesky_strip<width>(s, rows - j, inverse);
+      const int failed = with_width(smaller(kStrip, end - j), [&](auto width) {
+        return cholesky_strip<decltype(width)::value>(s, rows - j, inverse);
       });
       if (failed >= 0) return j + failed;
     }
@@ -270,9 +259,9 @@ int cholesky_in_place(double* panel, int leading_dimension, int rows, int column
 void divide_rows(double* x, int ldx, int rows, const double* l, int ldl, int n) {
   double inverse[kStrip];
   for (int first = 0; first < n; first += kPanel) {
-    const int end = std::min(n, first + kPanel);
+    const int end = smaller(n, first + kPanel);
     for (int j = first; j < end; j += kStrip) {
-      const int width = std::min(kStrip, end - j);
+      const int width = smaller(kStrip, end - j);
       const double* triangle = l + static_cast<long>(j) * ldl + j;
       for (int i = 0; i < width; ++i) inverse[i] = 1.0 / triangle[static_cast<long>(i) * ldl + i];
       const Strip s = {x + static_cast<long>(j) * ldx,
@@ -282,7 +271,9 @@ void divide_rows(double* x, int ldx, int rows, const double* l, int ldl, int n) 
                        l + static_cast<long>(first) * ldl + j,
                        ldl,
                        j - first};
-      with_width(width, [&](auto w) { divide_strip<w>(s, 0, rows, triangle, ldl, inverse); });
+      with_width(width, [&](auto w) {
+        divide_strip<decltype(w)::value>(s, 0, rows, triangle, ldl, inverse);
+      });
     }
     if (end < n) {
       subtract_product(x + static_cast<long>(end) * ldx, ldx, x + static_cast<long>(first) * ldx,
@@ -296,7 +287,7 @@ void solve_lower(const double* l, int ld, int n, double* x) {
   for (int j = 0; j < n; ++j) {
     const double* column = l + static_cast<long>(j) * ld;
     const double value = x[j] /= column[j];
-    for (int i = j + 1; i < n; ++i) x[i] -= column[i] * value;
+    for (int i = j + 1; i < n; ++i) x[i] = minus_product(x[i], column[i], value);
   }
 }
 
@@ -304,9 +295,16 @@ void solve_lower_transposed(const double* l, int ld, int n, double* x) {
   for (int j = n - 1; j >= 0; --j) {
     const double* column = l + static_cast<long>(j) * ld;
     double sum = x[j];
-    for (int i = j + 1; i < n; ++i) sum -= column[i] * x[i];
+    for (int i = j + 1; i < n; ++i) sum = minus_product(sum, column[i], x[i]);
     x[j] = sum / column[j];
   }
 }
 
-}  // namespace locograph
+}  // namespace
+
+const DenseKernels dense_kernels = {
+    kLanes,           cholesky_in_place, subtract_product, subtract_lower_product,
+    negative_product, divide_rows,       solve_lower,      solve_lower_transposed,
+};
+
+}  // namespace locograph::LOCOGRAPH_SIMD_NAMESPACE

@@ -1,7 +1,6 @@
 #include <locograph/solvers/cost_model.h>
-#include <locograph/solvers/dense_kernels.h>
 #include <locograph/solvers/dense_solver.h>
-#include <locograph/solvers/panel_solve.h>
+#include <locograph/solvers/kernels.h>
 
 #include <algorithm>
 
@@ -30,7 +29,7 @@ bool DenseSolver::factorise(const double* values, const double* damping) {
     }
   }
   for (int i = 0; i < n; ++i) factor_(i, i) += damping[i];
-  const int bad = cholesky_in_place(factor_.data(), n, n, n);
+  const int bad = kernels().dense.cholesky_in_place(factor_.data(), n, n, n);
   if (bad < 0) return true;
   failed_row_ = static_cast<int>(std::upper_bound(pattern_.scalar_begin.begin(),
                                                   pattern_.scalar_begin.end(), bad) -
@@ -42,8 +41,9 @@ bool DenseSolver::factorise(const double* values, const double* damping) {
 void DenseSolver::solve(const double* right_hand_side, double* x) const {
   const int n = pattern_.scalar_size();
   if (x != right_hand_side) std::copy(right_hand_side, right_hand_side + n, x);
-  solve_panel(factor_.data(), n, n, n, x);
-  solve_panel_transposed(factor_.data(), n, n, n, x);
+  const PanelSolve& panels = kernels().panel;
+  panels.forward(factor_.data(), n, n, n, x, false);
+  panels.backward(factor_.data(), n, n, n, x, false);
 }
 
 }  // namespace locograph

@@ -1,4 +1,4 @@
-#include <locograph/solvers/dense_kernels.h>
+#include <locograph/solvers/kernels.h>
 #include <locograph/solvers/pcg_block_jacobi.h>
 #include <locograph/solvers/pcg_iteration.h>
 
@@ -46,16 +46,17 @@ void BlockJacobi::load(const double* values, const double* damping) {
 }
 
 int BlockJacobi::invert_range(int begin, int end, double* work) {
+  const DenseKernels& dense = kernels().dense;
   for (int c = begin; c < end; ++c) {
     const int n = pattern_->dimension[c];
     double* block = blocks_.data() + place_[c];
     std::copy_n(block, n * n, work);
-    if (cholesky_in_place(work, n, n, n) >= 0) return c;
+    if (dense.cholesky_in_place(work, n, n, n) >= 0) return c;
     std::fill_n(block, n * n, 0.0);
     for (int j = 0; j < n; ++j) {
       block[j * n + j] = 1.0;
-      solve_lower(work, n, n, block + j * n);
-      solve_lower_transposed(work, n, n, block + j * n);
+      dense.solve_lower(work, n, n, block + j * n);
+      dense.solve_lower_transposed(work, n, n, block + j * n);
     }
   }
   return -1;

@@ -8,7 +8,7 @@ namespace {
 
 /// N × N blocks, N = 0: of any size.
 template <int N>
-struct Kernels {
+struct SizedKernels {
   static void add(const double* __restrict a, [[maybe_unused]] int m, [[maybe_unused]] int n,
                   const double* __restrict x, double* __restrict y) {
     const int rows = N > 0 ? N : m, columns = N > 0 ? N : n;
@@ -32,17 +32,17 @@ struct Kernels {
 const BlockProduct::Kernel& kernel_for(const BlockPattern& pattern) {
   const int first = pattern.size() > 0 ? pattern.dimension[0] : 0;
   for (const int d : pattern.dimension) {
-    if (d != first) return Kernels<0>::kTable;
+    if (d != first) return SizedKernels<0>::kTable;
   }
   switch (first) {
     case 3:
-      return Kernels<3>::kTable;
+      return SizedKernels<3>::kTable;
     case 6:
-      return Kernels<6>::kTable;
+      return SizedKernels<6>::kTable;
     case 9:
-      return Kernels<9>::kTable;
+      return SizedKernels<9>::kTable;
     default:
-      return Kernels<0>::kTable;
+      return SizedKernels<0>::kTable;
   }
 }
 

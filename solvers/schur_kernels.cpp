@@ -1,15 +1,12 @@
-#include <locograph/solvers/dense_kernels.h>
-#include <locograph/solvers/schur_kernels.h>
+#include <locograph/solvers/level_tables.h>
+#include <locograph/solvers/simd.h>
 
-#include <cmath>
-#include <cstring>
-
-namespace locograph {
+namespace locograph::LOCOGRAPH_SIMD_NAMESPACE {
 namespace {
 
 /// K, D: compile-time sizes, 0 where they are known at run time only.
 template <int K, int D>
-struct Kernels {
+struct SizedKernels {
   static int dimension(const SchurColumn& column) { return D > 0 ? D : column.dimension; }
   static int rows(const SchurColumn& column, int i) {
     return K > 0 ? K : column.row_dimension[column.row[i]];
@@ -31,16 +28,18 @@ struct Kernels {
     std::memcpy(l, values + (l - column.factor), sizeof(double) * d * d);
     for (int i = 0; i < d; ++i) l[i * d + i] += damping[i];
     if constexpr (D == 0) {
-      if (cholesky_in_place(l, d, d, d) >= 0) return false;
+      if (dense_kernels.cholesky_in_place(l, d, d, d) >= 0) return false;
     } else {
       for (int j = 0; j < D; ++j) {
         const double pivot = l[j * D + j];
-        if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
-        const double root = std::sqrt(pivot), inverse = 1.0 / root;
+        if (!(pivot > 0.0 && pivot <= __DBL_MAX__)) return false;
+        const double root = __builtin_sqrt(pivot), inverse = 1.0 / root;
         l[j * D + j] = root;
         for (int i = j + 1; i < D; ++i) l[j * D + i] *= inverse;
         for (int c = j + 1; c < D; ++c) {
-          for (int i = c; i < D; ++i) l[c * D + i] -= l[j * D + i] * l[j * D + c];
+          for (int i = c; i < D; ++i) {
+            l[c * D + i] = minus_product(l[c * D + i], l[j * D + i], l[j * D + c]);
+          }
         }
       }
     }
@@ -55,7 +54,9 @@ struct Kernels {
         for (int j = 0; j < D; ++j) {
           for (int i = 0; i < K; ++i) w[j * K + i] = from[j * K + i];
           for (int k = 0; k < j; ++k) {
-            for (int i = 0; i < K; ++i) w[j * K + i] -= w[k * K + i] * l[k * D + j];
+            for (int i = 0; i < K; ++i) {
+              w[j * K + i] = minus_product(w[j * K + i], w[k * K + i], l[k * D + j]);
+            }
           }
           for (int i = 0; i < K; ++i) w[j * K + i] *= inverse[j];
         }
@@ -67,7 +68,9 @@ struct Kernels {
         for (int j = 0; j < d; ++j) {
           for (int i = 0; i < n; ++i) to[j * n + i] = from[j * n + i];
           for (int k = 0; k < j; ++k) {
-            for (int i = 0; i < n; ++i) to[j * n + i] -= to[k * n + i] * l[k * d + j];
+            for (int i = 0; i < n; ++i) {
+              to[j * n + i] = minus_product(to[j * n + i], to[k * n + i], l[k * d + j]);
+            }
           }
           for (int i = 0; i < n; ++i) to[j * n + i] /= l[j * d + j];
         }
@@ -82,16 +85,17 @@ struct Kernels {
   template <int First>
   static void subtract_rows(double* __restrict target, const double* __restrict left,
                             const double* __restrict right) {
-    constexpr int kLeft = K - First, kWidth = kLeft >= 8 ? 8 : kLeft >= 4 ? 4 : kLeft >= 2 ? 2 : 1;
-    // A typedef: GCC drops the attribute from an alias declaration when its size is dependent.
-    typedef double Rows __attribute__((vector_size(kWidth * sizeof(double))));
+    constexpr int kLeft = K - First;
+    constexpr int kWidth = kLeft >= kLanes ? kLanes : kLeft >= 4 ? 4 : kLeft >= 2 ? 2 : 1;
+    using Rows = typename Lanes<kWidth>::Type;
     Rows factors[D];
-    for (int k = 0; k < D; ++k) std::memcpy(&factors[k], left + k * K + First, sizeof(Rows));
+    for (int k = 0; k < D; ++k) factors[k] = load<Rows>(left + k * K + First);
     for (int c = 0; c < K; ++c) {
-      Rows rows;
-      std::memcpy(&rows, target + c * K + First, sizeof rows);
-      for (int k = 0; k < D; ++k) rows -= factors[k] * right[k * K + c];
-      std::memcpy(target + c * K + First, &rows, sizeof rows);
+      Rows rows = load<Rows>(target + c * K + First);
+      for (int k = 0; k < D; ++k) {
+        rows = minus_product(rows, factors[k], broadcast<Rows>(right[k * K + c]));
+      }
+      store(target + c * K + First, rows);
     }
     if constexpr (First + kWidth < K) subtract_rows<First + kWidth>(target, left, right);
   }
@@ -104,13 +108,15 @@ struct Kernels {
       subtract_rows<0>(target, left, right);
     } else {
       if (m * n * inner > 4096) {
-        locograph::subtract_product(target, m, left, m, right, n, m, n, inner);
+        dense_kernels.subtract_product(target, m, left, m, right, n, m, n, inner);
         return;
       }
       for (int c = 0; c < n; ++c) {
         for (int k = 0; k < inner; ++k) {
           const double factor = right[k * n + c];
-          for (int r = 0; r < m; ++r) target[c * m + r] -= left[k * m + r] * factor;
+          for (int r = 0; r < m; ++r) {
+            target[c * m + r] = minus_product(target[c * m + r], left[k * m + r], factor);
+          }
         }
       }
     }
@@ -149,7 +155,7 @@ struct Kernels {
     const double* l = diagonal(column);
     for (int j = 0; j < d; ++j) {
       t[j] /= l[j * d + j];
-      for (int i = j + 1; i < d; ++i) t[i] -= l[j * d + i] * t[j];
+      for (int i = j + 1; i < d; ++i) t[i] = minus_product(t[i], l[j * d + i], t[j]);
     }
   }
 
@@ -157,7 +163,7 @@ struct Kernels {
     const int d = dimension(column);
     const double* l = diagonal(column);
     for (int j = d - 1; j >= 0; --j) {
-      for (int i = j + 1; i < d; ++i) t[j] -= l[j * d + i] * t[i];
+      for (int i = j + 1; i < d; ++i) t[j] = minus_product(t[j], l[j * d + i], t[i]);
       t[j] /= l[j * d + j];
     }
   }
@@ -169,7 +175,7 @@ struct Kernels {
       const int n = rows(column, b);
       double* __restrict out = y + column.row_scalar[column.row[b]];
       for (int j = 0; j < d; ++j) {
-        for (int i = 0; i < n; ++i) out[i] -= w[j * n + i] * t[j];
+        for (int i = 0; i < n; ++i) out[i] = minus_product(out[i], w[j * n + i], t[j]);
       }
       w += n * d;
     }
@@ -183,7 +189,7 @@ struct Kernels {
       const double* in = y + column.row_scalar[column.row[b]];
       for (int j = 0; j < d; ++j) {
         double sum = 0.0;
-        for (int i = 0; i < n; ++i) sum += w[j * n + i] * in[i];
+        for (int i = 0; i < n; ++i) sum = plus_product(sum, w[j * n + i], in[i]);
         t[j] -= sum;
       }
       w += n * d;
@@ -198,21 +204,21 @@ struct Kernels {
 }  // namespace
 
 const SchurKernels& schur_kernels(int rows, int dimension) {
-  if (rows == 9 && dimension == 3) return Kernels<9, 3>::kTable;
-  if (rows == 6 && dimension == 3) return Kernels<6, 3>::kTable;
-  if (rows == 6 && dimension == 1) return Kernels<6, 1>::kTable;
-  if (rows == 3 && dimension == 2) return Kernels<3, 2>::kTable;
+  if (rows == 9 && dimension == 3) return SizedKernels<9, 3>::kTable;
+  if (rows == 6 && dimension == 3) return SizedKernels<6, 3>::kTable;
+  if (rows == 6 && dimension == 1) return SizedKernels<6, 1>::kTable;
+  if (rows == 3 && dimension == 2) return SizedKernels<3, 2>::kTable;
   // Points and inverse depths on rows of different sizes, or of a size that is rare.
   switch (dimension) {
     case 3:
-      return Kernels<0, 3>::kTable;
+      return SizedKernels<0, 3>::kTable;
     case 2:
-      return Kernels<0, 2>::kTable;
+      return SizedKernels<0, 2>::kTable;
     case 1:
-      return Kernels<0, 1>::kTable;
+      return SizedKernels<0, 1>::kTable;
     default:
-      return Kernels<0, 0>::kTable;
+      return SizedKernels<0, 0>::kTable;
   }
 }
 
-}  // namespace locograph
+}  // namespace locograph::LOCOGRAPH_SIMD_NAMESPACE

@@ -25,8 +25,9 @@ struct SchurColumn {
   double* factor = nullptr;
 };
 
-/// Functions of one pair of sizes. All of them touch blocks first ≤ i < last only where they take a
-/// range: a sum over columns that is split by kept rows has the same bits as one that is not.
+/// Functions of one pair of sizes, from Kernels::schur (kernels.h). All of them touch blocks first
+/// ≤ i < last only where they take a range: a sum over columns that is split by kept rows has the
+/// same bits as one that is not.
 struct SchurKernels {
   /// factor ← W, L. False when C + damping is not positive definite.
   bool (*eliminate)(const SchurColumn&, const double* values, const double* damping);
@@ -44,8 +45,5 @@ struct SchurKernels {
   /// t −= Σ W_iᵀ y_i.
   void (*gather)(const SchurColumn&, const double* y, double* t);
 };
-
-/// For D as given and all rows of dimension K; K = 0: rows of different dimensions.
-const SchurKernels& schur_kernels(int rows, int dimension);
 
 }  // namespace locograph

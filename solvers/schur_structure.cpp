@@ -1,4 +1,5 @@
 #include <locograph/core/linear_solver.h>
+#include <locograph/solvers/kernels.h>
 #include <locograph/solvers/schur_structure.h>
 
 #include <algorithm>
@@ -70,7 +71,7 @@ void SchurStructure::choose_kernels() {
       same = same && pattern_.dimension[c.row[i]] == first;
       height += pattern_.dimension[c.row[i]];
     }
-    kernels_[p] = &schur_kernels(same ? first : 0, c.dimension);
+    kernels_[p] = &locograph::kernels().schur(same ? first : 0, c.dimension);
     cost_ += c.dimension * (0.5 * height * height + height * c.dimension);
   }
 }

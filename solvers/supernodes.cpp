@@ -1,5 +1,5 @@
 #include <locograph/solvers/cost_model.h>
-#include <locograph/solvers/simd.h>
+#include <locograph/solvers/kernels.h>
 #include <locograph/solvers/supernodes.h>
 
 #include <algorithm>
@@ -261,12 +261,13 @@ void list_rows(const BlockGraph& graph, Supernodes& s) {
 
 /// Memory of panels and front vectors, and where the rows of each update matrix go in its parent.
 void lay_out(Supernodes& s) {
+  const Kernels& registers = kernels();
   const int count = s.count();
   s.leading.resize(count);
   s.panel_begin.assign(1, 0);
   s.vector_begin.assign(1, 0);
   for (int i = 0; i < count; ++i) {
-    s.leading[i] = padded(s.width[i]) + padded(s.below[i]);
+    s.leading[i] = registers.padded(s.width[i]) + registers.padded(s.below[i]);
     s.panel_begin.push_back(s.panel_begin.back() + std::int64_t{s.leading[i]} * s.width[i]);
     s.vector_begin.push_back(s.vector_begin.back() + s.leading[i]);
   }
@@ -280,7 +281,7 @@ void lay_out(Supernodes& s) {
     for (int c = s.first[p]; c < s.first[p + 1]; ++c) {
       place[c] = s.scalar_begin[c] - s.scalar_begin[s.first[p]];
     }
-    int next = padded(s.width[p]);
+    int next = registers.padded(s.width[p]);
     for (std::int64_t k = s.row_begin[p]; k < s.row_begin[p + 1]; ++k) {
       place[s.row[k]] = next;
       next += s.scalar_begin[s.row[k] + 1] - s.scalar_begin[s.row[k]];
@@ -315,10 +316,11 @@ void lay_out(Supernodes& s) {
 /// Above, fronts run side by side: there a matrix takes the places of its grandchildren, whose
 /// parents are done when it begins.
 void place_updates(Supernodes& s) {
+  const Kernels& registers = kernels();
   const int count = s.count();
   std::vector<int> depth(count, 0);
   for (int i = count - 1; i >= 0; --i) depth[i] = s.parent[i] == -1 ? 0 : depth[s.parent[i]] + 1;
-  const auto size = [&](int i) { return std::int64_t{s.below[i]} * padded(s.below[i]); };
+  const auto size = [&](int i) { return std::int64_t{s.below[i]} * registers.padded(s.below[i]); };
   s.update_begin.assign(count, 0);
   std::int64_t peak[2] = {0, 0};
   for (int item = 0; s.item_begin[item] < s.top; ++item) {

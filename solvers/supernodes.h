@@ -6,15 +6,17 @@
 ///     double* panel = factor + s.panel_begin[i];       // padded(width) + padded(below) rows
 ///
 /// A supernode is a set of block columns eliminated together. Its front has `width` scalar pivot
-/// rows, padded to whole registers, and `below` rows, padded as well; the first `width` columns are
-/// a panel of the factor, the rest is the update matrix that it hands to its parent (Duff & Reid
-/// 1983; Liu 1992). Which columns are joined is decided by an estimate of the time of a front.
+/// rows, padded to whole registers (Kernels::padded), and `below` rows, padded as well; the first
+/// `width` columns are a panel of the factor, the rest is the update matrix that it hands to its
+/// parent (Duff & Reid 1983; Liu 1992). Which columns are joined is decided by an estimate of the
+/// time of a front.
 ///
 /// Order: contiguous ranges of supernodes are items of work. The first items are whole subtrees and
 /// wait for nothing; the others are the top of the tree, front by front or a short path of them.
 /// Children precede parents everywhere. Nothing here depends on the number of threads.
 
 #include <locograph/solvers/elimination_tree.h>
+#include <locograph/solvers/front_kernels.h>
 #include <locograph/solvers/item_graph.h>
 
 #include <cstdint>
@@ -23,13 +25,6 @@
 namespace locograph {
 
 struct Supernodes {
-  /// Rows that are contiguous both in the update matrix of a supernode and in its parent's front.
-  struct Run {
-    int from;    ///< row of the update matrix
-    int to;      ///< row of the parent's front, padding included
-    int length;  ///< scalar rows
-  };
-
   std::vector<int> old_of_new, new_of_old;  ///< block rows
   std::vector<int> scalar_begin;            ///< by new block row; size + 1 entries
 
@@ -44,7 +39,7 @@ struct Supernodes {
   std::vector<std::int64_t> row_begin;           ///< into row; count + 1 entries
   std::vector<int> row;                          ///< block rows under each supernode, ascending
   std::vector<std::int64_t> run_begin, run_end;  ///< of each supernode, into run
-  std::vector<Run> run;
+  std::vector<FrontRun> run;
   std::vector<int> pivot_runs;             ///< how many runs of each end among the parent's pivots
   std::vector<std::int64_t> update_begin;  ///< of each update matrix: on a stack, or else shared
   std::int64_t stack_size = 0;             ///< numbers that each thread needs
