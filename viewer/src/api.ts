@@ -29,23 +29,24 @@ export class Api {
 
   state() {
     const { app } = this;
-    const marks = app.violations.marks;
+    const { plan, violations, basePosition, centreOfMass } = app.views;
+    const { marks } = violations;
     return {
       kind: app.scene.kind,
       time: app.player.time,
       index: app.player.index,
-      configurations: app.plan?.count ?? 0,
-      base: app.basePosition.toArray(),
-      centreOfMass: app.centreOfMass?.toArray() ?? null,
+      configurations: plan?.count ?? 0,
+      base: basePosition.toArray(),
+      centreOfMass: centreOfMass?.toArray() ?? null,
       playing: app.player.playing,
       speed: app.player.speed,
       loop: app.player.loop,
       view: app.rig.view,
       theme: app.themeName,
-      executed: app.plan?.executed ?? null,
-      window: app.plan?.window ?? 0,
+      executed: plan?.executed ?? null,
+      window: plan?.window ?? 0,
       violations: marks.filter(({ violation }) => violation.violated).length,
-      selectedViolation: marks[app.violations.selected]?.violation.constraint ?? null,
+      selectedViolation: marks[violations.selected]?.violation.constraint ?? null,
       layers: Object.fromEntries(app.layers.all.map(({ id, on }) => [id, on])),
       frames: app.frames,
       drawCalls: app.stage.renderer.info.render.calls,

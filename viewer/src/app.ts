@@ -1,68 +1,47 @@
-/** The whole page for one scene: builds the views, and brings them to the time shown. */
-import { Box3, Vector3 } from 'three';
+/** The whole page for one scene: puts its parts together, and brings them to the time shown. */
+import { Vector3 } from 'three';
 import { CameraRig, headingOf, ViewName, VIEWS } from './cameras';
-import { ContactTrack } from './contacts';
-import { ContactView } from './contact_view';
 import { element } from './dom';
 import { Help } from './help';
 import { listenToKeys } from './keyboard';
-import { Kinematics } from './kinematics';
 import { Layers } from './layers';
 import { Legend } from './legend';
 import { legendEntries } from './legend_entries';
+import { PageActions } from './page_actions';
 import { Panel } from './panel';
-import { PathView } from './path_view';
-import { Plan } from './plan';
 import { Player } from './player';
-import { PoseGraphView } from './pose_graph_view';
-import { RobotView } from './robot_view';
-import { Scene, SceneError } from './scene_format';
+import { Scene } from './scene_format';
 import { addSceneLayers } from './scene_layers';
+import { SceneViews } from './scene_views';
 import { Stage } from './stage';
 import { preferredTheme, ThemeName, THEMES } from './theme';
 import { Timeline } from './timeline';
 import { TopBar } from './top_bar';
-import { ViolationView } from './violation_view';
-import { VoxelView } from './voxel_view';
-import { WorldView } from './world_view';
 
 const PANEL_EVERY_MS = 90;
 
-export class App {
+export class App implements PageActions {
   readonly stage: Stage;
+  readonly views: SceneViews;
   readonly layers: Layers;
   readonly player: Player;
   readonly rig: CameraRig;
-  readonly plan: Plan | null = null;
-  readonly violations: ViolationView;
   readonly bar: TopBar;
-  readonly help: Help;
-  gridCell = 0.2;
   themeName: ThemeName = preferredTheme();
   frames = 0;
+  /** The clock follows what a running refinement has executed. */
+  followLive = false;
 
   private readonly page: HTMLElement;
   private readonly view: HTMLElement;
   private readonly panel: Panel;
   private readonly legend: Legend;
-
-  readonly world: WorldView;
-  readonly kinematics: Kinematics | null = null;
-  private readonly ghostKinematics: Kinematics | null = null;
-  readonly robot: RobotView | null = null;
-  readonly track: ContactTrack | null = null;
-  readonly contactView: ContactView | null = null;
-  readonly path: PathView | null = null;
-  readonly voxels: VoxelView | null = null;
-  readonly graph: PoseGraphView | null = null;
+  private readonly help: Help;
   private readonly timeline: Timeline | null = null;
 
-  private readonly configuration: Float32Array;
-  private readonly velocities: Float32Array;
-  private readonly torques: Float32Array | null;
-  private readonly base = new Vector3();
   private readonly centre = new Vector3();
   private radius = 1;
+  private gridCell = 0.2;
   private ghostNumber = 8;
   private width = 1;
   private height = 1;
@@ -70,8 +49,6 @@ export class App {
   private panelTime = 0;
   private paintedExecuted: number | null | undefined = undefined;
   private initial: Float32Array | null = null;
-  /** The clock follows what a running refinement has executed. */
-  followLive = false;
 
   constructor(
     readonly scene: Scene,
@@ -89,76 +66,25 @@ export class App {
     this.stage = new Stage(canvas);
     this.rig = new CameraRig(this.stage);
     this.layers = new Layers(() => this.invalidate(true));
+    this.views = new SceneViews(scene, this.stage.scene, overlay);
+    const { plan, kinematics, robot, graph, violations } = this.views;
+    this.player = new Player(plan);
 
-    if (scene.robot) {
-      this.kinematics = new Kinematics(scene.robot);
-      this.ghostKinematics = new Kinematics(scene.robot);
-      this.robot = new RobotView(scene.robot, this.kinematics, this.ghostKinematics);
-      this.stage.scene.add(this.robot.group, this.robot.ghosts);
-    }
-    if (scene.plan && this.kinematics) {
-      this.plan = new Plan(scene.plan, this.kinematics.floating);
-      if (this.plan.size < this.kinematics.configurationSize) {
-        throw new SceneError(
-          `A configuration has ${this.plan.size} numbers; robot "${scene.robot!.name}" needs ` +
-            `${this.kinematics.configurationSize}.`,
-        );
-      }
-      this.track = new ContactTrack(this.plan);
-      this.path = new PathView(this.plan, this.ghostKinematics!);
-      this.stage.scene.add(this.path.dots, this.path.lines, this.path.referenceLine);
-    }
-    const size = Math.max(this.plan?.size ?? 0, this.kinematics?.configurationSize ?? 0, 1);
-    this.configuration = new Float32Array(size);
-    if (this.kinematics?.floating) this.configuration[6] = 1;
-    this.velocities = new Float32Array(size);
-    const torques = this.plan?.torques || (this.track?.hasForces && this.kinematics!.mass > 0);
-    this.torques = torques ? new Float32Array(size) : null;
-    if (this.kinematics) {
-      this.plan?.sample(this.plan.start, this.configuration);
-      this.kinematics.update(this.configuration);
-      const scale = Math.min(Math.max(this.robot!.bounds(this.centre) / 2, 0.3), 1.2);
-      this.contactView = new ContactView(this.kinematics, this.track, scale);
-      const { contacts, forces, balance } = this.contactView;
-      this.stage.scene.add(contacts, forces, balance);
-    }
-    this.world = new WorldView(scene.obstacles ?? [], scene.surfaces ?? []);
-    this.stage.scene.add(this.world.obstacles, this.world.surfaces);
-    if (scene.map) {
-      this.voxels = new VoxelView(scene.map.voxels, scene.map.resolution);
-      this.stage.scene.add(this.voxels.group);
-    }
-    if (scene.graph && scene.kind === 'pose_graph') {
-      this.graph = new PoseGraphView(scene.graph);
-      const { before, after, loops, landmarks } = this.graph;
-      this.stage.scene.add(before, after, loops, landmarks);
-    }
-    this.violations = new ViolationView(scene.check?.violations ?? [], this.plan, overlay);
-    this.stage.scene.add(this.violations.group);
-    this.player = new Player(this.plan);
-
-    this.panel = new Panel(this.page, scene, this.violations.marks, (i) => this.jumpTo(i));
+    this.panel = new Panel(this.page, scene, violations.marks, (i) => this.jumpTo(i));
     this.panel.addMissing(scene.robot?.missing ?? []);
-    if (this.plan && this.kinematics) {
-      this.panel.addPlan(this.plan, this.kinematics, this.torques !== null);
-    }
-    if (this.plan && this.plan.count > 1) {
-      this.timeline = new Timeline(
-        this.page,
-        scene,
-        this.plan,
-        this.player,
-        this.violations.marks,
-        () => this.userMoved(),
+    if (plan && kinematics) this.panel.addPlan(plan, kinematics, this.views.torques !== null);
+    if (plan && plan.count > 1) {
+      this.timeline = new Timeline(this.page, scene, plan, this.player, violations.marks, () =>
+        this.userMoved(),
       );
     }
-    if (this.graph) this.panel.addGraph(this.graph);
-    addSceneLayers(this);
+    if (graph) this.panel.addGraph(graph);
+    addSceneLayers(this.layers, this.views, this.stage.ground);
     const switches = this.panel.addSwitches(this.layers);
-    if (this.plan && this.plan.count > 1) this.addGhostNumber(switches);
+    if (plan && plan.count > 1) this.addGhostNumber(switches);
     this.legend = new Legend(this.view, (layer) => this.layers.isOn(layer));
     this.help = new Help(this.page, this.layers.all);
-    this.bar = new TopBar(bar, this);
+    this.bar = new TopBar(bar, scene, this.views, this);
     this.page.classList.toggle('no-timeline', !this.timeline);
     if (innerWidth <= 700) this.showPanel(false);
 
@@ -166,14 +92,12 @@ export class App {
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () =>
       this.setTheme(preferredTheme()),
     );
-    listenToKeys(this);
+    listenToKeys(this.player, this.layers, this, () => this.userMoved());
     this.setTheme(this.themeName);
     this.resize();
     this.setExtent();
     this.update();
-    this.setView(
-      this.graph ? (this.graph.planar ? 'top' : 'overview') : this.robot ? 'follow' : 'overview',
-    );
+    this.setView(graph ? (graph.planar ? 'top' : 'overview') : robot ? 'follow' : 'overview');
   }
 
   // Building
@@ -193,37 +117,16 @@ export class App {
   }
 
   private setExtent(): void {
-    const box = this.sceneBox();
+    const { graph } = this.views;
+    const box = this.views.box();
     const span = box.getSize(new Vector3()).length();
-    if (this.graph) {
+    if (graph) {
       const decade = 10 ** Math.floor(Math.log10(Math.max(span, 1) / 10));
       this.gridCell = decade;
-      this.stage.setExtent(Math.max(span, 5), decade, this.graph.planar ? -0.01 * span : box.min.z);
+      this.stage.setExtent(Math.max(span, 5), decade, graph.planar ? -0.01 * span : box.min.z);
     } else {
       this.stage.setExtent(Math.max(18, 1.2 * span), this.gridCell, 0);
     }
-  }
-
-  private sceneBox(): Box3 {
-    if (this.graph) return this.graph.box;
-    const box = new Box3();
-    const point = new Vector3();
-    if (this.robot) {
-      const size = this.robot.bounds(point);
-      box.expandByPoint(point.clone().addScalar(0.3 * size));
-      box.expandByPoint(point.subScalar(0.3 * size));
-    }
-    if (this.plan && this.kinematics?.floating) {
-      for (let i = 0; i < this.plan.configurations.length; i += this.plan.size) {
-        point.fromArray(this.plan.configurations, i);
-        box.expandByPoint(point.addScalar(0.5));
-        box.expandByPoint(point.subScalar(1));
-      }
-    }
-    if (!this.robot) box.expandByObject(this.voxels?.group ?? this.world.obstacles);
-    if (!this.robot) box.expandByObject(this.world.obstacles).expandByObject(this.world.surfaces);
-    if (box.isEmpty()) box.set(new Vector3(-1, -1, 0), new Vector3(1, 1, 1));
-    return box;
   }
 
   // Acting
@@ -233,9 +136,10 @@ export class App {
     this.panelTime = 0;
     if (legend) {
       this.paintedExecuted = undefined;
-      if (this.layers.isOn('ghosts') && this.plan)
-        this.robot?.placeGhosts(this.plan, this.ghostNumber);
-      this.legend?.show(legendEntries(this), this.voxels?.count ? this.voxels : null);
+      if (this.layers.isOn('ghosts')) this.views.placeGhosts(this.ghostNumber);
+      const entries = legendEntries(this.views, this.layers, THEMES[this.themeName], this.gridCell);
+      const { voxels } = this.views;
+      this.legend?.show(entries, voxels?.count ? voxels : null);
     }
     this.stage.invalidate();
   }
@@ -260,9 +164,7 @@ export class App {
     document.documentElement.dataset.theme = name;
     const theme = THEMES[name];
     this.stage.applyTheme(theme, name === 'dark');
-    this.contactView?.applyTheme(theme);
-    this.world.applyTheme(theme);
-    this.graph?.applyTheme(theme);
+    this.views.applyTheme(theme);
     this.invalidate(true);
   }
 
@@ -280,6 +182,10 @@ export class App {
     this.showPanel(this.page.classList.contains('panel-closed'));
   }
 
+  toggleHelp(): void {
+    this.help.toggle();
+  }
+
   showInterface(on: boolean): void {
     this.page.classList.toggle('bare', !on);
     this.resize();
@@ -287,21 +193,21 @@ export class App {
 
   setView(view: ViewName): void {
     if (!VIEWS.includes(view)) return;
-    if (this.graph) {
-      this.rig.lookAtBox(this.graph.box, view === 'top');
+    const { plan, robot, graph, worldFromBase } = this.views;
+    if (graph) {
+      this.rig.lookAtBox(graph.box, view === 'top');
       this.rig.view = view;
       if (view === 'front' || view === 'side') {
-        const radius = 0.5 * this.graph.box.getSize(new Vector3()).length();
-        this.rig.look(view, this.graph.box.getCenter(this.centre), radius, 0);
+        const radius = 0.5 * graph.box.getSize(new Vector3()).length();
+        this.rig.look(view, graph.box.getCenter(this.centre), radius, 0);
       }
-    } else if (view === 'overview' || !this.robot || !this.kinematics) {
-      this.rig.lookAtBox(this.sceneBox(), false);
+    } else if (view === 'overview' || !robot || !worldFromBase) {
+      this.rig.lookAtBox(this.views.box(), false);
       this.rig.following = false;
     } else {
-      const world = this.kinematics.worldFromLink[this.kinematics.root];
-      this.radius = 0.56 * this.robot.bounds(this.centre);
-      this.rig.look(view, this.centre, Math.max(this.radius, 0.3), headingOf(world));
-      if (this.plan) this.rig.startFollowing(world);
+      this.radius = 0.56 * robot.bounds(this.centre);
+      this.rig.look(view, this.centre, Math.max(this.radius, 0.3), headingOf(worldFromBase));
+      if (plan) this.rig.startFollowing(worldFromBase);
     }
     this.bar.showView(view);
     this.stage.invalidate();
@@ -310,10 +216,11 @@ export class App {
 
   /** Goes to the moment and the place of a violation. */
   jumpTo(index: number): void {
-    const mark = this.violations.marks[index];
+    const { violations } = this.views;
+    const mark = violations.marks[index];
     if (!mark) return;
     this.player.playing = false;
-    this.violations.selected = index;
+    violations.selected = index;
     this.panel.check?.select(index);
     if (mark.time !== null) this.setTime(mark.time);
     this.update();
@@ -327,11 +234,11 @@ export class App {
 
   /** Back to the plan as it was before the run. */
   restartLive(): void {
-    const { plan } = this;
+    const { plan } = this.views;
     if (!plan) return;
     this.initial ??= plan.configurations.slice();
     const { size, count } = plan;
-    const rows: Record<number, ArrayLike<number>> = {};
+    const rows: Record<string, ArrayLike<number>> = {};
     for (let i = 0; i < count; ++i) rows[i] = this.initial.subarray(i * size, (i + 1) * size);
     this.applyLive(rows, 0, 0);
   }
@@ -342,15 +249,12 @@ export class App {
     executed: number,
     window: number,
   ): void {
-    const { plan, track, ghostKinematics } = this;
-    if (!plan || !track || !ghostKinematics) return;
-    for (const [index, configuration] of Object.entries(configurations ?? {})) {
-      track.replace(Number(index), configuration, ghostKinematics);
-    }
+    const { plan } = this.views;
+    if (!plan) return;
+    this.views.replace(configurations ?? {});
     plan.executed = executed;
     plan.window = window;
     this.layers.set('by_time', false);
-    this.path?.place();
     this.invalidate(true);
   }
 
@@ -368,8 +272,9 @@ export class App {
 
   /** One frame: `seconds` of real time have passed. Says whether anything was drawn. */
   frame(now: number, seconds: number): boolean {
-    if (this.followLive && this.plan && this.plan.executed !== null) {
-      const target = this.plan.times[Math.min(this.plan.executed, this.plan.count - 1)];
+    const { plan, violations } = this.views;
+    if (this.followLive && plan && plan.executed !== null) {
+      const target = plan.times[Math.min(plan.executed, plan.count - 1)];
       const gap = target - this.player.time;
       if (Math.abs(gap) > 1e-3) {
         this.player.setTime(this.player.time + gap * Math.min(1, 4 * seconds));
@@ -378,7 +283,7 @@ export class App {
     }
     if (this.player.advance(seconds)) this.changed = true;
     if (this.changed) this.update();
-    this.violations.update(this.player.time, this.stage.camera, this.width, this.height);
+    violations.update(this.player.time, this.stage.camera, this.width, this.height);
     const drawn = this.stage.draw();
     if (drawn) ++this.frames;
     if (drawn && now - this.panelTime > PANEL_EVERY_MS) {
@@ -391,66 +296,35 @@ export class App {
   /** Brings everything in the drawing to the time of the player. */
   update(): void {
     this.changed = false;
-    const { time } = this.player;
-    if (this.kinematics && this.robot) {
-      this.plan?.sample(time, this.configuration);
-      this.kinematics.update(this.configuration);
-      this.robot.update();
-      this.track?.update(time);
-      this.contactView?.update();
-      const world = this.kinematics.worldFromLink[this.kinematics.root];
-      this.base.setFromMatrixPosition(world);
-      this.rig.follow(world);
-      this.stage.lightAt(this.base, Math.max(2.2 * this.radius, 1.2));
+    this.views.update(this.player.time);
+    const { worldFromBase, basePosition, path } = this.views;
+    if (worldFromBase) {
+      this.rig.follow(worldFromBase);
+      this.stage.lightAt(basePosition, Math.max(2.2 * this.radius, 1.2));
     }
-    this.world.update(time);
     const executed = this.shownExecuted();
     if (executed !== this.paintedExecuted) {
       this.paintedExecuted = executed;
-      this.path?.paint(THEMES[this.themeName], executed);
+      path?.paint(THEMES[this.themeName], executed);
       this.timeline?.draw(THEMES[this.themeName], executed);
     }
     this.timeline?.update();
     this.stage.invalidate();
   }
 
-  /** Position of the robot's base at the time shown. */
-  get basePosition(): Vector3 {
-    return this.base;
-  }
-
-  get centreOfMass(): Vector3 | null {
-    return this.kinematics && this.kinematics.mass > 0
-      ? (this.contactView?.centreOfMass ?? null)
-      : null;
-  }
-
   private shownExecuted(): number | null {
-    if (!this.plan) return null;
-    return this.layers.isOn('by_time') ? this.plan.indexAt(this.player.time) : this.plan.executed;
+    const { plan } = this.views;
+    if (!plan) return null;
+    return this.layers.isOn('by_time') ? plan.indexAt(this.player.time) : plan.executed;
   }
 
   private updatePanel(): void {
-    const { plan, kinematics } = this;
+    const { plan, kinematics, track, basePosition, centreOfMass } = this.views;
     if (!plan || !kinematics) return;
     const { time } = this.player;
-    const base = kinematics.floating ? this.base : null;
-    this.panel.update(time, base, this.centreOfMass, this.track);
-    plan.velocities(time, this.velocities);
-    if (this.torques) {
-      if (plan.torques) {
-        const joints = plan.size - (kinematics.floating ? 7 : 0);
-        const first = plan.nearestIndex(time) * joints;
-        for (let k = 0; k < joints; ++k) this.torques[k] = plan.torques[first + k];
-      } else if (this.track) {
-        kinematics.staticTorques(this.track.current, this.torques);
-      }
-    }
-    this.panel.updateJoints(
-      this.configuration,
-      kinematics.floating ? 7 : 0,
-      this.velocities,
-      this.torques,
-    );
+    this.panel.update(time, kinematics.floating ? basePosition : null, centreOfMass, track);
+    this.views.updateRates(time);
+    const { configuration, velocities, torques } = this.views;
+    this.panel.updateJoints(configuration, kinematics.floating ? 7 : 0, velocities, torques);
   }
 }

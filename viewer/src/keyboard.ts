@@ -1,5 +1,7 @@
 /** What keys do. */
-import type { App } from './app';
+import { Layers } from './layers';
+import { PageActions } from './page_actions';
+import { Player } from './player';
 
 /** Typing into a field, or pressing what has the focus, is not for us. */
 function belongsToField(target: EventTarget | null, key: string): boolean {
@@ -12,8 +14,13 @@ function belongsToField(target: EventTarget | null, key: string): boolean {
   return pressable && key === ' ';
 }
 
-export function listenToKeys(app: App): void {
-  const { player } = app;
+/** `moved`: called after a key that acts on the page; a layer's key says for itself what changed. */
+export function listenToKeys(
+  player: Player,
+  layers: Layers,
+  page: PageActions,
+  moved: () => void,
+): void {
   const actions: Record<string, () => void> = {
     ' ': () => player.toggle(),
     ArrowLeft: () => player.step(-1),
@@ -24,14 +31,14 @@ export function listenToKeys(app: App): void {
     '=': () => player.faster(1),
     '-': () => player.faster(-1),
     l: () => (player.loop = !player.loop),
-    t: () => app.toggleTheme(),
-    p: () => app.togglePanel(),
-    '?': () => app.help.toggle(),
-    '0': () => app.setView('overview'),
-    '1': () => app.setView('front'),
-    '2': () => app.setView('side'),
-    '3': () => app.setView('top'),
-    '4': () => app.setView('follow'),
+    t: () => page.toggleTheme(),
+    p: () => page.togglePanel(),
+    '?': () => page.toggleHelp(),
+    '0': () => page.setView('overview'),
+    '1': () => page.setView('front'),
+    '2': () => page.setView('side'),
+    '3': () => page.setView('top'),
+    '4': () => page.setView('follow'),
   };
   addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
@@ -39,8 +46,8 @@ export function listenToKeys(app: App): void {
     const action = Object.hasOwn(actions, event.key) ? actions[event.key] : undefined;
     if (action) {
       action();
-      app.userMoved();
-    } else if (!app.layers.press(event.key)) {
+      moved();
+    } else if (!layers.press(event.key)) {
       return;
     }
     event.preventDefault();

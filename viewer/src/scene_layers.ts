@@ -1,12 +1,13 @@
 /** The switches of a scene: one for each thing in it that can be shown or hidden. */
-import type { App } from './app';
+import { Layers } from './layers';
+import { SceneViews } from './scene_views';
 
 interface Showable {
   visible: boolean;
 }
 
-export function addSceneLayers(app: App): void {
-  const { layers, robot, path, contactView, track, voxels, world, graph, plan, kinematics } = app;
+export function addSceneLayers(layers: Layers, views: SceneViews, ground: Showable): void {
+  const { robot, path, contactView, track, voxels, world, graph, plan, kinematics } = views;
   const show = (
     id: string,
     label: string,
@@ -48,18 +49,18 @@ export function addSceneLayers(app: App): void {
   show('map', 'Map', 'm', voxels?.group, (voxels?.count ?? 0) > 0);
   show('obstacles', 'Obstacles', 'o', world.obstacles, world.obstacles.children.length > 0);
   show('surfaces', 'Surfaces', 'u', world.surfaces, world.surfaces.children.length > 0);
-  if (app.violations.group.children.length > 0) {
+  if (views.violations.group.children.length > 0) {
     layers.add({
       id: 'violations',
       label: 'Violations',
       key: 'x',
       on: true,
-      apply: (on) => app.violations.setVisible(on),
+      apply: (on) => views.violations.setVisible(on),
     });
   }
   show('after', graph?.hasBefore ? 'After optimisation' : 'Odometry', 'a', graph?.after, !!graph);
   show('before', 'Before optimisation', 'b', graph?.before, graph?.hasBefore ?? false);
   show('loops', 'Loop closures', 'c', graph?.loops, (graph?.loopCount ?? 0) > 0);
   show('landmarks', 'Landmarks', 'm', graph?.landmarks, (graph?.pointCount ?? 0) > 0);
-  show('ground', 'Ground grid', 'n', app.stage.ground, true, !graph);
+  show('ground', 'Ground grid', 'n', ground, true, !graph);
 }
