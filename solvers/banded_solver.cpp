@@ -42,13 +42,13 @@ void BandedSolver::analyse(const BlockPattern& pattern) {
     panel_begin_.push_back(panel_begin_.back() +
                            static_cast<std::size_t>(height_[c]) * pattern.dimension[c]);
   }
-  panels_.resize(panel_begin_.back());
+  panels_.reserve(static_cast<std::int64_t>(panel_begin_.back()));
 }
 
 bool BandedSolver::factorise(const double* values, const double* damping) {
   failed_row_ = -1;
   const DenseKernels& dense = kernels().dense;
-  std::fill(panels_.begin(), panels_.end(), 0.0);
+  std::fill_n(panels_.data(), panel_begin_.back(), 0.0);
   // The upper block (r, c) of the pattern is the transpose of the lower block (c, r) of panel r.
   for (int c = 0; c < pattern_.size(); ++c) {
     const int columns = pattern_.dimension[c];

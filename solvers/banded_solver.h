@@ -6,6 +6,7 @@
 /// is indexed inside them.
 
 #include <locograph/core/linear_solver.h>
+#include <locograph/solvers/aligned_memory.h>
 
 #include <vector>
 
@@ -30,7 +31,7 @@ class BandedSolver final : public LinearSolver {
   std::vector<int> last_;  ///< last block row of each panel
   std::vector<std::size_t> panel_begin_;
   std::vector<int> height_;  ///< scalar rows of each panel
-  std::vector<double> panels_;
+  AlignedMemory panels_;
   int failed_row_ = -1;
 };
 

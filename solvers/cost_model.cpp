@@ -9,24 +9,29 @@ constexpr double kPivot = 8e-9;
 constexpr double kFront = 40e-9;
 constexpr double kNumber = 0.16e-9;
 
-/// Whole registers and tiles are computed: what is padded costs as well.
-double products(int width, int below) {
-  const Kernels& k = kernels();
-  const double w = k.padded(width), m = k.padded(below);
-  return kMultiplyAdd * (w * w * w / 6.0 + 0.5 * w * w * m + 0.5 * w * m * (m + k.lanes()));
+/// Read often: an analysis weighs every front a few times.
+const Kernels& registers() {
+  static const Kernels& chosen = kernels();
+  return chosen;
+}
+
+/// Whole registers and tiles are computed: what is padded costs as well. w, m: padded.
+double products(double w, double m, int lanes) {
+  return kMultiplyAdd * (w * w * w / 6.0 + 0.5 * w * w * m + 0.5 * w * m * (m + lanes));
 }
 
 }  // namespace
 
 double front_seconds(int width, int below) {
-  const Kernels& k = kernels();
+  const Kernels& k = registers();
   const double w = k.padded(width), m = k.padded(below);
-  return kFront + kPivot * width + products(width, below) + kNumber * (m * m + width * (w + m));
+  return kFront + kPivot * width + products(w, m, k.lanes()) + kNumber * (m * m + width * (w + m));
 }
 
 double panel_seconds(int width, int below) {
-  const double height = kernels().padded(width + below);
-  return kFront + kPivot * width + products(width, below) + kNumber * width * height;
+  const Kernels& k = registers();
+  const double w = k.padded(width), m = k.padded(below), height = k.padded(width + below);
+  return kFront + kPivot * width + products(w, m, k.lanes()) + kNumber * width * height;
 }
 
 double ordering_seconds(int block_rows, int blocks) {

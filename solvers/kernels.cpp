@@ -12,10 +12,11 @@ struct Level {
   bool (*is_here)();
 };
 
-#define LOCOGRAPH_LEVEL(name)                                                                \
-  {                                                                                          \
-#name, simd_##name::dense_kernels, simd_##name::front_kernels, simd_##name::panel_solve, \
-        simd_##name::schur_kernels                                                           \
+#define LOCOGRAPH_LEVEL(name)                                                                 \
+  Kernels {                                                                                   \
+    .level = #name, .dense = simd_##name::dense_kernels, .front = simd_##name::front_kernels, \
+    .panel = simd_##name::panel_solve, .schur = simd_##name::schur_kernels,                   \
+    .pcg = simd_##name::pcg_kernels                                                           \
   }
 
 // Asked for is what the kernels are made of; a processor that has it has the rest of the level.

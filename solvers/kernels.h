@@ -16,6 +16,7 @@
 #include <locograph/solvers/dense_kernels.h>
 #include <locograph/solvers/front_kernels.h>
 #include <locograph/solvers/panel_solve.h>
+#include <locograph/solvers/pcg_kernels.h>
 #include <locograph/solvers/schur_kernels.h>
 
 #include <string>
@@ -30,6 +31,8 @@ struct Kernels {
   const PanelSolve& panel;
   /// For eliminated columns of `dimension` and rows of `rows` all; 0: rows of different dimensions.
   const SchurKernels& (*schur)(int rows, int dimension);
+  /// For blocks of dimension × dimension all; 0: of different sizes.
+  const PcgKernels& (*pcg)(int dimension);
 
   int lanes() const { return dense.lanes; }
   /// Rows in memory, so that what follows starts at a whole register.

@@ -6,6 +6,7 @@
 #include <locograph/solvers/dense_kernels.h>
 #include <locograph/solvers/front_kernels.h>
 #include <locograph/solvers/panel_solve.h>
+#include <locograph/solvers/pcg_kernels.h>
 #include <locograph/solvers/schur_kernels.h>
 
 #define LOCOGRAPH_LEVEL_TABLES(level)                         \
@@ -14,6 +15,7 @@
   extern const FrontKernels front_kernels;                    \
   extern const PanelSolve panel_solve;                        \
   const SchurKernels& schur_kernels(int rows, int dimension); \
+  const PcgKernels& pcg_kernels(int dimension);               \
   }                                                           \
   static_assert(true, "")
 

@@ -5,19 +5,6 @@
 #include <algorithm>
 
 namespace locograph {
-namespace {
-
-template <int N>
-void multiply(const double* __restrict a, [[maybe_unused]] int size, const double* __restrict x,
-              double* __restrict y) {
-  const int n = N > 0 ? N : size;
-  for (int i = 0; i < n; ++i) y[i] = 0.0;
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) y[i] += a[j * n + i] * x[j];
-  }
-}
-
-}  // namespace
 
 void BlockJacobi::analyse(const BlockPattern& pattern) {
   pattern_ = &pattern;
@@ -29,6 +16,9 @@ void BlockJacobi::analyse(const BlockPattern& pattern) {
     widest_ = std::max(widest_, d);
   }
   blocks_.resize(place_.back());
+  const auto differs = [&](int d) { return d != widest_; };
+  const bool same = std::none_of(pattern.dimension.begin(), pattern.dimension.end(), differs);
+  kernel_ = &kernels().pcg(same ? widest_ : 0);
   task_begin_ = task_beginnings(n);
   const std::size_t tasks = task_begin_.size() - 1;
   failed_.resize(tasks);
@@ -76,19 +66,12 @@ int BlockJacobi::invert(ThreadPool* threads) {
 
 void BlockJacobi::apply(const double* r, double* z, ThreadPool* threads) const {
   const BlockPattern& p = *pattern_;
+  const PcgKernels& own = *kernel_;
   run_chunks(threads, static_cast<int>(task_begin_.size()) - 1, [&](int t) {
     for (int c = task_begin_[t]; c < task_begin_[t + 1]; ++c) {
       const int n = p.dimension[c], at = p.scalar_begin[c];
       const double* block = blocks_.data() + place_[c];
-      if (n == 3) {
-        multiply<3>(block, n, r + at, z + at);
-      } else if (n == 6) {
-        multiply<6>(block, n, r + at, z + at);
-      } else if (n == 9) {
-        multiply<9>(block, n, r + at, z + at);
-      } else {
-        multiply<0>(block, n, r + at, z + at);
-      }
+      own.multiply(block, n, r + at, z + at);
     }
   });
 }

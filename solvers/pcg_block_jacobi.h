@@ -11,6 +11,7 @@
 
 #include <locograph/common/thread_pool.h>
 #include <locograph/core/block_matrix.h>
+#include <locograph/solvers/pcg_kernels.h>
 
 #include <vector>
 
@@ -31,6 +32,7 @@ class BlockJacobi {
   int invert_range(int begin, int end, double* work);
 
   const BlockPattern* pattern_ = nullptr;
+  const PcgKernels* kernel_ = nullptr;
   std::vector<std::int64_t> place_;
   std::vector<double> blocks_, work_;
   std::vector<int> task_begin_, failed_;

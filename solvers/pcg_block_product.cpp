@@ -1,3 +1,4 @@
+#include <locograph/solvers/kernels.h>
 #include <locograph/solvers/pcg_block_product.h>
 #include <locograph/solvers/pcg_iteration.h>
 
@@ -6,44 +7,12 @@
 namespace locograph {
 namespace {
 
-/// N × N blocks, N = 0: of any size.
-template <int N>
-struct SizedKernels {
-  static void add(const double* __restrict a, [[maybe_unused]] int m, [[maybe_unused]] int n,
-                  const double* __restrict x, double* __restrict y) {
-    const int rows = N > 0 ? N : m, columns = N > 0 ? N : n;
-    for (int j = 0; j < columns; ++j) {
-      for (int i = 0; i < rows; ++i) y[i] += a[j * rows + i] * x[j];
-    }
-  }
-  static void add_transposed(const double* __restrict a, [[maybe_unused]] int m,
-                             [[maybe_unused]] int n, const double* __restrict x,
-                             double* __restrict y) {
-    const int rows = N > 0 ? N : m, columns = N > 0 ? N : n;
-    for (int j = 0; j < columns; ++j) {
-      double sum = 0.0;
-      for (int i = 0; i < rows; ++i) sum += a[j * rows + i] * x[i];
-      y[j] += sum;
-    }
-  }
-  static constexpr BlockProduct::Kernel kTable = {add, add_transposed};
-};
-
-const BlockProduct::Kernel& kernel_for(const BlockPattern& pattern) {
+const PcgKernels& kernel_for(const BlockPattern& pattern) {
   const int first = pattern.size() > 0 ? pattern.dimension[0] : 0;
   for (const int d : pattern.dimension) {
-    if (d != first) return SizedKernels<0>::kTable;
+    if (d != first) return kernels().pcg(0);
   }
-  switch (first) {
-    case 3:
-      return SizedKernels<3>::kTable;
-    case 6:
-      return SizedKernels<6>::kTable;
-    case 9:
-      return SizedKernels<9>::kTable;
-    default:
-      return SizedKernels<0>::kTable;
-  }
+  return kernels().pcg(first);
 }
 
 }  // namespace

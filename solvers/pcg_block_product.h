@@ -11,6 +11,7 @@
 
 #include <locograph/common/thread_pool.h>
 #include <locograph/core/block_matrix.h>
+#include <locograph/solvers/pcg_kernels.h>
 
 #include <vector>
 
@@ -23,13 +24,6 @@ class BlockProduct {
   void apply(const double* values, const double* damping, const double* x, double* y,
              ThreadPool* threads) const;
 
-  /// Functions for blocks of one size.
-  struct Kernel {
-    /// y += A x and y += Aᵀ x for a rows × columns block.
-    void (*add)(const double* a, int rows, int columns, const double* x, double* y);
-    void (*add_transposed)(const double* a, int rows, int columns, const double* x, double* y);
-  };
-
  private:
   /// A block to the right of the diagonal of its row.
   struct RowBlock {
@@ -39,7 +33,7 @@ class BlockProduct {
                   double* y) const;
 
   const BlockPattern* pattern_ = nullptr;
-  const Kernel* kernel_ = nullptr;
+  const PcgKernels* kernel_ = nullptr;
   std::vector<int> row_begin_, task_begin_;
   std::vector<RowBlock> row_blocks_;
 };

@@ -100,6 +100,20 @@ struct SizedKernels {
     if constexpr (First + kWidth < K) subtract_rows<First + kWidth>(target, left, right);
   }
 
+  /// As many rows of target −= left rightᵀ (m × n) as are read and written at a time.
+  template <class Load, class Store>
+  LOCOGRAPH_INLINE static void subtract_some_rows(double* target, const double* left,
+                                                  const double* right, int m, int n, int inner,
+                                                  const Load& read, const Store& write) {
+    for (int c = 0; c < n; ++c) {
+      Vector rows = read(target + c * m);
+      for (int k = 0; k < inner; ++k) {
+        rows = minus_product(rows, read(left + k * m), broadcast<Vector>(right[k * n + c]));
+      }
+      write(target + c * m, rows);
+    }
+  }
+
   /// target (m × n) −= left rightᵀ
   static void subtract_product(double* __restrict target, const double* __restrict left,
                                const double* __restrict right, [[maybe_unused]] int m,
@@ -111,13 +125,18 @@ struct SizedKernels {
         dense_kernels.subtract_product(target, m, left, m, right, n, m, n, inner);
         return;
       }
-      for (int c = 0; c < n; ++c) {
-        for (int k = 0; k < inner; ++k) {
-          const double factor = right[k * n + c];
-          for (int r = 0; r < m; ++r) {
-            target[c * m + r] = minus_product(target[c * m + r], left[k * m + r], factor);
-          }
-        }
+      int row = 0;
+      for (; row + kLanes <= m; row += kLanes) {
+        subtract_some_rows(
+            target + row, left + row, right, m, n, inner,
+            [](const double* from) { return load(from); },
+            [](double* to, const Vector& v) { store(to, v); });
+      }
+      if (const int rest = m - row; rest > 0) {
+        subtract_some_rows(
+            target + row, left + row, right, m, n, inner,
+            [rest](const double* from) { return load_partial(from, rest); },
+            [rest](double* to, const Vector& v) { store_partial(to, v, rest); });
       }
     }
   }

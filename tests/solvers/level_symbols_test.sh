@@ -22,4 +22,4 @@ while read -r kind symbol; do
       ;;
   esac
 done <<<"$exported"
-[ "$tables" -eq 4 ] || { echo "$tables tables, expected 4" >&2; exit 1; }
+[ "$tables" -eq 5 ] || { echo "$tables tables, expected 5" >&2; exit 1; }
