@@ -11,6 +11,7 @@
 #include <locograph/apps/refine_command.h>
 #include <locograph/apps/view_command.h>
 #include <locograph/common/error.h>
+#include <locograph/solvers/kernels.h>
 
 #include <vector>
 
@@ -25,7 +26,9 @@ int run(int argc, char** argv) {
                                          add_view(app),     add_plot(app), add_posture(app)};
   if (!app.parse(argc, argv)) return kDone;
   for (const Command& command : commands) {
-    if (command.parser.chosen()) return command.run();
+    if (!command.parser.chosen()) continue;
+    kernels();  // a wrong LOCOGRAPH_SIMD is told before any work is done
+    return command.run();
   }
   return kBadInput;
 }

@@ -32,6 +32,16 @@ TEST(List, NamesTheTypesOfGraphFiles) {
   }
 }
 
+TEST(List, AnUnknownLevelOfVectorInstructionsIsBadInput) {
+  const CommandRunner runner;
+  setenv("LOCOGRAPH_SIMD", "v9", 1);
+  const Outcome outcome = runner.run("list solvers");
+  unsetenv("LOCOGRAPH_SIMD");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_NE(outcome.err.find("LOCOGRAPH_SIMD: no level is called 'v9'"), std::string::npos);
+}
+
 TEST(List, EverySolverItNamesCanBeChosen) {
   const CommandRunner runner;
   runner.write("a.g2o", "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nEDGE_SE2 0 1 2 0 0 1 0 0 1 0 1\n");
