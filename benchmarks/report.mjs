@@ -96,6 +96,18 @@ const sections = {
         times(s.eigen.over_banded),
       ]));
   },
+  levels(data) {
+    const levels = [...data.levels].reverse();
+    const top = levels[0];
+    return table(
+      ['system', ...levels.map((level) => `${level} factorise [ms]`),
+       ...levels.map((level) => `${level} solve [ms]`)],
+      data.systems.map((s) => [
+        s.system,
+        ...['factorise', 'solve'].flatMap((phase) => levels.map((level) => figure(s[level][phase]) +
+            (level === top ? '' : ` (${times(s[level][phase] / s[top][phase])})`))),
+      ]));
+  },
   bundle(data) {
     return data.problems
       .map((problem) => `${problem.problem}: ${problem.cameras} cameras, ${problem.points} points, ` +
