@@ -1,16 +1,14 @@
 // Boxes at random in a walled corridor: how often the local planner gets the CENTAURO drive past
-// them, judged by the judge.
+// them, judged by the feasibility checker.
 //
 //     box_campaign [SEED] [CASES]
 //
 // Prints one JSON object: a row for each case, then the totals. A case counts as passed when every
-// configuration was refined, the judge finds the result feasible, and the base ends within 0.3 m
+// configuration was refined, the checker finds the result feasible, and the base ends within 0.3 m
 // of the plan's end along x.
-#include <locograph/check/judge.h>
-#include <locograph/planners/offline/drive/wheeled_drive.h>
+#include <locograph/planners/offline/wheeled_drive.h>
 #include <locograph/planners/online/refine.h>
-#include <locograph/planners/plan/plan.h>
-#include <locograph/world/distance_view.h>
+#include <locograph/planners/plan/feasibility_checker.h>
 #include <locograph/world/octree.h>
 
 #include <algorithm>
@@ -76,16 +74,21 @@ class Campaign {
     const Graph graph = plan_wheeled_drive(scenario_);
     const Plan plan = plan_of(graph);
     motion_ = motion_of(graph, plan);
+    for (const Wheel& wheel : plan.wheels->wheels) {
+      collision_.ignore_floor_links.push_back(wheel.link);
+      collision_.ignore_floor_links.push_back(wheel.carrier);
+    }
     robot_ = plan.robot;
-    check_.known = scenario_.end_effectors;
+    check_.obstacles.emplace();
   }
 
   /// False when the box stands where the robot starts or is to end.
   bool usable(const Scene& scene) const {
-    const Judge judge(robot_->robot, world_with(map_of(scene, false)));
+    const CollisionWorld world(*robot_->robot, map_of(scene, false), {}, collision_);
     for (const Eigen::VectorXd& q :
          {motion_.configurations.front(), motion_.configurations.back()}) {
-      if (judge.check(q, motion_.stances.front(), check_)
+      const Motion stand{{0.0}, {q}, motion_.wheels};
+      if (check_motion(*robot_->robot, world, stand, check_)
               .constraint("obstacle_distance")
               .violated) {
         return false;
@@ -95,16 +98,19 @@ class Campaign {
   }
 
   nlohmann::ordered_json run(const Scene& scene) {
-    const World world = world_with(map_of(scene, true));
-    const Judge judge(robot_->robot, world);
-    const CheckReport before = judge.check(motion_, check_);
+    const std::shared_ptr<const octomap::OcTree> map = map_of(scene, true);
+    const CollisionWorld world(*robot_->robot, map, {}, collision_);
+    const CheckReport before = check_motion(*robot_->robot, world, motion_, check_);
 
     Graph graph = plan_wheeled_drive(scenario_);
-    const WorldDistance seen = distance_view(world);
+    DistanceFieldOptions field;
+    field.ground_z = kGroundVoxelTop_m;
+    WorldDistance seen;
+    seen.map = std::make_shared<const DistanceField>(DistanceField::from_octree(*map, field));
     const RefineReport report =
         refine(graph, [&seen](int executed) { return executed == 0 ? &seen : nullptr; }, {});
     const Motion refined = motion_of(graph, plan_of(graph));
-    const CheckReport after = judge.check(refined, check_);
+    const CheckReport after = check_motion(*robot_->robot, world, refined, check_);
 
     std::vector<double> times;
     for (const CycleReport& cycle : report.cycles) times.push_back(cycle.time_total);
@@ -135,7 +141,7 @@ class Campaign {
         {"violated", violated},
         {"passed", passed},
         {"final_x", final_x},
-        {"min_clearance_m", after.min_clearance_m.value_or(0.0)},
+        {"min_clearance_m", after.min_clearance_m},
         {"lateral_slip_m", after.constraint("lateral_slip").worst},
         {"longitudinal_slip_m", after.constraint("longitudinal_slip").worst},
         {"cycle_ms",
@@ -143,15 +149,10 @@ class Campaign {
   }
 
  private:
-  World world_with(std::shared_ptr<const octomap::OcTree> map) const {
-    World world = world_of(scenario_);
-    world.map = std::move(map);
-    return world;
-  }
-
   Scenario scenario_;
   Motion motion_;
   std::shared_ptr<const RobotParameter> robot_;
+  CollisionWorldOptions collision_;
   CheckOptions check_;
 };
 

@@ -90,9 +90,6 @@ export interface Stance {
 export interface Violation {
   constraint: string;
   violated: boolean;
-  /** False: nobody looked, and `why` says why not; never to be shown as holding. */
-  judged?: boolean;
-  why?: string;
   worst?: number | null;
   unit?: string;
   limit?: number | null;
@@ -107,8 +104,6 @@ export interface Violation {
 export interface CheckReport {
   feasible?: boolean;
   violations?: Violation[];
-  /** What was taken on trust. */
-  trusted?: string[];
   [figure: string]: unknown;
 }
 
