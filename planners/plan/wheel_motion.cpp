@@ -58,7 +58,7 @@ void WheelMotion::roll(const Eigen::VectorXd& from, Eigen::VectorXd& to) {
     const Wheel& wheel = wheels_.wheels[w];
     if (wheel.joint < 0) continue;
     const Pose after = current(wheel);
-    const Eigen::Vector3d mean = (before_[w].heading + after.heading).stableNormalized();
+    const Eigen::Vector3d mean = 0.5 * (before_[w].heading + after.heading);
     to[base + wheel.joint] =
         from[base + wheel.joint] + (after.centre - before_[w].centre).dot(mean) / wheel.radius_m;
   }

@@ -33,8 +33,6 @@ constexpr double kContactTolerance = 3e-5, kBalanceTolerance = 2e-4, kWrenchTole
 /// The part of a margin that a violation may use up.
 constexpr double kMarginUsed = 0.9;
 constexpr double kNoMargin = 1e-7;
-/// The tolerance that the type of an edge has.
-constexpr double kOfType = 0.0;
 
 double used(double margin) { return margin > 0.0 ? kMarginUsed * margin : kNoMargin; }
 
@@ -83,47 +81,67 @@ ContactDescription with_margin(ContactDescription contact, double margin) {
 
 }  // namespace
 
-double WatchedRows::worst(const Workspace& workspace) const {
-  return ConstraintReader(workspace).worst().ratio;
+const Eigen::VectorXd& WatchedRows::error(Workspace& workspace, const Edge& edge) {
+  error_.resize(edge.tolerance.size());
+  workspace.error(edge.pool, edge.k, error_.data());
+  for (Eigen::Index r = 0; r < error_.size(); ++r) {
+    error_[r] = edge.weights[r] == 0.0 ? 0.0 : std::abs(error_[r]) / edge.tolerance[r];
+  }
+  return error_;
 }
 
-Violated WatchedRows::violated(const Workspace& workspace) const {
+double WatchedRows::worst(Workspace& workspace) {
+  double worst = 0.0;
+  for (const Edge& edge : edges_) {
+    if (edge.kind == Kind::kSelf) continue;
+    worst = std::max(worst, error(workspace, edge).maxCoeff());
+  }
+  if (worst > 1.0) return worst;
+  for (const Edge& edge : edges_) {
+    if (edge.kind == Kind::kSelf) worst = std::max(worst, error(workspace, edge).maxCoeff());
+  }
+  return worst;
+}
+
+Violated WatchedRows::violated(Workspace& workspace) {
   const Robot& robot = *robot_->robot;
   Violated violated;
   violated.joints.assign(static_cast<std::size_t>(robot.active_joint_count()), false);
   const auto move_chain = [&](int link) {
     for (const int i : robot.support(link)) violated.joints[static_cast<std::size_t>(i)] = true;
   };
-  ConstraintReader(workspace).each([&](const ConstraintReader::Row& found) {
-    if (found.ratio <= 1.0) return;
-    const Edge& edge = edges_[static_cast<std::size_t>(found.constraint)];
-    const std::size_t row = static_cast<std::size_t>(found.row);
-    switch (edge.kind) {
-      case Kind::kContact:
-        violated.base = true;
-        move_chain(edge.link);
-        break;
-      case Kind::kJoints:
-        violated.joints[row] = true;
-        break;
-      case Kind::kSelf: {
-        const SelfCollisionShapes::Pair& pair = robot_->self_collision.pairs[row];
-        move_chain(robot_->bounds[static_cast<std::size_t>(pair.first)].link);
-        move_chain(robot_->bounds[static_cast<std::size_t>(pair.second)].link);
-        break;
+  for (const Edge& edge : edges_) {
+    const Eigen::VectorXd& e = error(workspace, edge);
+    for (Eigen::Index r = 0; r < e.size(); ++r) {
+      if (e[r] <= 1.0) continue;
+      switch (edge.kind) {
+        case Kind::kContact:
+          violated.base = true;
+          move_chain(edge.link);
+          break;
+        case Kind::kJoints:
+          violated.joints[static_cast<std::size_t>(r)] = true;
+          break;
+        case Kind::kSelf: {
+          const SelfCollisionShapes::Pair& pair =
+              robot_->self_collision.pairs[static_cast<std::size_t>(r)];
+          move_chain(robot_->bounds[static_cast<std::size_t>(pair.first)].link);
+          move_chain(robot_->bounds[static_cast<std::size_t>(pair.second)].link);
+          break;
+        }
+        case Kind::kSpheres:
+          violated.base = true;
+          move_chain(robot_->spheres[static_cast<std::size_t>(r)].link);
+          break;
+        case Kind::kBalance:
+        case Kind::kWrenches:
+        case Kind::kTorques:
+          violated.base = true;
+          for (const int link : loaded_links_) move_chain(link);
+          break;
       }
-      case Kind::kSpheres:
-        violated.base = true;
-        move_chain(robot_->spheres[row].link);
-        break;
-      case Kind::kBalance:
-      case Kind::kWrenches:
-      case Kind::kTorques:
-        violated.base = true;
-        for (const int link : loaded_links_) move_chain(link);
-        break;
     }
-  });
+  }
   // Nothing stands out: the check refused what the edges allow.
   if (!violated.base && std::none_of(violated.joints.begin(), violated.joints.end(),
                                      [](bool moved) { return moved; })) {
@@ -147,8 +165,9 @@ PostureGraph::PostureGraph(std::shared_ptr<const RobotParameter> robot, const Po
   graph.add_edge(EdgePlanTracking(problem.preferred, preference), q_);
   graph.add_edge(EdgeWrenchNorm(graph.vertex(w_), kWrenchNorm / (weight_N_ * weight_N_)), w_);
   add_contact_edges(problem);
+  const int joints = model.active_joint_count();
   constrain(Kind::kJoints, EdgeJointLimits(model, options.joint_margin_rad, kLimitWeight),
-            used(options.joint_margin_rad), -1, q_);
+            all(joints, used(options.joint_margin_rad)), -1, q_);
   add_balance_edges(options);
   add_collision_edges(world, problem, options, coarse_pairs);
 }
@@ -177,18 +196,20 @@ void PostureGraph::add_parameters(const PostureWorld& world, const PostureProble
 }
 
 template <class E, class... Vertices>
-void PostureGraph::constrain(Kind kind, E edge, double tolerance, int link, Vertices... vertices) {
-  if (edge.dimension() == 0) return;
+void PostureGraph::constrain(Kind kind, E edge, const Eigen::VectorXd& tolerance, int link,
+                             Vertices... vertices) {
+  if (tolerance.size() == 0) return;
+  Eigen::VectorXd weights = edge.weights;
   const EdgeId id = graph.add_edge(std::move(edge), vertices...);
-  if (tolerance > 0.0) graph.set_constraint(id, constraint_of<E>(), tolerance);
-  constraints_.push_back({kind, id, link});
+  constraints_.push_back({kind, id, link, tolerance, std::move(weights)});
 }
 
 void PostureGraph::add_contact_edges(const PostureProblem& problem) {
   int number = kFirstFrame;
   for (const PlacedContact& placed : problem.contacts) {
     EdgeContact closure(number++, closure_of(placed), frame_in_world(placed), kContactWeight);
-    constrain(Kind::kContact, std::move(closure), kContactTolerance,
+    const Eigen::VectorXd tolerance = all(closure.dimension(), kContactTolerance);
+    constrain(Kind::kContact, std::move(closure), tolerance,
               robot_->robot->link_index(placed.contact.link), q_);
   }
 }
@@ -196,18 +217,22 @@ void PostureGraph::add_contact_edges(const PostureProblem& problem) {
 void PostureGraph::add_balance_edges(const PostureOptions& options) {
   const double unit = 1.0 / (weight_N_ * weight_N_);
   constrain(Kind::kBalance, EdgeBalance(kBalanceWeight * unit, kBalanceWeight * unit),
-            kBalanceTolerance * weight_N_, -1, q_, w_);
+            all(6, kBalanceTolerance * weight_N_), -1, q_, w_);
   EdgeContactWrench bearable(*graph.vertex(w_).contacts, kWrenchWeight * unit);
   const double spare = std::min(kWrenchTolerance, 0.1 * options.wrench_margin) * weight_N_;
-  constrain(Kind::kWrenches, std::move(bearable), std::max(spare, kNoMargin), -1, w_);
+  const Eigen::VectorXd tolerance = all(bearable.dimension(), std::max(spare, kNoMargin));
+  constrain(Kind::kWrenches, std::move(bearable), tolerance, -1, w_);
   if (!options.enforce_torque_limits) return;
   const Robot& robot = *robot_->robot;
   EdgeTorqueLimits torques(robot, 1.0 - options.torque_margin, 0.0);
+  Eigen::VectorXd allowed(robot.active_joint_count());
   for (int i = 0; i < robot.active_joint_count(); ++i) {
     const double effort = robot.active_joint(i).max_effort;
-    torques.weights[i] = std::isfinite(effort) ? kTorqueWeight / (effort * effort) : 0.0;
+    const bool limited = std::isfinite(effort);
+    torques.weights[i] = limited ? kTorqueWeight / (effort * effort) : 0.0;
+    allowed[i] = limited ? effort * std::max(0.5 * options.torque_margin, kNoMargin) : 1.0;
   }
-  constrain(Kind::kTorques, std::move(torques), kOfType, -1, q_, w_);
+  constrain(Kind::kTorques, std::move(torques), allowed, -1, q_, w_);
 }
 
 void PostureGraph::add_collision_edges(const PostureWorld& world, const PostureProblem& problem,
@@ -219,7 +244,7 @@ void PostureGraph::add_collision_edges(const PostureWorld& world, const PostureP
     for (Eigen::Index p = 0; p < pairs; ++p) {
       if (coarse_pairs[static_cast<std::size_t>(p)]) apart.weights[p] = 0.0;
     }
-    constrain(Kind::kSelf, std::move(apart), used(options.self_margin_m), -1, q_);
+    constrain(Kind::kSelf, std::move(apart), all(pairs, used(options.self_margin_m)), -1, q_);
   }
   const auto spheres = static_cast<Eigen::Index>(robot_->spheres.size());
   if (spheres == 0) return;
@@ -233,12 +258,14 @@ void PostureGraph::add_collision_edges(const PostureWorld& world, const PostureP
   if (world.ground) {
     EdgeGroundDistance ground(*robot_, options.ground_margin_m, kLimitWeight);
     release_touching(ground.weights);
-    constrain(Kind::kSpheres, std::move(ground), used(options.ground_margin_m), -1, q_);
+    constrain(Kind::kSpheres, std::move(ground), all(spheres, used(options.ground_margin_m)), -1,
+              q_);
   }
   if (world.seen) {
     EdgeObstacleDistance obstacles(*robot_, kWorldNumber, options.obstacle_margin_m, kLimitWeight);
     release_touching(obstacles.weights);
-    constrain(Kind::kSpheres, std::move(obstacles), used(options.obstacle_margin_m), -1, q_);
+    constrain(Kind::kSpheres, std::move(obstacles), all(spheres, used(options.obstacle_margin_m)),
+              -1, q_);
   }
 }
 
@@ -271,11 +298,12 @@ WatchedRows PostureGraph::watch(const Problem& compiled) const {
   WatchedRows rows;
   rows.robot_ = robot_;
   rows.loaded_links_ = loaded_links_;
-  for (const CompiledConstraint& c : compiled.constraints()) {
-    const auto found =
-        std::find_if(constraints_.begin(), constraints_.end(),
-                     [&c](const Constraint& constraint) { return constraint.edge.slot == c.edge; });
-    rows.edges_.push_back({found->kind, found->link});
+  for (const Constraint& constraint : constraints_) {
+    const Graph::EdgeRecord& record = graph.edge_record(constraint.edge.slot);
+    const auto& edges = compiled.edges()[static_cast<std::size_t>(record.pool)].edges;
+    const auto found = std::find(edges.begin(), edges.end(), record.index);
+    rows.edges_.push_back({constraint.kind, record.pool, static_cast<int>(found - edges.begin()),
+                           constraint.link, constraint.tolerance, constraint.weights});
   }
   return rows;
 }

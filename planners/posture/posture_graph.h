@@ -8,12 +8,11 @@
 ///     WatchedRows rows = posture.watch(compiled);
 ///     double worst = rows.worst(workspace);                // 1: the worst row is at its tolerance
 ///
-/// Its constraints and their tolerances are in the graph, for core/violations.h to read.
 /// `coarse_pairs` of links have no weight in self-collision. Weights make one unit of violation
 /// count alike: 0.01 of m, rad or the robot's weight. Those of the preferred configuration and of
 /// the wrenches' size are so small that they move a constraint by micrometres only.
 
-#include <locograph/core/violations.h>
+#include <locograph/core/workspace.h>
 #include <locograph/planners/posture/posture_solver.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
@@ -33,21 +32,26 @@ class WatchedRows {
  public:
   enum class Kind { kContact, kJoints, kSelf, kSpheres, kBalance, kWrenches, kTorques };
 
-  /// The largest violation, in tolerances.
-  double worst(const Workspace& workspace) const;
+  /// The largest violation, in tolerances. Self-collision, which costs as much as all the others
+  /// together, is looked at once these hold.
+  double worst(Workspace& workspace);
   /// What the rows above their tolerance depend on.
-  Violated violated(const Workspace& workspace) const;
+  Violated violated(Workspace& workspace);
 
  private:
   friend class PostureGraph;
   struct Edge {
     Kind kind;
+    int pool, k;
     int link;  ///< of a contact
+    Eigen::VectorXd tolerance, weights;
   };
+  const Eigen::VectorXd& error(Workspace& workspace, const Edge& edge);
 
   std::shared_ptr<const RobotParameter> robot_;
   std::vector<int> loaded_links_;
-  std::vector<Edge> edges_;  ///< of the problem's constraints
+  std::vector<Edge> edges_;
+  Eigen::VectorXd error_;
 };
 
 class PostureGraph {
@@ -74,12 +78,14 @@ class PostureGraph {
   void add_collision_edges(const PostureWorld& world, const PostureProblem& problem,
                            const PostureOptions& options, const std::vector<bool>& coarse_pairs);
   template <class E, class... Vertices>
-  void constrain(WatchedRows::Kind kind, E edge, double tolerance, int link, Vertices... vertices);
+  void constrain(WatchedRows::Kind kind, E edge, const Eigen::VectorXd& tolerance, int link,
+                 Vertices... vertices);
 
   struct Constraint {
     WatchedRows::Kind kind;
     EdgeId edge;
     int link;
+    Eigen::VectorXd tolerance, weights;
   };
 
   std::shared_ptr<const RobotParameter> robot_;

@@ -45,8 +45,6 @@ Eigen::Isometry3d contact_pose(const Eigen::Vector3d& point, const Eigen::Vector
 
 struct EdgeContact : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
   static constexpr std::string_view kTag = "EDGE_CONTACT";
-  static constexpr ConstraintKind kConstraint = ConstraintKind::kEquality;
-  static constexpr double kTolerance = 3e-5;  ///< m, rad; the judge allows 1e-4 m and 1e-3 rad
   int frame_number = 0;
   ContactKind kind = ContactKind::kSurface;
   SavedPose contact;                            ///< world_from_contact

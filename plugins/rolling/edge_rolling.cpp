@@ -28,36 +28,6 @@ struct WheelPose {
   }
 };
 
-/// What the two poses of a wheel have between them.
-struct WheelStep {
-  Eigen::Vector3d moved;     ///< of the centre, horizontal
-  Eigen::Vector3d from, to;  ///< the axles' horizontal parts
-  Eigen::Vector3d axle;      ///< midway between them, horizontal, unit
-  double length;             ///< of the sum of `from` and `to`; 0: opposite, they have no middle
-  double turned;             ///< the angle between them about ẑ
-  double lateral;            ///< moved · axle
-  double beyond_quarter_turn;
-
-  WheelStep(const WheelPose& a, const WheelPose& b)
-      : moved(b.centre - a.centre), from(a.axle), to(b.axle) {
-    moved.z() = from.z() = to.z() = 0.0;
-    const Eigen::Vector3d sum = from + to;
-    length = sum.norm();
-    constexpr double kOpposite = 1e-6;
-    if (length < kOpposite) length = 0.0;
-    axle = length > 0.0 ? Eigen::Vector3d(sum / length) : kUp.cross(from).stableNormalized();
-    turned = std::atan2(kUp.dot(from.cross(to)), from.dot(to));
-    lateral = moved.dot(axle);
-    beyond_quarter_turn = std::max(0.0, std::abs(turned) - 0.5 * std::numbers::pi);
-  }
-
-  /// The derivative of v · axle by either axle.
-  Eigen::Vector3d by_axle(const Eigen::Vector3d& v) const {
-    if (length == 0.0) return Eigen::Vector3d::Zero();
-    return (v - axle.dot(v) * axle) / length;
-  }
-};
-
 double nearest_turn(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
 
 /// row += scale · dψ, ψ = atan2(y, x) with y = (ẑ × u) · a = ẑ · (u × a) and x = ẑ · u.
@@ -80,11 +50,12 @@ void EdgeRolling::error(const ConfigurationState& a, const ConfigurationState& b
   for (std::size_t w = 0; w < wheels->wheels.size(); ++w) {
     const Wheel& wheel = wheels->wheels[w];
     const WheelPose from(a, wheel), to(b, wheel);
-    const WheelStep step(from, to);
-    const double rolled = to.spin - from.spin + nearest_turn(to.pitch - from.pitch);
-    e[2 * w] =
-        step.lateral + std::copysign(wheel.radius_m * step.beyond_quarter_turn, step.lateral);
-    e[2 * w + 1] = step.moved.dot(step.axle.cross(kUp)) - wheel.radius_m * rolled;
+    Eigen::Vector3d moved = to.centre - from.centre;
+    moved.z() = 0.0;
+    const Eigen::Vector3d axle = 0.5 * (from.axle + to.axle);
+    const double turned = to.spin - from.spin + nearest_turn(to.pitch - from.pitch);
+    e[2 * w] = moved.dot(axle);
+    e[2 * w + 1] = moved.dot(axle.cross(kUp)) - wheel.radius_m * turned;
   }
 }
 
@@ -93,28 +64,20 @@ void EdgeRolling::jacobians(const ConfigurationState& a, const ConfigurationStat
   for (std::size_t w = 0; w < wheels->wheels.size(); ++w) {
     const Wheel& wheel = wheels->wheels[w];
     const WheelPose from(a, wheel), to(b, wheel);
-    const WheelStep step(from, to);
-    const Eigen::Vector3d heading = step.axle.cross(kUp);
-    // Δc · (ā × ẑ) = ā · (ẑ × Δc)
-    const Eigen::Vector3d along = step.by_axle(step.moved),
-                          across = step.by_axle(kUp.cross(step.moved));
-    const double flip =
-        step.beyond_quarter_turn > 0.0
-            ? std::copysign(1.0, step.lateral) * std::copysign(wheel.radius_m, step.turned)
-            : 0.0;
+    Eigen::Vector3d moved = to.centre - from.centre;
+    moved.z() = 0.0;
+    Eigen::Vector3d axle = 0.5 * (from.axle + to.axle);
+    const Eigen::Vector3d heading = axle.cross(kUp);
+    axle.z() = 0.0;  // Δc is horizontal: the axle's vertical part meets nothing
+    // moved · (ā × ẑ) = ā · (ẑ × moved)
+    const Eigen::Vector3d across = kUp.cross(moved);
     const auto rows = [&](const ConfigurationState& q, const WheelPose& pose, double sign,
                           double* lateral, double* longitudinal) {
       const RobotState& kinematics = q.kinematics;
-      kinematics.add_point_gradient(wheel.carrier, pose.centre, step.axle, sign, lateral);
-      kinematics.add_axis_gradient(wheel.carrier, pose.axle, along, 1.0, lateral);
-      if (flip != 0.0) {
-        // An angle θ about ẑ of a horizontal vector a changes by (ẑ × a) · da / |a|².
-        const Eigen::Vector3d horizontal(pose.axle.x(), pose.axle.y(), 0.0);
-        kinematics.add_axis_gradient(wheel.carrier, pose.axle, kUp.cross(horizontal),
-                                     sign * flip / horizontal.squaredNorm(), lateral);
-      }
+      kinematics.add_point_gradient(wheel.carrier, pose.centre, axle, sign, lateral);
+      kinematics.add_axis_gradient(wheel.carrier, pose.axle, moved, 0.5, lateral);
       kinematics.add_point_gradient(wheel.carrier, pose.centre, heading, sign, longitudinal);
-      kinematics.add_axis_gradient(wheel.carrier, pose.axle, across, 1.0, longitudinal);
+      kinematics.add_axis_gradient(wheel.carrier, pose.axle, across, 0.5, longitudinal);
       add_pitch_gradient(kinematics, wheel, pose, -sign * wheel.radius_m, longitudinal);
       if (wheel.joint >= 0) {
         longitudinal[q.model().base_tangent_size() + wheel.joint] -= sign * wheel.radius_m;

@@ -5,19 +5,14 @@
 ///     EDGE_ROLLING id id  n wheels  weights
 ///
 /// Error (2 for each wheel) [m], with Δc the horizontal displacement of the wheel's centre, ā the
-/// horizontal unit vector midway between the two axles, h̄ = ā × ẑ the mean heading, Δθ the angle
-/// between the axles seen from above:
-///   lateral        Δc · ā, and away from zero by r max(0, |Δθ| − π/2)
+/// mean of the two axles, h̄ = ā × ẑ the mean heading:
+///   lateral        Δc · ā
 ///   longitudinal   Δc · h̄ − r (Δφ + Δψ), φ the wheel joint, ψ the pitch of its carrier about the
 ///   axle
-/// The midpoint rule for a wheel that steers evenly. Exact for the lateral part when Δc lies along
-/// the mean heading. In the longitudinal part, of a wheel that steers by Δθ while its centre moves
-/// straight, too much by Δθ²/24 of the way, the mean of cos over ±Δθ/2; on a circular arc through
-/// Δθ too little by as much, the chord instead of the arc. Steering is whatever turns the axle.
-///
-/// A wheel that is steered half round in one step looks as if it had not been steered at all: what
-/// exceeds a quarter turn is an error by itself, whatever the wheel's way. It pulls the wheel back
-/// round; a larger turn takes several steps.
+/// The trapezoidal rule for a wheel that steers evenly while its centre moves straight: exact for
+/// the lateral part when Δc lies along the mean heading, short by Δθ²/12 of the path in the
+/// longitudinal part when it steers by Δθ; on a circular arc through Δθ by Δθ²/6. Steering is
+/// whatever turns the axle.
 
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/plugins/configuration/wheels_edge.h>
@@ -26,8 +21,6 @@ namespace locograph {
 
 struct EdgeRolling : WheelsEdge<VertexConfiguration, VertexConfiguration> {
   static constexpr std::string_view kTag = "EDGE_ROLLING";
-  static constexpr ConstraintKind kConstraint = ConstraintKind::kEquality;
-  static constexpr double kTolerance = 1.5e-3;  ///< m; the judge allows 5 mm between vertices
   void bind(const Parameters& parameters) { bind_wheels(parameters, kTag); }
 
   EdgeRolling() = default;

@@ -13,7 +13,6 @@ namespace locograph {
 
 struct EdgeWheelContact : WheelsEdge<VertexConfiguration> {
   static constexpr std::string_view kTag = "EDGE_WHEEL_CONTACT";
-  static constexpr ConstraintKind kConstraint = ConstraintKind::kEquality;
   void bind(const Parameters& parameters) { bind_wheels(parameters, kTag); }
 
   EdgeWheelContact() = default;
@@ -22,8 +21,6 @@ struct EdgeWheelContact : WheelsEdge<VertexConfiguration> {
 
   void error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const ConfigurationState& q, JacobianRef<EdgeWheelContact, 0> j) const;
-  /// A quarter of what the judge allows of the height, a part of the tilt.
-  double row_tolerance(int row) const { return row % 2 == 0 ? 5e-4 : 5e-3; }
   RowLabel row_label(int row) const {
     const std::string& wheel = wheels->wheels[row / 2].link_name;
     // The sine of the tilt has no unit.
