@@ -2,7 +2,7 @@
 /// A point in time after which work should stop; the only clock that decisions may look at.
 ///
 ///     Deadline deadline = Deadline::after(0.010);     // seconds
-///     while (!deadline.passed()) try_another_start();
+///     while (!deadline.passed()) { … }
 
 #include <chrono>
 #include <optional>

@@ -4,9 +4,7 @@
 ///
 ///     ScalarMatrix matrix(pattern);
 ///     matrix.set(pattern, values, damping);         // damping on the diagonal
-///     Eigen::Map<const Eigen::SparseMatrix<double>> upper(
-///         matrix.size, matrix.size, matrix.begin.back(), matrix.begin.data(), matrix.row.data(),
-///         matrix.value.data());                     // or the arrays of a cholmod_sparse
+///     cholmod or Eigen: matrix.begin, matrix.row, matrix.value
 
 #include <locograph/core/block_matrix.h>
 

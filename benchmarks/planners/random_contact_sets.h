@@ -15,7 +15,6 @@
 /// collision. Whether there is one that balances is not known; where the drawn one does, the whole
 /// check holds there.
 
-#include <locograph/common/uniform.h>
 #include <locograph/planners/posture/posture_solver.h>
 #include <locograph/robots/robot_state.h>
 
@@ -128,6 +127,10 @@ class ContactSets {
   }
 
  private:
+  double uniform(double lower, double upper) {
+    return lower + (upper - lower) * 0x1.0p-53 * static_cast<double>(random_() >> 11);
+  }
+
   static std::vector<Eigen::Isometry3d> poses(const RobotState& state) {
     std::vector<Eigen::Isometry3d> result;
     for (int link = 0; link < static_cast<int>(state.robot().links().size()); ++link) {
@@ -143,12 +146,11 @@ class ContactSets {
     for (int i = 0; i < model.active_joint_count(); ++i) {
       const Joint& joint = model.active_joint(i);
       double& at = q[7 + i];
-      at = uniform(random_, std::max(joint.lower, at - kSpread_rad),
-                   std::min(joint.upper, at + kSpread_rad));
+      at =
+          uniform(std::max(joint.lower, at - kSpread_rad), std::min(joint.upper, at + kSpread_rad));
     }
-    const double yaw = uniform(random_, -EIGEN_PI, EIGEN_PI),
-                 roll = uniform(random_, -kTilt_rad, kTilt_rad),
-                 pitch = uniform(random_, -kTilt_rad, kTilt_rad);
+    const double yaw = uniform(-EIGEN_PI, EIGEN_PI), roll = uniform(-kTilt_rad, kTilt_rad),
+                 pitch = uniform(-kTilt_rad, kTilt_rad);
     q.segment<4>(3) = (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
                        Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
                        Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()))
@@ -159,8 +161,8 @@ class ContactSets {
   std::vector<ContactDescription> ends() {
     std::vector<ContactDescription> feet = shuffled(robot_.feet), hands = shuffled(robot_.hands);
     const auto count = [&](std::size_t from, std::size_t to) {
-      return from + static_cast<std::size_t>(uniform(random_, 0.0, 1.0) *
-                                             static_cast<double>(to - from + 1));
+      return from +
+             static_cast<std::size_t>(uniform(0.0, 1.0) * static_cast<double>(to - from + 1));
     };
     const std::size_t most = 4;
     feet.resize(count(static_cast<std::size_t>(robot_.fewest_feet), feet.size()));
@@ -171,9 +173,7 @@ class ContactSets {
 
   std::vector<ContactDescription> shuffled(std::vector<ContactDescription> ends) {
     for (std::size_t i = ends.size(); i > 1; --i) {
-      std::swap(
-          ends[i - 1],
-          ends[static_cast<std::size_t>(uniform(random_, 0.0, 1.0) * static_cast<double>(i))]);
+      std::swap(ends[i - 1], ends[static_cast<std::size_t>(uniform(0.0, 1.0) * double(i))]);
     }
     return ends;
   }

@@ -1,7 +1,9 @@
 #pragma once
 /// What the rows of edges on a robot are called (row_label.h).
 ///
-///     RowLabel label = joint_row(robot, row, "limit");         // {"knee_pitch_1 limit", "rad"}
+///     RowLabel row_label(int row, const VertexConfiguration& q) const {
+///       return joint_row(*q.robot->robot, row, "limit");         // {"knee_pitch_1 limit", "rad"}
+///     }
 
 #include <locograph/core/row_label.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>

@@ -1,10 +1,8 @@
 #pragma once
 /// What edges about a robot's wheels share: the PARAMS_WHEELS they name, two rows for each wheel.
 ///
-///     struct EdgeAxleHeight : WheelsEdge<VertexConfiguration> {
-///       static constexpr std::string_view kTag = "EDGE_AXLE_HEIGHT";
+///     struct EdgeWheelContact : WheelsEdge<VertexConfiguration> {
 ///       void bind(const Parameters& parameters) { bind_wheels(parameters, kTag); }
-///     };
 ///
 /// Field of the edge's line: the number of the wheels.
 
