@@ -8,8 +8,9 @@ namespace locograph {
 
 Eigen::Matrix3d surface_axes(const std::string& contact, const Eigen::Vector3d& normal,
                              const Eigen::Vector3d& forward) {
-  // stableNorm() neither overflows nor vanishes on the way. Comparisons that NaN fails, too.
-  const double length = normal.stableNorm(), way = forward.stableNorm();
+  // stableNorm() neither overflows nor vanishes on the way, but may overlook NaN.
+  const double length = normal.allFinite() ? normal.stableNorm() : 0.0;
+  const double way = forward.allFinite() ? forward.stableNorm() : 0.0;
   if (!(length > 0.0 && std::isfinite(length))) {
     throw Error(contact + " has a normal of length zero or not finite",
                 "a direction out of the surface");
