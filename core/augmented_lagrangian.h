@@ -26,6 +26,7 @@ struct ConstrainedOptions {
   ConstrainedOptions() {
     inner.gain = 1e-14;
     inner.max_iterations = 200;
+    inner.shorten_steps = true;
   }
   /// Of every round. Its deadline and callback hold for the whole run.
   OptimiserOptions inner;

@@ -10,6 +10,11 @@ using Reason = OptimiserResult::Reason;
 using Vector = Eigen::Map<Eigen::VectorXd>;
 
 constexpr int kMostStatistics = 10000;
+/// Nielsen's: the factor on λ after a step that did what the model says.
+constexpr double kLambdaFall = 1.0 / 3.0;
+/// A predicted decrease below this fraction of the cost is too near to rounding to measure parts
+/// of it.
+constexpr double kMeasurable = 1e-11;
 
 Vector map(std::span<double> values) {
   return Vector(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -92,6 +97,7 @@ void Optimiser::start(Workspace& workspace, LinearSolver& solver) {
   result_.statistics = std::move(statistics);
   lambda_ = 0.0;
   lambda_growth_ = 2.0;
+  lambda_fall_ = kLambdaFall;
   radius_ = options_.initial_radius;
   const int n = workspace.problem().dimension();
   diagonal_.resize(n);
@@ -169,8 +175,9 @@ Cost Optimiser::evaluate_trial(IterationStatistics& now) {
 
 double Optimiser::state_norm() const { return norm(map(workspace_->state())); }
 
-/// Takes the trial state; true when there is more to do.
-bool Optimiser::accept(const Cost& cost, IterationStatistics& now) {
+/// Takes the trial state; true when there is more to do. That a step cut short is small, or gains
+/// little, says nothing: it is no sign of convergence.
+bool Optimiser::accept(const Cost& cost, IterationStatistics& now, bool whole) {
   const double before = cost_.robust;
   now.step_norm = norm(map(workspace_->step()));
   const bool tiny =
@@ -179,6 +186,7 @@ bool Optimiser::accept(const Cost& cost, IterationStatistics& now) {
   cost_ = cost;
   result_.final = cost;
   ++result_.iterations;
+  if (!whole) return true;
   if (before - cost.robust <= options_.gain * before) return finish(Reason::kGain);
   if (tiny) return finish(Reason::kStep);
   return true;
@@ -191,6 +199,28 @@ bool Optimiser::iterate_gauss_newton(IterationStatistics& now) {
   // A rise beyond rounding: keep the better state and say so.
   if (!(cost.robust <= cost_.robust * (1.0 + 1e-9))) return finish(Reason::kDiverged);
   return accept(cost, now);
+}
+
+/// Cuts the refused step, whose cost is `cost`, until a tenth of the decrease that the gradient
+/// promises is there (Nocedal & Wright 2006, section 3.1; the cuts by interpolation, section 3.5).
+/// True when the trial state is one to take; `cost` is then its cost.
+bool Optimiser::shorten(Cost& cost, IterationStatistics& now) {
+  constexpr int kMostCuts = 20;
+  Vector step = map(workspace_->step());
+  const double slope = 2.0 * dot(step, map(negative_gradient_));  // at 0, downwards
+  double length = 1.0;
+  for (int cut = 0; cut < kMostCuts; ++cut) {
+    // The least of the parabola through the cost at 0, with its slope, and at `length`.
+    const double least = 0.5 * slope * length / (slope + (cost.robust - cost_.robust) / length);
+    const double factor = std::isfinite(cost.robust) ? std::clamp(least / length, 0.1, 0.5) : 0.1;
+    step *= factor;
+    length *= factor;
+    cost = evaluate_trial(now);
+    if (std::isfinite(cost.robust) && cost_.robust - cost.robust > 0.1 * slope * length) {
+      return true;
+    }
+  }
+  return false;
 }
 
 bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
@@ -224,12 +254,32 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
       now.gain_ratio = (cost_.robust - cost.robust) / predicted;
       if (std::isfinite(cost.robust) && now.gain_ratio > 0.0) {
         const double s = 2.0 * now.gain_ratio - 1.0;
-        lambda_ *= std::max(1.0 / 3.0, 1.0 - s * s * s);
+        const double factor = 1.0 - s * s * s;
+        lambda_ *= std::max(lambda_fall_, factor);
         lambda_growth_ = 2.0;
+        if (options_.shorten_steps) {
+          constexpr double kFastest = 1e-4;
+          // Below the first λ there is nothing to hurry for.
+          const bool fell = factor <= lambda_fall_;
+          const bool damped = lambda_ > options_.initial_lambda * lambda_unit_;
+          lambda_fall_ =
+              fell && damped ? std::max(lambda_fall_ * lambda_fall_, kFastest) : kLambdaFall;
+        }
         return accept(cost, now);
       }
       // At the bottom of the valley rounding decides; the model says there is nothing to gain.
       if (predicted <= options_.gain * cost_.robust * 1e-3) return finish(Reason::kGain);
+      lambda_fall_ = kLambdaFall;
+      Cost shorter = cost;
+      if (options_.shorten_steps && predicted > kMeasurable * cost_.robust &&
+          shorten(shorter, now)) {
+        // The rows that were in the way are known from now on: the next whole step takes the rise
+        // back. Otherwise two rows that act in turns would raise λ until nothing moves.
+        constexpr double kRise = 10.0;
+        lambda_ *= kRise;
+        lambda_fall_ = kLambdaFall / kRise;
+        return accept(shorter, now, false);
+      }
     }
     lambda_ = std::max(lambda_ * lambda_growth_, options_.refused_lambda * lambda_unit_);
     lambda_growth_ *= 2.0;

@@ -49,6 +49,12 @@ struct OptimiserOptions {
   /// independent of the units of the variables (Marquardt 1963), and a direction that is flat just
   /// now does not run away (Moré 1978, section 6). The two options above are then λ itself.
   bool scale_by_diagonal = false;
+  /// Of Levenberg-Marquardt, for costs whose second derivatives jump, as those of hinged rows do
+  /// (constraint.h). A refused step is cut short in its direction, so that the next linearisation
+  /// knows the rows it ran into; λ rises by tens only, and falls ever faster as long as whole steps
+  /// do what the model says. Without this a stiff row that begins to act raises λ by many orders,
+  /// for all directions, and tens of iterations crawl until it has come down by thirds.
+  bool shorten_steps = false;
   /// First trust-region radius of the dogleg, in units of the tangent.
   double initial_radius = 1e4;
   /// Steps that may be refused in a row before the iteration gives up.
@@ -116,7 +122,8 @@ class Optimiser {
   bool iterate_dogleg(IterationStatistics& now);
   bool solve(IterationStatistics& now);
   Cost evaluate_trial(IterationStatistics& now);
-  bool accept(const Cost& cost, IterationStatistics& now);
+  bool shorten(Cost& cost, IterationStatistics& now);
+  bool accept(const Cost& cost, IterationStatistics& now, bool whole = true);
   double state_norm() const;
 
   OptimiserOptions options_;
@@ -124,7 +131,8 @@ class Optimiser {
   LinearSolver* solver_ = nullptr;
   OptimiserResult result_;
   Cost cost_;
-  double lambda_ = 0.0, lambda_unit_ = 1.0, lambda_growth_ = 2.0, radius_ = 0.0;
+  double lambda_ = 0.0, lambda_unit_ = 1.0, lambda_growth_ = 2.0;
+  double lambda_fall_ = 0.0, radius_ = 0.0;
   std::vector<double> diagonal_, scaling_, newton_step_, negative_gradient_;
 };
 

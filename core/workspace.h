@@ -22,6 +22,7 @@ class Workspace {
   void load_state();         ///< graph → state()
   void store_state() const;  ///< state() → graph
 
+  /// To change it, apply_step() and accept_trial(): a fixed vertex has a copy in trial() too.
   std::vector<double>& state() { return state_; }
   std::vector<double>& trial() { return trial_; }
   std::span<double> hessian() {

@@ -2,6 +2,7 @@
 #include <locograph/core/augmented_lagrangian.h>
 
 #include "common/allocation_counter.h"
+#include "core/perturbed_states.h"
 #include "core/toy_graphs.h"
 
 namespace locograph::test {
@@ -103,25 +104,71 @@ struct OnePoint {
   Eigen::Vector2d at() const { return graph.vertex(point).state; }
 };
 
-TEST(AugmentedLagrangian, FindsTheClosestPointOfACircle) {
+OnePoint closest_of_a_circle() {
   OnePoint problem;
   problem.near(3.0, 4.0);
-  const EdgeId circle = problem.circle(2.0, ConstraintKind::kEquality);
+  problem.circle(2.0, ConstraintKind::kEquality);
+  return problem;
+}
+
+OnePoint rosenbrock_on_the_unit_disc() {
+  OnePoint problem(0.0, 0.0);
+  problem.graph.add_edge(Rosenbrock(), problem.point);
+  problem.circle(1.0, ConstraintKind::kInequality);
+  return problem;
+}
+
+/// Nocedal & Wright 2006, example 16.4.
+OnePoint quadratic_programme() {
+  OnePoint problem(2.0, 0.0);
+  problem.near(1.0, 2.5);
+  Eigen::Matrix<double, 5, 2> a;
+  a << -1.0, 2.0, 1.0, 2.0, 1.0, -2.0, -1.0, 0.0, 0.0, -1.0;
+  Eigen::VectorXd b(5);
+  b << 2.0, 6.0, 2.0, 0.0, 0.0;
+  problem.half_planes(a, b);
+  return problem;
+}
+
+/// Three points whose sum is given, under full information.
+const Eigen::Vector2d kTargets[] = {{1.0, 0.0}, {2.0, 1.0}, {0.0, 5.0}};
+Graph points_of_a_sum() {
+  Graph graph;
+  std::vector<VertexId<VertexXY>> points;
+  for (int i = 0; i < 3; ++i) {
+    points.push_back(graph.add_vertex(i, VertexXY()));
+    Near near;
+    near.target = kTargets[i];
+    graph.add_edge(near, points.back());
+  }
+  Sum sum;
+  sum.sum << 6.0, 3.0;
+  sum.information << 2.0, 1.0, 1.0, 3.0;
+  graph.set_constraint(graph.add_dynamic_edge(sum, points), ConstraintKind::kEquality);
+  return graph;
+}
+
+Graph ring_with_an_exact_chord() {
+  Graph graph = ring_2d(20, 0.1);
+  graph.set_constraint({20}, ConstraintKind::kEquality);
+  return graph;
+}
+
+TEST(AugmentedLagrangian, FindsTheClosestPointOfACircle) {
+  OnePoint problem = closest_of_a_circle();
   const ConstrainedResult result = problem.solve();
   ASSERT_TRUE(result.converged) << result.reason_text(problem.graph);
   EXPECT_NEAR((problem.at() - Eigen::Vector2d(1.2, 1.6)).norm(), 0.0, 1e-7);
   // 2 (p − z) + λ 2 p = 0.
   ASSERT_EQ(result.constraints.size(), 1u);
-  EXPECT_EQ(result.constraints[0].edge, circle);
+  EXPECT_EQ(result.constraints[0].edge, EdgeId{1});
   EXPECT_NEAR(result.constraints[0].multipliers[0], 1.5, 1e-6);
   EXPECT_LE(result.constraints[0].violation, 1e-8);
   EXPECT_NEAR(result.cost.chi2, 9.0, 1e-6);
 }
 
 TEST(AugmentedLagrangian, FindsRosenbrocksMinimumOnTheUnitDisc) {
-  OnePoint problem(0.0, 0.0);
-  problem.graph.add_edge(Rosenbrock(), problem.point);
-  problem.circle(1.0, ConstraintKind::kInequality);
+  OnePoint problem = rosenbrock_on_the_unit_disc();
   const ConstrainedResult result = problem.solve();
   ASSERT_TRUE(result.converged) << result.reason_text(problem.graph);
   const double x = problem.at()[0], y = problem.at()[1];
@@ -147,15 +194,8 @@ TEST(AugmentedLagrangian, LeavesAnInequalityAloneThatDoesNotBind) {
 }
 
 TEST(AugmentedLagrangian, SolvesAQuadraticProgrammeAndTellsWhichSidesBind) {
-  // Nocedal & Wright 2006, example 16.4: the solution is (1.4, 1.7), the first side binds with
-  // λ = 0.8.
-  OnePoint problem(2.0, 0.0);
-  problem.near(1.0, 2.5);
-  Eigen::Matrix<double, 5, 2> a;
-  a << -1.0, 2.0, 1.0, 2.0, 1.0, -2.0, -1.0, 0.0, 0.0, -1.0;
-  Eigen::VectorXd b(5);
-  b << 2.0, 6.0, 2.0, 0.0, 0.0;
-  problem.half_planes(a, b);
+  // The solution is (1.4, 1.7), the first side binds with λ = 0.8.
+  OnePoint problem = quadratic_programme();
   const ConstrainedResult result = problem.solve();
   ASSERT_TRUE(result.converged) << result.reason_text(problem.graph);
   EXPECT_NEAR((problem.at() - Eigen::Vector2d(1.4, 1.7)).norm(), 0.0, 1e-7);
@@ -164,27 +204,14 @@ TEST(AugmentedLagrangian, SolvesAQuadraticProgrammeAndTellsWhichSidesBind) {
 }
 
 TEST(AugmentedLagrangian, TakesEdgesOfRunTimeArityAndFullInformation) {
-  Graph graph;
-  std::vector<VertexId<VertexXY>> points;
-  const Eigen::Vector2d targets[] = {{1.0, 0.0}, {2.0, 1.0}, {0.0, 5.0}};
-  for (int i = 0; i < 3; ++i) {
-    points.push_back(graph.add_vertex(i, VertexXY()));
-    Near near;
-    near.target = targets[i];
-    graph.add_edge(near, points.back());
-  }
-  Sum sum;
-  sum.sum << 6.0, 3.0;
-  sum.information << 2.0, 1.0, 1.0, 3.0;
-  const EdgeId id = graph.add_dynamic_edge(sum, points);
-  graph.set_constraint(id, ConstraintKind::kEquality);
+  Graph graph = points_of_a_sum();
   const ConstrainedResult result =
       optimise_constrained(graph, {}, *make_linear_solver("block-cholesky"));
   ASSERT_TRUE(result.converged) << result.reason_text(graph);
   // Every point moves by a third of what the sum lacks, (3, −3); λ = −2 (p − z).
   for (int i = 0; i < 3; ++i) {
-    EXPECT_NEAR((graph.vertex(points[i]).state - targets[i] - Eigen::Vector2d(1.0, -1.0)).norm(),
-                0.0, 1e-7);
+    const Eigen::Vector2d moved = graph.vertex(VertexId<VertexXY>{i}).state - kTargets[i];
+    EXPECT_NEAR((moved - Eigen::Vector2d(1.0, -1.0)).norm(), 0.0, 1e-7);
   }
   EXPECT_NEAR(result.constraints[0].multipliers[0], -2.0, 1e-6);
   EXPECT_NEAR(result.constraints[0].multipliers[1], 2.0, 1e-6);
@@ -227,8 +254,7 @@ TEST(AugmentedLagrangian, RaisesOnlyTheWeightOfTypesThatHingeThemselves) {
 }
 
 TEST(AugmentedLagrangian, ClosesALoopExactly) {
-  Graph graph = ring_2d(20, 0.1);
-  graph.set_constraint({20}, ConstraintKind::kEquality);
+  Graph graph = ring_with_an_exact_chord();
   const ConstrainedResult result = optimise_constrained(graph, {}, *make_linear_solver("auto"));
   ASSERT_TRUE(result.converged) << result.reason_text(graph);
   Graph plain = ring_2d(20, 0.1);
@@ -242,6 +268,44 @@ TEST(AugmentedLagrangian, ClosesALoopExactly) {
   };
   EXPECT_LE(gap(graph), 1e-8);
   EXPECT_GT(gap(plain), 1e-3);
+}
+
+void expect_one_optimum(Graph graph) {
+  std::vector<double> first;
+  optimise_from_perturbed_states(graph, {},
+                                 [&](const ConstrainedResult&, const std::vector<double>& state) {
+                                   if (first.empty()) first = state;
+                                   for (std::size_t i = 0; i < state.size(); ++i)
+                                     EXPECT_NEAR(state[i], first[i], 1e-7);
+                                 });
+}
+
+TEST(AugmentedLagrangian, FindsOneOptimumWhereverRoundingLeads) {
+  expect_one_optimum(closest_of_a_circle().graph);
+  expect_one_optimum(rosenbrock_on_the_unit_disc().graph);
+  expect_one_optimum(quadratic_programme().graph);
+  expect_one_optimum(points_of_a_sum());
+  expect_one_optimum(ring_with_an_exact_chord());
+}
+
+TEST(AugmentedLagrangian, CutsAStepShortThatRunsIntoAStiffHinge) {
+  const auto run_with = [](bool shorten_steps) {
+    OnePoint problem(0.0, 0.0);
+    problem.near(3.0, 4.0);
+    HingedWall wall;
+    wall.weights.setConstant(1e8);
+    problem.graph.add_edge(wall, problem.point);
+    OptimiserOptions options;
+    options.shorten_steps = shorten_steps;
+    const OptimiserResult result = run(problem.graph, options);
+    EXPECT_TRUE(result.converged) << result.reason_text();
+    EXPECT_NEAR(problem.at()[0], 1.0, 1e-7);
+    EXPECT_NEAR(problem.at()[1], 4.0, 1e-4);
+    return result;
+  };
+  const OptimiserResult damped = run_with(false), cut = run_with(true);
+  EXPECT_GT(damped.statistics[0].refusals, 0);
+  EXPECT_EQ(cut.statistics[0].refusals, 0);
 }
 
 TEST(AugmentedLagrangian, StartsWarmFromTheMultipliersOfTheLastCall) {
