@@ -3,7 +3,7 @@
 #include <locograph/apps/list_command.h>
 #include <locograph/apps/output.h>
 #include <locograph/core/robust_kernel.h>
-#include <locograph/planners/plan/scenario.h>
+#include <locograph/planners/scenario/scenario.h>
 #include <locograph/solvers/linear_solvers.h>
 
 #include <algorithm>

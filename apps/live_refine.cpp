@@ -3,6 +3,7 @@
 #include <locograph/apps/plan_file.h>
 #include <locograph/apps/scene.h>
 #include <locograph/planners/online/refine.h>
+#include <locograph/planners/plan/seen_world.h>
 
 #include <algorithm>
 
@@ -54,15 +55,16 @@ Json cycle_json(const PlanFile& file, const CycleReport& cycle) {
 
 void run(const LiveJob& job, LiveChannel& channel) {
   PlanFile file = load_plan(job.plan, job.plugins);
-  const LoadedWorld world = load_world(world_of(file, job.map, job.obstacles));
-  const WorldDistance seen = seen_world(file, world);
+  const Judging judging =
+      judging_of(file, {.scenario = {}, .map = job.map, .obstacles = job.obstacles});
+  const WorldDistance seen = seen_world(file.graph, file.plan, judging.world);
   send(channel, {{"type", "start"},
                  {"count", file.plan.slots.size()},
                  {"dof", file.plan.robot->robot->tangent_size()},
                  {"speed", job.speed}});
   RefineOptions options;
   options.planner.horizon = job.horizon;
-  options.verify = step_check(file, world);
+  options.verify = step_check(file, judging);
   options.on_cycle = [&](const CycleReport& cycle) {
     send(channel, cycle_json(file, cycle));
     const double step_s = time_of(file, cycle.executed + 1) - time_of(file, cycle.executed);

@@ -3,8 +3,8 @@
 #include <locograph/apps/plan_command.h>
 #include <locograph/common/deadline.h>
 #include <locograph/core/graph_file.h>
-#include <locograph/planners/offline/wheeled_drive.h>
-#include <locograph/planners/plan/plan.h>
+#include <locograph/planners/offline/drive/wheeled_drive.h>
+#include <locograph/planners/plan/judging.h>
 
 #include <memory>
 #include <string>
@@ -13,26 +13,38 @@ namespace locograph {
 namespace {
 
 struct PlanOptions {
-  std::string scenario, output;
+  std::string scenario, output, torques;
   unsigned seed = 0;
   double timeout_s = 0.0;
   int threads = 1;
   bool json = false;
 };
 
-ExitCode plan(const PlanOptions& options) {
+ExitCode plan_scenario(const PlanOptions& options) {
   check_writable(options.output);
   const Stopwatch total;
   const Scenario scenario = load_scenario(options.scenario, data_folder());
   Stopwatch watch;
   Graph graph = plan_wheeled_drive(scenario);
   const double whole_body_s = watch.seconds();
+  const Plan plan = plan_of(graph);
+  const Motion motion = motion_of(graph, plan);
+  watch.lap();
+  Judging judging = judging_of(graph, plan, {.data_folder = data_folder()});
+  if (!options.torques.empty()) {
+    judging.options.enforce_torque_limits = options.torques == "enforce";
+  }
+  const CheckReport report = judged(graph, plan, judging);
+  const double judge_s = watch.lap();
   const bool in_time = options.timeout_s <= 0.0 || total.seconds() <= options.timeout_s;
-  const Motion motion = motion_of(graph, plan_of(graph));
-  if (in_time) write_graph(graph, options.output);
+  const bool success = in_time && report.feasible;
+  const std::string reason = !report.feasible ? "refused: " + violation_text(report.worst())
+                             : !in_time       ? "the time allowed is used up"
+                                              : "planned";
+  if (success) write_graph(graph, options.output);
   const Json json = {
-      {"success", in_time},
-      {"reason", in_time ? "planned" : "the time allowed is used up"},
+      {"success", success},
+      {"reason", reason},
       {"seed", options.seed},
       {"stances", 1},
       {"vertices_in_tree", 0},
@@ -44,19 +56,20 @@ ExitCode plan(const PlanOptions& options) {
         {"transitions", 0.0},
         {"whole_body", whole_body_s},
         {"timing", 0.0},
+        {"judge", judge_s},
         {"total", total.seconds()}}},
   };
   if (options.json) {
     print_result(json, true);
-  } else if (in_time) {
+  } else if (success) {
     print_text(scenario.name + ": " +
                counted(json["configurations"], "configuration", "configurations") + " in " +
                short_number(json["duration_s"]) + " s, planned in " +
                short_number(total.seconds()) + " s\nwritten: " + options.output + '\n');
   } else {
-    print_text(scenario.name + ": no plan: " + json["reason"].get<std::string>() + '\n');
+    print_text(scenario.name + ": no plan: " + reason + '\n');
   }
-  return in_time ? kDone : kNo;
+  return success ? kDone : kNo;
 }
 
 }  // namespace
@@ -73,11 +86,16 @@ Command add_plan(OptionParser& app) {
       .show_default();
   parser.add_option("--timeout", o.timeout_s, "Seconds the planner may take; 0: no limit")
       .not_negative();
+  parser
+      .add_option("--torque-limits", o.torques,
+                  "enforce: the plan keeps to the URDF's efforts; report: only tell them (without "
+                  "it, what the scenario says)")
+      .one_of({"enforce", "report"});
   parser.add_option("--threads", o.threads, "Most threads to use (this version uses one)")
       .positive()
       .show_default();
   parser.add_flag("--json", o.json, "Print one JSON object");
-  return {parser, [options] { return plan(*options); }};
+  return {parser, [options] { return plan_scenario(*options); }};
 }
 
 }  // namespace locograph

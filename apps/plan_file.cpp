@@ -1,90 +1,64 @@
+#include <locograph/apps/data_folder.h>
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/plan_file.h>
-#include <locograph/world/octree.h>
+#include <locograph/check/judge.h>
 
-#include <algorithm>
+#include <memory>
 
 namespace locograph {
 namespace {
 
-/// How far from the plan the map still matters [m].
-constexpr double kFieldMargin_m = 2.5;
-
-/// What stands on the floor may touch it: the wheels, and the forks that carry them.
-CollisionWorldOptions collision_options(const PlanFile& file) {
-  CollisionWorldOptions collision;
-  if (!file.plan.wheels) return collision;
-  for (const Wheel& wheel : file.plan.wheels->wheels) {
-    collision.ignore_floor_links.push_back(wheel.link);
-    collision.ignore_floor_links.push_back(wheel.carrier);
+/// What is thrown without a file is about the plan.
+template <class F>
+auto about(const std::string& file, F&& f) {
+  try {
+    return f();
+  } catch (const Error& error) {
+    if (!error.file().empty()) throw;
+    // Without a file, what() begins with the line if there is one.
+    const std::string what = error.what(), line = "line " + std::to_string(error.line()) + ": ";
+    const bool told = error.line() > 0 && what.starts_with(line);
+    throw Error(file, error.line(), told ? what.substr(line.size()) : what, "");
   }
-  return collision;
 }
 
 }  // namespace
 
-PlanFile load_plan(const std::string& file, const std::vector<std::string>& plugins) {
+PlanFile plan_in(Graph graph, const std::string& file) {
   PlanFile result;
   result.name = file;
-  result.graph = read_graph(file, graph_types(plugins));
-  try {
-    result.plan = plan_of(result.graph);
-  } catch (const Error& error) {
-    throw Error(file, 0, error.what(), "");
-  }
+  result.graph = std::move(graph);
+  result.plan = about(file, [&] { return plan_of(result.graph); });
   return result;
 }
 
-WorldFiles world_of(const PlanFile& file, const std::string& map, const std::string& obstacles) {
-  if (map.empty() && obstacles.empty() && file.plan.world) {
-    return {file.plan.world->map, file.plan.world->obstacles};
-  }
-  return {map, obstacles};
+PlanFile load_plan(const std::string& file, const std::vector<std::string>& plugins) {
+  return plan_in(read_graph(file, graph_types(plugins)), file);
 }
 
-LoadedWorld load_world(const WorldFiles& files) {
-  LoadedWorld world;
-  if (!files.map.empty()) world.map = load_octree(files.map);
-  if (!files.obstacles.empty()) world.obstacles = load_obstacles(files.obstacles);
-  return world;
+void add_world_options(OptionParser& parser, WorldOptions& options) {
+  parser.add_option("--map", options.map, "OctoMap, instead of what the plan says is in the way");
+  parser.add_option("--obstacles", options.obstacles,
+                    "Obstacle file (.xml), also moving ones; may go with --map");
 }
 
-WorldDistance seen_world(const PlanFile& file, const LoadedWorld& world) {
-  WorldDistance result;
-  result.obstacles = world.obstacles;
-  if (!world.map) return result;
-  Eigen::AlignedBox3d box;
-  for (const int slot : file.plan.slots) {
-    box.extend(Eigen::Vector3d(Eigen::Map<const Eigen::Vector3d>(file.graph.state(slot))));
-  }
-  DistanceFieldOptions options;
-  options.lower = box.min().array() - kFieldMargin_m;
-  options.upper = box.max().array() + kFieldMargin_m;
-  options.lower->z() = std::min(box.min().z(), 0.0) - 0.5;
-  options.upper->z() = box.max().z() + 1.5;
-  options.ground_z = kGroundVoxelTop_m;
-  result.map =
-      std::make_shared<const DistanceField>(DistanceField::from_octree(*world.map, options));
-  return result;
+Judging judging_of(const PlanFile& file, const WorldOptions& options) {
+  const JudgingRequest request{.scenario = options.scenario,
+                               .map = options.map,
+                               .obstacles = options.obstacles,
+                               .data_folder = data_folder()};
+  return about(file.name, [&] { return judging_of(file.graph, file.plan, request); });
 }
 
-std::function<CheckReport(const Motion&)> step_check(const PlanFile& file,
-                                                     const LoadedWorld& world) {
-  const std::shared_ptr<const Robot> robot = file.plan.robot->robot;
-  const auto collisions = std::make_shared<const CollisionWorld>(*robot, world.map, world.obstacles,
-                                                                 collision_options(file));
-  return [robot, collisions, obstacles = world.obstacles](const Motion& motion) {
-    CheckOptions options;
-    options.obstacles = obstacles;
-    return check_motion(*robot, *collisions, motion, options);
-  };
+CheckReport check_plan(const PlanFile& file, const Judging& judging) {
+  return about(file.name, [&] { return judged(file.graph, file.plan, judging); });
 }
 
-CheckReport check_plan(const PlanFile& file, const LoadedWorld& world, CheckOptions options) {
-  const Robot& robot = *file.plan.robot->robot;
-  const CollisionWorld collision_world(robot, world.map, world.obstacles, collision_options(file));
-  options.obstacles = world.obstacles;
-  return check_motion(robot, collision_world, motion_of(file.graph, file.plan), options);
+std::function<CheckReport(const Motion&)> step_check(const PlanFile& file, const Judging& judging) {
+  const auto judge = std::make_shared<const Judge>(file.plan.robot->robot, judging.world);
+  CheckOptions options = judging.options;
+  options.starts_at_rest = options.ends_at_rest = false;
+  return [judge, options](const Motion& motion) { return judge->check(motion, options); };
 }
 
 }  // namespace locograph

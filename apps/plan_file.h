@@ -2,17 +2,16 @@
 /// Plan files as the commands use them: read, put into a world, checked.
 ///
 ///     PlanFile file = load_plan("plan.g2o");
-///     WorldFiles files = world_of(file, "hall.bt", "");        // or the plan's own
-///     CheckReport report = check_plan(file, load_world(files));
+///     WorldOptions options;                                     // --map, --obstacles
+///     Judging judging = judging_of(file, options);
+///     CheckReport report = check_plan(file, judging);
 
+#include <locograph/apps/option_parser.h>
 #include <locograph/core/graph_file.h>
-#include <locograph/planners/plan/feasibility_checker.h>
+#include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
-#include <octomap/OcTree.h>
 
-#include <filesystem>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,30 +25,24 @@ struct PlanFile {
 
 /// plugins: as graph_types(). Throws Error naming the file when it is unusable or holds no plan.
 PlanFile load_plan(const std::string& file, const std::vector<std::string>& plugins = {});
+/// The plan in a graph that was read from this file, likewise.
+PlanFile plan_in(Graph graph, const std::string& file);
 
-/// Files that describe a world; empty: none.
-struct WorldFiles {
-  std::filesystem::path map, obstacles;
+/// What commands are told about the world: see JudgingRequest.
+struct WorldOptions {
+  std::string scenario, map, obstacles;
+  bool given() const { return !map.empty() || !obstacles.empty(); }
 };
 
-/// The files given on the command line or, when neither is, the plan's own.
-WorldFiles world_of(const PlanFile& file, const std::string& map, const std::string& obstacles);
+/// Adds `--map` and `--obstacles`. options must outlive the parsing.
+void add_world_options(OptionParser& parser, WorldOptions& options);
 
-struct LoadedWorld {
-  std::shared_ptr<const octomap::OcTree> map;  ///< null: none
-  std::vector<Obstacle> obstacles;
-};
+/// By whose word the plan is judged. Throws Error naming the file.
+Judging judging_of(const PlanFile& file, const WorldOptions& options);
 
-LoadedWorld load_world(const WorldFiles& files);
+CheckReport check_plan(const PlanFile& file, const Judging& judging);
 
-/// The world as the local planner is shown it: exact obstacles, and the distance field of the map
-/// around the plan.
-WorldDistance seen_world(const PlanFile& file, const LoadedWorld& world);
-
-CheckReport check_plan(const PlanFile& file, const LoadedWorld& world, CheckOptions options = {});
-
-/// The check of single steps of a plan in one world, as refine() wants it.
-std::function<CheckReport(const Motion&)> step_check(const PlanFile& file,
-                                                     const LoadedWorld& world);
+/// The check of single steps of a plan, as refine() wants it.
+std::function<CheckReport(const Motion&)> step_check(const PlanFile& file, const Judging& judging);
 
 }  // namespace locograph

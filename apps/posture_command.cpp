@@ -1,3 +1,4 @@
+#include <locograph/apps/check_json.h>
 #include <locograph/apps/data_folder.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/posture_command.h>
@@ -51,17 +52,18 @@ Json numbers(const Eigen::VectorXd& values) {
   return std::vector<double>(values.data(), values.data() + values.size());
 }
 
-Json contacts_json(const PostureProblem& problem, const PostureReport& report) {
+Json contacts_json(const PostureProblem& problem, const CheckReport& report) {
   Json all = Json::array();
-  std::size_t next = 0;
-  for (const PlacedContact& placed : problem.contacts) {
-    Json contact = {{"link", placed.contact.link},
-                    {"position", numbers(placed.position)},
-                    {"bears_load", placed.bears_load}};
-    if (placed.bears_load && next < report.balance.wrenches.size()) {
-      contact["wrench"] = numbers(report.balance.wrenches[next++]);
+  for (std::size_t i = 0; i < problem.stance.contacts.size(); ++i) {
+    const Contact& contact = problem.stance.contacts[i];
+    Json json = {{"link", contact.effector.link},
+                 {"kind", contact_kind_name(contact.effector.kind)},
+                 {"position", numbers(contact.position)},
+                 {"bears_load", contact.bears_load}};
+    if (contact.bears_load && report.balance) {
+      json["wrench"] = numbers(report.balance->wrenches[i]);
     }
-    all.push_back(std::move(contact));
+    all.push_back(std::move(json));
   }
   return all;
 }
@@ -74,15 +76,9 @@ Json result_json(const Robot& robot, const PostureProblem& problem, const Postur
   }
   Json violations = Json::array();
   for (const Violation& v : result.report.violations) {
-    violations.push_back({{"constraint", v.constraint},
-                          {"violated", v.violated},
-                          {"worst", v.worst},
-                          {"unit", v.unit},
-                          {"limit", v.limit},
-                          {"what", v.what}});
+    violations.push_back(violation_json(v));
   }
-  const PostureReport& report = result.report;
-  const bool certified = report.certified;
+  const CheckReport& report = result.report;
   return {{"success", result.success},
           {"reason", result.success ? "found" : result.reason},
           {"robot", robot.name()},
@@ -91,9 +87,10 @@ Json result_json(const Robot& robot, const PostureProblem& problem, const Postur
           {"joints", joints},
           {"contacts", contacts_json(problem, report)},
           {"violations", violations},
-          {"min_balance_margin", certified ? Json(report.balance.margin) : Json(nullptr)},
-          {"max_torque_ratio", certified ? Json(report.balance.max_torque_ratio) : Json(nullptr)},
-          {"limiting", certified ? Json(report.balance.limiting) : Json(nullptr)},
+          {"min_balance_margin", number_json(report.min_balance_margin)},
+          {"max_torque_ratio", number_json(report.max_torque_ratio)},
+          {"limiting", report.balance ? Json(report.balance->limiting) : Json(nullptr)},
+          {"trusted", report.trusted},
           {"restarts", result.restarts},
           {"iterations", result.iterations},
           {"time",
@@ -114,10 +111,11 @@ void print_summary(const Robot& robot, const PostureResult& result, const Comman
     print_text(text);
     return;
   }
+  const BalanceCertificate& balance = result.report.balance.value();
   text += "posture found in " + short_number(1e3 * result.total_s) + " ms, " +
           counted(result.restarts, "restart", "restarts") + "; balance margin " +
-          short_number(result.report.balance.margin) + " (" + result.report.balance.limiting +
-          "), torques up to " + short_number(100.0 * result.report.balance.max_torque_ratio) +
+          short_number(balance.margin) + " (" + balance.limiting + "), torques up to " +
+          short_number(100.0 * result.report.max_torque_ratio.value_or(0.0)) +
           " % of their limits\n";
   if (!options.output.empty()) text += "written: " + options.output + '\n';
   print_text(text);
@@ -130,17 +128,22 @@ ExitCode posture(const CommandOptions& options) {
   const auto robot = std::make_shared<const RobotParameter>(
       files.urdf, files.srdf, RobotOptions{.active_joints = {}, .lenient_srdf = true});
   PostureProblem problem;
-  problem.contacts = load_contacts(options.contacts, *robot->robot);
+  problem.stance = load_contacts(options.contacts, *robot->robot);
+  problem.file = options.contacts;
+  PostureOptions solving;
+  for (const Contact& contact : problem.stance.contacts) {
+    solving.check.known.push_back(contact.effector);
+  }
   const PostureSolver solver = about(files.urdf, [&] {
-    return PostureSolver(robot, load_posture_world(options.map, options.obstacles));
+    return PostureSolver(robot, posture_world(load_world(options.map, options.obstacles)),
+                         {.map = options.map, .obstacles = options.obstacles});
   });
   const Robot& model = solver.robot();
   const Eigen::VectorXd state =
       about(files.srdf, [&] { return preferred_state(model, options.state); });
-  problem.preferred = placed_at(model, state, problem.contacts);
+  problem.preferred = placed_at(model, state, problem.stance);
   const double load_s = total.seconds();
 
-  PostureOptions solving;
   solving.seed = options.seed;
   solving.max_restarts = options.restarts;
   solving.enforce_torque_limits = solving.check.enforce_torque_limits =

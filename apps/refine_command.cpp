@@ -1,3 +1,4 @@
+#include <locograph/apps/data_folder.h>
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_file.h>
@@ -5,6 +6,7 @@
 #include <locograph/apps/refine_command.h>
 #include <locograph/apps/statistics.h>
 #include <locograph/planners/online/refine.h>
+#include <locograph/planners/plan/seen_world.h>
 
 #include <memory>
 #include <string>
@@ -14,7 +16,8 @@ namespace locograph {
 namespace {
 
 struct CommandOptions {
-  std::string input, output, map, obstacles;
+  std::string input, output;
+  WorldOptions world;
   int horizon = 20;
   double deadline_ms = 0.0;
   std::vector<std::string> plugins;
@@ -40,7 +43,8 @@ Json phases_json(const RefineReport& report) {
   };
 }
 
-Json report_json(const RefineReport& report, const CommandOptions& options, double field_s) {
+Json report_json(const RefineReport& report, const CommandOptions& options, double field_s,
+                 double judge_s) {
   int iterations = 0, detours = 0;
   Json cycle_times = Json::array();
   for (const CycleReport& cycle : report.cycles) {
@@ -66,8 +70,24 @@ Json report_json(const RefineReport& report, const CommandOptions& options, doub
       {"verify_time", statistics_json(report.verify_s)},
       {"phases", phases_json(report)},
       {"distance_field_s", field_s},
+      {"judge_s", judge_s},
       {"cycle_times", std::move(cycle_times)},
   };
+}
+
+/// A refined plan is a success if it is one for whoever checks the file that is written. Returns
+/// the seconds that took.
+double require_feasible(const PlanFile& file, RefineReport& report) {
+  const Stopwatch watch;
+  if (!report.success) return 0.0;
+  const Plan plan = plan_of(file.graph);
+  const Judging judging = judging_of(file.graph, plan, {.data_folder = data_folder()});
+  const CheckReport check = judged(file.graph, plan, judging);
+  if (!check.feasible) {
+    report.success = false;
+    report.reason = "refused: " + violation_text(check.worst());
+  }
+  return watch.seconds();
 }
 
 ExitCode refine_plan(const CommandOptions& options) {
@@ -77,16 +97,15 @@ ExitCode refine_plan(const CommandOptions& options) {
   refine_options.planner.deadline_s = 1e-3 * options.deadline_ms;
   refine_options.planner.validate();
   PlanFile file = load_plan(options.input, options.plugins);
-  const WorldFiles files = world_of(file, options.map, options.obstacles);
-  const LoadedWorld world = load_world(files);
-  const Stopwatch watch;
-  const WorldDistance seen = seen_world(file, world);
-  const double field_s = watch.seconds();
   if (!file.plan.world) throw Error(file.name, 0, "the plan has no world", "a PARAMS_WORLD line");
+  const Judging judging = judging_of(file, options.world);
+  const Stopwatch watch;
+  const WorldDistance seen = seen_world(file.graph, file.plan, judging.world);
+  const double field_s = watch.seconds();
   // From now on this is the plan's world: the file that is written needs nothing else.
-  file.plan.world->set_files(files.map, files.obstacles);
+  if (options.world.given()) file.plan.world->set_files(options.world.map, options.world.obstacles);
 
-  refine_options.verify = step_check(file, world);
+  refine_options.verify = step_check(file, judging);
   Progress progress;
   refine_options.on_cycle = [&](const CycleReport& cycle) {
     progress.show([&] {
@@ -94,12 +113,13 @@ ExitCode refine_plan(const CommandOptions& options) {
              std::to_string(file.plan.slots.size());
     });
   };
-  const RefineReport report = refine(
+  RefineReport report = refine(
       file.graph, [&seen](int executed) { return executed == 0 ? &seen : nullptr; },
       refine_options);
+  const double judge_s = require_feasible(file, report);
   write_graph(file.graph, options.output);
 
-  const Json json = report_json(report, options, field_s);
+  const Json json = report_json(report, options, field_s, judge_s);
   if (options.json) {
     print_result(json, true);
     return report.success ? kDone : kNo;
@@ -125,8 +145,7 @@ Command add_refine(OptionParser& app) {
       app.add_subcommand("refine", "Walk along a plan and re-optimise a moving horizon of it");
   parser.add_option("PLAN", o.input, "Plan file (.g2o)").required();
   parser.add_option("-o,--output", o.output, "Refined plan to write (.g2o)").required();
-  parser.add_option("--map", o.map, "OctoMap that is seen instead of the plan's own world");
-  parser.add_option("--obstacles", o.obstacles, "Obstacle file (.xml), also moving ones");
+  add_world_options(parser, o.world);
   parser.add_option("--horizon", o.horizon, "Configurations that one cycle optimises")
       .show_default();
   parser.add_option("--deadline-ms", o.deadline_ms, "Time one cycle may take; 0: no limit")

@@ -23,7 +23,6 @@ Json plan_scene(PlanFile file, const SceneOptions& options) {
                 {"title", std::filesystem::path(file.name).filename().string()},
                 {"robot", robot_scene(robot)}};
   add_plan_scene(file, options, scene);
-  const LoadedWorld world = load_world(world_of(file, options.map, options.obstacles));
   Eigen::AlignedBox3d near;
   if (robot.floating_base()) {
     for (const int slot : file.plan.slots) {
@@ -32,10 +31,12 @@ Json plan_scene(PlanFile file, const SceneOptions& options) {
   } else {
     near.extend(Eigen::Vector3d::Zero());
   }
-  add_world_scene(world, near, scene);
+  const Judging judging =
+      judging_of(file, {.scenario = {}, .map = options.map, .obstacles = options.obstacles});
+  add_world_scene(judging.world, near, scene);
   if (!options.check) return scene;
   try {
-    scene["check"] = check_scene(file, check_plan(file, world));
+    scene["check"] = check_scene(file, check_plan(file, judging));
   } catch (const Error& error) {
     // E.g. a collision mesh that is missing: the rest can be shown all the same.
     print_warning(std::string("not checked: ") + error.what());
@@ -64,15 +65,7 @@ Json make_scene(const std::string& file, const SceneOptions& options) {
   Graph graph =
       read_graph(file, graph_types(options.plugins), {.lenient = options.lenient}, &report);
   if (!has_configurations(graph)) return pose_graph_scene(std::move(graph), file, options);
-  PlanFile plan;
-  plan.name = file;
-  plan.graph = std::move(graph);
-  try {
-    plan.plan = plan_of(plan.graph);
-  } catch (const Error& error) {
-    throw Error(file, 0, error.what(), "");
-  }
-  return plan_scene(std::move(plan), options);
+  return plan_scene(plan_in(std::move(graph), file), options);
 }
 
 std::string scene_page(const Json& scene) {

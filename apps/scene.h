@@ -44,7 +44,7 @@ void add_plan_scene(const PlanFile& file, const SceneOptions& options, Json& sce
 /// `check`
 Json check_scene(const PlanFile& file, const CheckReport& report);
 /// `map`, `obstacles`; voxels nearest to `near` when there are too many for a page.
-void add_world_scene(const LoadedWorld& world, const Eigen::AlignedBox3d& near, Json& scene);
+void add_world_scene(const World& world, const Eigen::AlignedBox3d& near, Json& scene);
 /// The same with the robot's covering capsules as its collision shapes, and without visual ones.
 /// Throws Error for a mesh that cannot be read.
 Json capsule_scene(const Robot& robot);

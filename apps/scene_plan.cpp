@@ -1,9 +1,10 @@
+#include <locograph/apps/check_json.h>
 #include <locograph/apps/packed.h>
 #include <locograph/apps/scene.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/robots/robot_state.h>
 
-#include <cmath>
+#include <algorithm>
 #include <map>
 
 namespace locograph {
@@ -30,19 +31,41 @@ std::map<int, Eigen::VectorXd> references(const Graph& graph) {
   return result;
 }
 
-/// The lowest point of a wheel's disc touches the ground.
-Json wheel_contact(const Wheel& wheel, const RobotState& state) {
-  const Eigen::Isometry3d& carrier = state.world_from_link(wheel.carrier);
-  const Eigen::Vector3d centre = carrier * wheel.centre_in_carrier;
-  const Eigen::Vector3d axle = carrier.linear() * wheel.axle_in_carrier;
-  Eigen::Vector3d down = axle.z() * axle - Eigen::Vector3d::UnitZ();
-  down = down.norm() > 1e-6 ? Eigen::Vector3d(down.normalized())
-                            : Eigen::Vector3d(-Eigen::Vector3d::UnitZ());
-  return {{"link", wheel.link},
-          {"kind", "wheel"},
-          {"position", vector_json(centre + wheel.radius_m * down)},
-          {"normal", {0, 0, 1}},
-          {"radius", wheel.radius_m}};
+Json contact_json(const ContactParameter& parameter, const RobotState& state) {
+  const Contact& contact = parameter.contact;
+  Eigen::Vector3d position = contact.position;
+  if (parameter.kind() == ContactKind::kWheel) {
+    // The lowest point of the disc touches.
+    const WheelPose pose(state, wheel_of(state.robot(), contact.effector));
+    position = lowest_point(pose, contact.effector.radius_m, contact.normal);
+  }
+  Json json = {{"name", contact.name()},
+               {"link", parameter.link},
+               {"kind", contact_kind_name(parameter.kind())},
+               {"position", vector_json(position)},
+               {"normal", vector_json(contact.normal.stableNormalized())}};
+  if (contact.effector.radius_m > 0.0) json["radius"] = contact.effector.radius_m;
+  if (contact.effector.friction > 0.0) json["friction"] = contact.effector.friction;
+  if (contact.locked) json["locked"] = true;
+  return json;
+}
+
+/// Steps in a row with one stance, as indices of configurations.
+Json stances_json(const Plan& plan) {
+  Json all = Json::array();
+  const int count = static_cast<int>(plan.slots.size());
+  for (int from = 0, to = 0; from < count; from = to) {
+    const StanceParameter* stance = plan.stance_from[static_cast<std::size_t>(from)].get();
+    for (to = from; to < count; ++to) {
+      if (plan.stance_from[static_cast<std::size_t>(to)].get() != stance) break;
+    }
+    if (stance == nullptr) continue;
+    Json names = Json::array();
+    for (const Contact& contact : stance->stance.contacts) names.push_back(contact.name());
+    all.push_back(
+        {{"from", from}, {"to", std::min(to, count - 1)}, {"contacts", std::move(names)}});
+  }
+  return all;
 }
 
 }  // namespace
@@ -53,17 +76,19 @@ void add_plan_scene(const PlanFile& file, const SceneOptions& options, Json& sce
   RobotState state(robot);
   std::vector<float> configurations, reference;
   Json times = Json::array(), ids = Json::array(), contacts = Json::array();
-  for (const int slot : file.plan.slots) {
+  for (std::size_t i = 0; i < file.plan.slots.size(); ++i) {
+    const int slot = file.plan.slots[i];
     const VertexConfiguration& vertex = configuration(file, slot);
     times.push_back(rounded(vertex.time_s));
     ids.push_back(file.graph.vertex_record(slot).id);
     append(vertex.state, configurations);
     const auto found = planned.find(slot);
     append(found == planned.end() ? Eigen::VectorXd(vertex.state) : found->second, reference);
-    if (!file.plan.wheels) continue;
     state.update(vertex.state.data());
     Json here = Json::array();
-    for (const Wheel& wheel : file.plan.wheels->wheels) here.push_back(wheel_contact(wheel, state));
+    if (const StanceParameter* stance = file.plan.stance_from[i].get()) {
+      for (const auto& contact : stance->contacts) here.push_back(contact_json(*contact, state));
+    }
     contacts.push_back(std::move(here));
   }
   const int count = static_cast<int>(file.plan.slots.size());
@@ -80,37 +105,25 @@ void add_plan_scene(const PlanFile& file, const SceneOptions& options, Json& sce
     plan["executed"] = options.executed;
     plan["window"] = std::min(options.window, count - 1 - options.executed);
   }
-  if (file.plan.wheels) {
+  Json stances = stances_json(file.plan);
+  if (!stances.empty()) {
     plan["contacts"] = std::move(contacts);
-    Json names = Json::array();
-    for (const Wheel& wheel : file.plan.wheels->wheels) names.push_back(wheel.link_name);
-    scene["stances"] = {{{"from", 0}, {"to", count - 1}, {"contacts", std::move(names)}}};
+    scene["stances"] = std::move(stances);
   }
   scene["plan"] = std::move(plan);
 }
 
 Json check_scene(const PlanFile& file, const CheckReport& report) {
-  Json violations = Json::array();
-  for (const Violation& v : report.violations) {
-    const int slot = file.plan.slots.at(static_cast<std::size_t>(v.at_vertex));
-    violations.push_back({{"constraint", v.constraint},
-                          {"violated", v.violated},
-                          {"worst", std::isfinite(v.worst) ? Json(v.worst) : Json(nullptr)},
-                          {"unit", v.unit},
-                          {"limit", v.limit},
-                          {"at_vertex", file.graph.vertex_record(slot).id},
-                          {"index", v.at_vertex},
-                          {"count", v.count},
-                          {"time", v.time_s},
-                          {"at_point", vector_json(v.at_point)},
-                          {"what", v.what}});
+  Json json = check_json(report, [&](int vertex) {
+    const int slot = file.plan.slots.at(static_cast<std::size_t>(vertex));
+    return file.graph.vertex_record(slot).id;
+  });
+  for (std::size_t i = 0; i < report.violations.size(); ++i) {
+    const Violation& v = report.violations[i];
+    json["violations"][i]["index"] = v.at_vertex;
+    json["violations"][i]["at_point"] = vector_json(v.at_point);
   }
-  return {{"feasible", report.feasible},
-          {"min_clearance_m", report.min_clearance_m},
-          {"min_self_clearance_m", report.min_self_clearance_m},
-          {"max_velocity_ratio", report.max_velocity_ratio},
-          {"max_contact_error_m", report.max_contact_error_m},
-          {"violations", std::move(violations)}};
+  return json;
 }
 
 }  // namespace locograph

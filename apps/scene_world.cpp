@@ -62,7 +62,7 @@ Json obstacle_json(const Obstacle& obstacle) {
 
 }  // namespace
 
-void add_world_scene(const LoadedWorld& world, const Eigen::AlignedBox3d& near, Json& scene) {
+void add_world_scene(const World& world, const Eigen::AlignedBox3d& near, Json& scene) {
   if (world.map) scene["map"] = map_json(*world.map, near);
   if (world.obstacles.empty()) return;
   scene["obstacles"] = Json::array();

@@ -28,11 +28,13 @@ macro(locograph_hash_plugin_headers root planning)
     core/type_registry core/typed_edge_pool core/vertex core/vertex_difference core/vertex_pool)
   if(${planning})
     list(APPEND locograph_hashed
-      robots/collision_model robots/robot robots/robot_state
+      robots/collision_model robots/contact robots/contact_closure robots/robot robots/robot_state
+      robots/wheel
       world/distance_field world/distance_sample world/obstacles
       plugins/configuration/frame_parameter plugins/configuration/robot_parameters
       plugins/configuration/self_collision_shapes plugins/configuration/vertex_configuration
-      plugins/static_balance/contact_parameter plugins/static_balance/vertex_wrenches)
+      plugins/contact/contact_parameter plugins/contact/stance_parameter
+      plugins/static_balance/vertex_wrenches)
   endif()
   set(locograph_text "")
   foreach(locograph_header ${locograph_hashed})

@@ -93,6 +93,8 @@ class GraphReader {
       parameters_.push_back(line);
     } else if (tag == "FIX") {
       fixes_.push_back(line);
+    } else if (const std::string* expected = types_.retired(tag)) {
+      throw Error(where_.file, line.number, tag + " of an older format", *expected);
     } else {
       const Error error(where_.file, line.number, "unknown tag '" + tag + "'",
                         "a registered type (see: locograph list types)");
@@ -108,7 +110,7 @@ class GraphReader {
     in.set_parameters(&graph_.parameters_);
     parameter->read(in);
     in.expect_end();
-    graph_.parameters_.set(number, std::move(parameter));
+    graph_.parameters_.set(number, std::move(parameter), line.number);
   }
 
   int pool_of(std::type_index type, std::unique_ptr<VertexPool> fresh) {

@@ -26,11 +26,12 @@ class Parameter {
 
 class Parameters {
  public:
-  /// Throws Error when the number is taken.
-  void set(int number, std::shared_ptr<const Parameter> parameter) {
+  /// line: of the file that it was read from. Throws Error when the number is taken.
+  void set(int number, std::shared_ptr<const Parameter> parameter, int line = 0) {
     if (!all_.emplace(number, std::move(parameter)).second) {
       throw Error("parameter " + std::to_string(number) + " is given twice", "one definition");
     }
+    if (line > 0) lines_[number] = line;
   }
   void replace(int number, std::shared_ptr<const Parameter> parameter) {
     all_[number] = std::move(parameter);
@@ -63,9 +64,15 @@ class Parameters {
   }
 
   const std::map<int, std::shared_ptr<const Parameter>>& all() const { return all_; }
+  /// Where a parameter was read; 0 where it was not read from a file.
+  int line(int number) const {
+    const auto found = lines_.find(number);
+    return found == lines_.end() ? 0 : found->second;
+  }
 
  private:
   std::map<int, std::shared_ptr<const Parameter>> all_;
+  std::map<int, int> lines_;
 };
 
 }  // namespace locograph

@@ -18,7 +18,7 @@ void TypeRegistry::check_free(const std::string& tag) const {
     throw Error("tag '" + tag + "' cannot stand in a graph file", "one word");
   }
   if (vertices_.contains(tag) || edges_.contains(tag) || parameters_.contains(tag) ||
-      tag == "FIX") {
+      retired_.contains(tag) || tag == "FIX") {
     throw Error("tag " + tag + " is registered twice", "a tag that is not taken");
   }
 }
@@ -59,6 +59,14 @@ const TypeRegistry::MakeEdgePool* TypeRegistry::edge_type(const std::string& tag
 }
 const TypeRegistry::MakeParameter* TypeRegistry::parameter_type(const std::string& tag) const {
   return look_up(parameters_, tag);
+}
+
+void TypeRegistry::retire(const std::string& tag, const std::string& expected) {
+  check_free(tag);
+  retired_.emplace(tag, expected);
+}
+const std::string* TypeRegistry::retired(const std::string& tag) const {
+  return look_up(retired_, tag);
 }
 
 std::vector<std::string> TypeRegistry::tags() const {

@@ -57,6 +57,9 @@ class TypeRegistry {
     add_parameter(tag, [] { return std::unique_ptr<Parameter>(std::make_unique<P>()); });
   }
 
+  /// A tag that files had once: it is refused, saying what is expected instead.
+  void retire(const std::string& tag, const std::string& expected);
+
   struct VertexType {
     std::type_index type;
     std::function<std::unique_ptr<VertexPool>()> make_pool;
@@ -67,7 +70,9 @@ class TypeRegistry {
   const VertexType* vertex_type(const std::string& tag) const;
   const MakeEdgePool* edge_type(const std::string& tag) const;
   const MakeParameter* parameter_type(const std::string& tag) const;
-  /// All tags, sorted.
+  /// What is expected instead of a tag that was retired; null for others.
+  const std::string* retired(const std::string& tag) const;
+  /// All tags that are not retired, sorted.
   std::vector<std::string> tags() const;
 
  private:
@@ -85,6 +90,7 @@ class TypeRegistry {
   std::map<std::string, VertexType> vertices_;
   std::map<std::string, MakeEdgePool> edges_;
   std::map<std::string, MakeParameter> parameters_;
+  std::map<std::string, std::string> retired_;
   std::map<std::type_index, std::string> vertex_tags_, edge_tags_;  ///< of the types themselves
 };
 

@@ -1,7 +1,9 @@
 #include <locograph/plugins/acceleration_limits/edge_acceleration_limits.h>
 #include <locograph/plugins/acceleration_limits/edge_acceleration_limits_timed.h>
 #include <locograph/plugins/com/edge_com.h>
+#include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/contact/edge_contact.h>
+#include <locograph/plugins/contact/stance_parameter.h>
 #include <locograph/plugins/frame_pose/edge_frame_pose.h>
 #include <locograph/plugins/ground_distance/edge_ground_distance.h>
 #include <locograph/plugins/joint_limits/edge_joint_limits.h>
@@ -20,17 +22,18 @@
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits_timed.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
-#include <locograph/plugins/wheel_contact/edge_wheel_contact.h>
 
 namespace locograph {
 
 void add_robot_types(TypeRegistry& types) {
   types.add_parameter<RobotParameter>("PARAMS_ROBOT");
   types.add_parameter<FrameParameter>("PARAMS_FRAME");
-  types.add_parameter<WheelsParameter>("PARAMS_WHEELS");
   types.add_parameter<WorldParameter>("PARAMS_WORLD");
+  types.add_parameter<PlanParameter>("PARAMS_PLAN");
   types.add_parameter<ScenarioParameter>("PARAMS_SCENARIO");
+  types.add_parameter<ContactsParameter>("PARAMS_CONTACTS");
   types.add_parameter<ContactParameter>("PARAMS_CONTACT");
+  types.add_parameter<StanceParameter>("PARAMS_STANCE");
   types.add_vertex<VertexConfiguration>();
   types.add_vertex<VertexTimeStep>();
   types.add_vertex<VertexWrenches>();
@@ -59,8 +62,10 @@ void add_robot_types(TypeRegistry& types) {
   types.add_edge<EdgeVelocityLimitsTimed>();
   types.add_edge<EdgeVelocityLimitsTimedSigned>();
   types.add_edge<EdgeVelocityTracking>();
-  types.add_edge<EdgeWheelContact>();
   types.add_edge<EdgeWrenchNorm>();
+  for (const char* tag : {"PARAMS_WHEELS", "EDGE_WHEEL_CONTACT"}) {
+    types.retire(tag, "a plan of format version 2, which has contacts and stances: make it again");
+  }
 }
 
 }  // namespace locograph

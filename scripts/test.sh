@@ -27,7 +27,7 @@ configure build-asan -DLOCOGRAPH_SANITIZE=address,undefined -DCMAKE_BUILD_TYPE=R
 mapfile -t unit_tests < <(
   cd "$root/tests"
   sed -n 's/^locograph_test(\([a-z_]*\).*/\1/p' \
-    {common,core,solvers,types,robots,world,plugins}/CMakeLists.txt
+    {common,core,solvers,types,robots,world,check,plugins}/CMakeLists.txt
 )
 build build-asan --target "${unit_tests[@]}"
 say "running ${unit_tests[*]} under AddressSanitizer and UBSan"

@@ -1,19 +1,28 @@
 #pragma once
-/// Exact distances between a robot's collision shapes, the voxels of a map, primitive obstacles and
-/// the robot itself, for checkers.
+/// Exact distances between a robot's collision shapes, the voxels of a map, primitive obstacles,
+/// surfaces and the robot itself, for checkers.
 ///
-///     locograph::CollisionWorld world(robot, locograph::load_octree("hall.bt"), obstacles);
-///     locograph::CollisionWorld::Closest c = world.environment_distance(world_from_link, time_s);
+///     CollisionWorld exact(robot, world);
+///     CollisionWorld::Closest c = exact.environment_distance(world_from_link, time_s);
 ///     if (c.distance_m < 0.01) report(robot.links()[c.link].name, c.what);
+///
+///     CollisionWorld::Touch foot{.position = {0, 0.1, 0}, .surfaces = {0}, .links = {sole}};
+///     CollisionWorld::Surroundings around =
+///         exact.surroundings({.world_from_link = world_from_link, .touches = {&foot, 1}});
+///     // around.obstacle, around.surface: what no link touches; around.touched: how deep they
+///     touch
 ///
 /// Distances of spheres and capsules to each other and to boxes (voxels too) are closed forms; the
 /// others are certified to 1e-5 m, see convex_shape.h. A mesh (STL) counts as its convex hull, and
-/// a missing one is an error. world_from_link has one pose per link of the robot, in the robot's
+/// a missing one is an error. A surface without an end is solid below; a rectangle is a plate of
+/// 0.2 mm, so that what is behind it is free; both count from the side of their normal where they
+/// are touched. world_from_link has one pose per link of the robot, in the robot's
 /// order. Lengths in metres, world frame. The constructor copies what it needs of the robot, the
 /// map and the obstacles: later changes to them are not seen. Const members are thread-safe. Throws
 /// Error when the number of poses is not the number of links.
 
 #include <locograph/world/obstacles.h>
+#include <locograph/world/world.h>
 #include <octomap/OcTree.h>
 
 #include <Eigen/Geometry>
@@ -48,19 +57,50 @@ class CollisionWorld {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< on the link's shape, nearest to the other
   };
 
+  /// A place that links may touch, and which links. What they touch there is what lies behind the
+  /// plane through `position` along `normal`: the surfaces named; obstacles at rest that come no
+  /// further than 12 mm out of the plane, and voxels whose centres do not, all within 0.3 m of the
+  /// position.
+  struct Touch {
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< of length 1
+    std::vector<int> surfaces = {};                     ///< of World::surfaces
+    std::vector<int> links = {};
+  };
+  struct Query {
+    std::span<const Eigen::Isometry3d> world_from_link;
+    double time_s = 0.0;
+    std::span<const Touch> touches = {};
+    double cutoff_m = 0.5;  ///< as in CollisionWorldOptions
+  };
+  struct Surroundings {
+    Closest obstacle;  ///< of the voxels and obstacles that the link does not touch
+    Closest surface;   ///< of the surfaces that it does not touch, up to 0.15 m
+    /// Minus the largest depth of a link in what it touches; 0 and link -1 if there is none.
+    Closest touched;
+  };
+
   /// tree may be null: obstacles only.
   CollisionWorld(const Robot& robot, std::shared_ptr<const octomap::OcTree> tree,
                  std::vector<Obstacle> obstacles, const CollisionWorldOptions& options = {});
+  /// Map, obstacles and surfaces. Voxels whose top is at or below the highest level surface without
+  /// an end are that surface, for all links.
+  CollisionWorld(const Robot& robot, const World& world, const CollisionWorldOptions& options = {});
   ~CollisionWorld();
   CollisionWorld(CollisionWorld&&) noexcept;
   CollisionWorld& operator=(CollisionWorld&&) noexcept;
 
-  /// Returns early with the first distance below stop_below, if there is one.
+  /// Map, obstacles and surfaces, touched or not.
+  Surroundings surroundings(const Query& query) const;
+
+  /// Map and obstacles. Returns early with the first distance below stop_below, if there is one.
   Closest environment_distance(std::span<const Eigen::Isometry3d> world_from_link, double time_s,
                                double stop_below = -std::numeric_limits<double>::infinity()) const;
 
   /// Over the pairs of links of Robot::self_collision_pairs().
   Closest self_distance(std::span<const Eigen::Isometry3d> world_from_link) const;
+  /// Up to a cutoff of its own.
+  Closest self_distance(std::span<const Eigen::Isometry3d> world_from_link, double cutoff_m) const;
 
  private:
   struct Parts;

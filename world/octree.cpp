@@ -211,6 +211,35 @@ void save_octree(const octomap::OcTree& tree, const std::filesystem::path& path)
   write_file_atomically(path, out.str());
 }
 
+std::shared_ptr<octomap::OcTree> joined(const octomap::OcTree& a, const octomap::OcTree& b) {
+  const double resolution = std::min(a.getResolution(), b.getResolution());
+  const auto tree = std::make_shared<octomap::OcTree>(resolution);
+  for (const octomap::OcTree* one : {&a, &b}) {
+    for (auto leaf = one->begin_leafs(), end = one->end_leafs(); leaf != end; ++leaf) {
+      if (!one->isNodeOccupied(*leaf)) continue;
+      // Faces belong to the voxel inside, whatever their rounding.
+      const double half = 0.5 * leaf.getSize() - 1e-6 * resolution;
+      const octomap::point3d centre = leaf.getCoordinate();
+      octomap::OcTreeKey first, last;
+      for (unsigned axis = 0; axis < 3; ++axis) {
+        if (!tree->coordToKeyChecked(centre(axis) - half, first[axis]) ||
+            !tree->coordToKeyChecked(centre(axis) + half, last[axis]))
+          throw Error("two maps reach too far apart for their finer resolution", "nearer ones");
+      }
+      for (int x = first[0]; x <= last[0]; ++x)
+        for (int y = first[1]; y <= last[1]; ++y)
+          for (int z = first[2]; z <= last[2]; ++z)
+            tree->updateNode(octomap::OcTreeKey(static_cast<octomap::key_type>(x),
+                                                static_cast<octomap::key_type>(y),
+                                                static_cast<octomap::key_type>(z)),
+                             true, true);
+    }
+  }
+  tree->updateInnerOccupancy();
+  tree->prune();
+  return tree;
+}
+
 std::shared_ptr<octomap::OcTree> octree_from_boxes(std::span<const Box> boxes,
                                                    double resolution_m) {
   require_positive(resolution_m, "resolution");

@@ -43,6 +43,10 @@ void save_octree(const octomap::OcTree& tree, const std::filesystem::path& path)
 /// that is not positive and finite, and on a box outside OctoMap's key range.
 std::shared_ptr<octomap::OcTree> octree_from_boxes(std::span<const Box> boxes, double resolution_m);
 
+/// Occupied is what either occupies, at the finer of their resolutions; voxels of the coarser one
+/// grow to whole ones of the finer. Throws Error where that does not reach so far.
+std::shared_ptr<octomap::OcTree> joined(const octomap::OcTree& a, const octomap::OcTree& b);
+
 struct OctreeInfo {
   double resolution_m = 0.0;
   std::size_t occupied_leaves = 0;  ///< leaves as stored: a pruned leaf of any size counts once

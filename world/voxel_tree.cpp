@@ -71,6 +71,19 @@ struct VoxelTree::Search {
     return (axis > 0.0 ? axis : -half.minCoeff()) - query.shape.bounding_capsule_radius();
   }
 
+  bool is_behind(const Node& node) const {
+    const Eigen::Vector3d centre = 0.5 * (node.lower + node.upper);
+    const Eigen::Vector3d half = 0.5 * (node.upper - node.lower);
+    for (const Query::Behind& part : query.behind) {
+      const Eigen::Vector3d normal = part.normal.cwiseAbs();
+      const double out = part.normal.dot(centre - part.point) + normal.dot(half);
+      if (out > part.height + 0.5 * tree.resolution_ * normal.sum()) continue;
+      const Eigen::Vector3d apart = ((part.point - centre).cwiseAbs() - half).cwiseMax(0.0);
+      if (apart.norm() <= part.reach) return true;
+    }
+    return false;
+  }
+
   bool done() const { return query.best.distance < query.stop_below; }
 
   void visit(int index, double lower_bound) {
@@ -94,6 +107,8 @@ struct VoxelTree::Search {
   void leaf(const Node& node) {
     Eigen::Vector3d lower;
     if (!crop(node, lower)) return;
+    if ((!query.behind.empty() || query.only_behind) && is_behind(node) != query.only_behind)
+      return;
     const ShapeDistance distance =
         shape_distance(query.shape, query.world_from_shape, Eigen::AlignedBox3d(lower, node.upper));
     if (distance.distance >= query.best.distance) return;

@@ -25,6 +25,14 @@ class VoxelTree {
     const Eigen::Isometry3d& world_from_shape;
     /// Voxels whose top is at or below this height do not count.
     double floor_z = -std::numeric_limits<double>::infinity();
+    /// Voxels in these parts do not count, or, with `only_behind`, no others: those that come out
+    /// of the plane by no more than `height` and half a voxel, and have a point within `reach`.
+    struct Behind {
+      Eigen::Vector3d point, normal;
+      double height = 0.0, reach = 0.0;
+    };
+    std::vector<Behind> behind = {};
+    bool only_behind = false;
     /// Return the first distance below this.
     double stop_below = -std::numeric_limits<double>::infinity();
     /// In: only what is nearer than best.distance is looked for. Out: the nearest found.

@@ -6,7 +6,7 @@
 // Prints one JSON object, for each robot and each way a graph has surface contacts: how often the
 // verdicts are the same, and every case where they are not and the margin is more than 1e-3 from
 // the boundary; processor time of the certificate by the number of contacts.
-#include <locograph/planners/plan/balance_certificate.h>
+#include <locograph/check/balance_certificate.h>
 
 #include <algorithm>
 #include <cmath>
@@ -87,9 +87,9 @@ Json measure(const BalanceRobot& robot, int cases, unsigned long long seed) {
         certify_balance(robot.model(), posture.configuration, posture.contacts);
     times[posture.contacts.size()].push_back(processor_s() - begin);
     balanced += certificate.balanced;
-    surfaces +=
-        std::any_of(posture.contacts.begin(), posture.contacts.end(),
-                    [](const ContactDescription& c) { return c.kind == WrenchKind::kSurface; });
+    surfaces += std::any_of(posture.contacts.begin(), posture.contacts.end(), [](const Contact& c) {
+      return c.effector.kind == ContactKind::kSurface;
+    });
     ++limiting[certificate.limiting.substr(0, certificate.limiting.find(" of "))];
     rows.add(robot, posture, i, certificate);
     const BalanceCase unlimited = without_surface_limits(robot, posture);

@@ -14,7 +14,7 @@
 namespace locograph {
 namespace {
 
-constexpr int kRobot = 0, kFirstContact = 1, kFacets = 16;
+constexpr int kRobot = 0, kFirst = 1;
 
 /// The same numbers with every standard library.
 double uniform(std::mt19937_64& random, double lower, double upper) {
@@ -31,72 +31,73 @@ double weight_of(const BalanceRobot& robot) {
   return robot.model().total_mass() * standard_gravity().norm();
 }
 
-ContactDescription draw_contact(const BalanceRobot& robot, const std::string& link, bool hand,
-                                bool flat, std::mt19937_64& random) {
-  ContactDescription contact;
-  contact.link = link;
-  contact.axes_in_world = !flat || uniform(random, 0.0, 1.0) < 0.5;
+Contact draw_contact(const BalanceRobot& robot, const RobotState& state, const std::string& link,
+                     bool hand, bool flat, std::mt19937_64& random) {
+  Contact contact;
+  EndEffector& effector = contact.effector;
+  effector.link = link;
+  const Eigen::Isometry3d& pose = state.world_from_link(robot.model().link_index(link));
+  const bool axes_in_world = !flat || uniform(random, 0.0, 1.0) < 0.5;
   const double slope = uniform(random, 0.0, 1.0) < 0.3 ? 1.0 : 0.3;
-  if (contact.axes_in_world) contact.normal += vector(random, slope);
-  contact.forward = Eigen::Vector3d::UnitX() + vector(random, 0.3);
-  contact.kind = flat ? WrenchKind::kSurface : WrenchKind::kPoint;
-  contact.half_x_m = uniform(random, 0.04, 0.1);
-  contact.half_y_m = uniform(random, 0.02, 0.06);
-  contact.mu = uniform(random, 0.3, 0.9);
-  contact.max_force_N = uniform(random, 0.5, 1.5) * weight_of(robot);
-  contact.cone = FrictionCone::kInner;
-  contact.facets = kFacets;
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  if (axes_in_world) normal += vector(random, slope);
+  const Eigen::Vector3d forward = Eigen::Vector3d::UnitX() + vector(random, 0.3);
+  effector.kind = flat ? ContactKind::kSurface : ContactKind::kPoint;
+  effector.half_x_m = uniform(random, 0.04, 0.1);
+  effector.half_y_m = uniform(random, 0.02, 0.06);
+  effector.friction = uniform(random, 0.3, 0.9);
+  effector.max_force_N = uniform(random, 0.5, 1.5) * weight_of(robot);
   if (hand && uniform(random, 0.0, 1.0) < 0.4) {
-    contact.kind = WrenchKind::kRung;
-    contact.max_force_N = uniform(random, 0.1, 0.8) * weight_of(robot);
-    contact.max_moment_Nm = uniform(random, 0.0, 20.0);
-    contact.cone = FrictionCone::kCircle;
+    effector.kind = ContactKind::kRung;
+    effector.max_force_N = uniform(random, 0.1, 0.8) * weight_of(robot);
+    effector.max_moment_Nm = uniform(random, 0.0, 20.0);
   }
+  const Eigen::Matrix3d turn = pose.linear();
+  contact.position = pose.translation();
+  contact.normal = axes_in_world ? normal : Eigen::Vector3d(turn * normal);
+  contact.forward = axes_in_world ? forward : Eigen::Vector3d(turn * forward);
+  effector.normal = turn.transpose() * contact.normal;
+  effector.forward = turn.transpose() * *contact.forward;
   return contact;
 }
 
 /// A surface's four corners as points.
-std::vector<ContactDescription> corners_of(const ContactDescription& surface,
-                                           const RobotState& state) {
-  const Eigen::Vector3d z = surface.normal.normalized();
-  const Eigen::Vector3d y = z.cross(surface.forward).normalized();
-  const Eigen::Vector3d x = y.cross(z);
-  Eigen::Matrix3d link_from_axes = Eigen::Matrix3d::Identity();
-  if (surface.axes_in_world) {
-    const int link = state.robot().link_index(surface.link);
-    link_from_axes = state.world_from_link(link).linear().transpose();
-  }
-  std::vector<ContactDescription> corners;
+std::vector<Contact> corners_of(const Contact& surface) {
+  const Eigen::Matrix3d in_link = axes_in_link(surface.effector), in_world = axes_in_world(surface);
+  std::vector<Contact> corners;
   for (const double a : {-1.0, 1.0}) {
     for (const double b : {-1.0, 1.0}) {
+      const Eigen::Vector3d corner(a * surface.effector.half_x_m, b * surface.effector.half_y_m,
+                                   0.0);
       corners.push_back(surface);
-      corners.back().kind = WrenchKind::kPoint;
-      corners.back().point +=
-          link_from_axes * (a * surface.half_x_m * x + b * surface.half_y_m * y);
+      corners.back().effector.kind = ContactKind::kPoint;
+      corners.back().effector.point += in_link * corner;
+      corners.back().position += in_world * corner;
     }
   }
   return corners;
 }
 
 /// 1 / unit² of each row of EDGE_CONTACT_WRENCH.
-Eigen::VectorXd contact_weights(const std::vector<ContactDescription>& contacts, double weight) {
+Eigen::VectorXd contact_weights(const std::vector<Contact>& contacts, int facets, double weight) {
   std::vector<double> units;
   const auto add = [&units](int count, double unit) {
     for (int i = 0; i < count; ++i) units.push_back(unit);
   };
-  for (const ContactDescription& contact : contacts) {
-    if (contact.kind == WrenchKind::kRung) {
-      add(3, contact.max_force_N);
-      add(2, contact.max_moment_Nm);
+  for (const Contact& contact : contacts) {
+    const EndEffector& effector = contact.effector;
+    if (effector.kind == ContactKind::kRung) {
+      add(3, effector.max_force_N);
+      add(2, effector.max_moment_Nm);
       continue;
     }
     add(1, weight);
-    add(1, contact.max_force_N);
-    add(contact.facets, weight);
-    if (contact.kind == WrenchKind::kPoint) continue;
-    add(2, weight * contact.half_x_m);
-    add(2, weight * contact.half_y_m);
-    add(8, weight * (contact.half_x_m + contact.half_y_m));
+    add(1, effector.max_force_N);
+    add(facets, weight);
+    if (effector.kind == ContactKind::kPoint) continue;
+    add(2, weight * effector.half_x_m);
+    add(2, weight * effector.half_y_m);
+    add(8, weight * (effector.half_x_m + effector.half_y_m));
   }
   const Eigen::Map<const Eigen::VectorXd> all(units.data(), Eigen::Index(units.size()));
   return all.array().square().inverse().matrix();
@@ -111,8 +112,9 @@ BalanceRobot balance_robot(const std::string& name) {
 }
 
 BalanceCase without_surface_limits(const BalanceRobot& robot, BalanceCase posture) {
-  for (ContactDescription& contact : posture.contacts) {
-    if (contact.kind == WrenchKind::kSurface) contact.max_force_N = 100.0 * weight_of(robot);
+  for (Contact& contact : posture.contacts) {
+    if (contact.effector.kind != ContactKind::kSurface) continue;
+    contact.effector.max_force_N = 100.0 * weight_of(robot);
   }
   return posture;
 }
@@ -138,15 +140,17 @@ BalanceCase draw_balance_case(const BalanceRobot& robot, std::mt19937_64& random
             : std::vector<std::string>{"wheel_1", "wheel_2", "wheel_3", "wheel_4"};
   const std::vector<std::string> hands = coman ? std::vector<std::string>{"TCP_L", "TCP_R"}
                                                : std::vector<std::string>{"ball1_tip", "ball2_tip"};
+  RobotState state(model);
+  state.update(drawn.configuration.data());
   while (drawn.contacts.empty()) {
     for (const std::string& link : feet) {
       if (uniform(random, 0.0, 1.0) < 0.25) continue;
-      drawn.contacts.push_back(draw_contact(robot, link, false, coman, random));
+      drawn.contacts.push_back(draw_contact(robot, state, link, false, coman, random));
     }
     for (const std::string& link : hands) {
       if (uniform(random, 0.0, 1.0) < 0.5) continue;
       const bool flat = uniform(random, 0.0, 1.0) < 0.3;
-      drawn.contacts.push_back(draw_contact(robot, link, !flat, flat, random));
+      drawn.contacts.push_back(draw_contact(robot, state, link, !flat, flat, random));
     }
   }
   return drawn;
@@ -154,12 +158,10 @@ BalanceCase draw_balance_case(const BalanceRobot& robot, std::mt19937_64& random
 
 double graph_residual(const BalanceRobot& robot, const BalanceCase& posture,
                       SurfaceModel surfaces) {
-  RobotState state(robot.model());
-  state.update(posture.configuration.data());
-  std::vector<ContactDescription> contacts;
-  for (const ContactDescription& contact : posture.contacts) {
-    if (contact.kind == WrenchKind::kSurface && surfaces == SurfaceModel::kCorners) {
-      for (ContactDescription& corner : corners_of(contact, state)) contacts.push_back(corner);
+  std::vector<Contact> contacts;
+  for (const Contact& contact : posture.contacts) {
+    if (contact.effector.kind == ContactKind::kSurface && surfaces == SurfaceModel::kCorners) {
+      for (Contact& corner : corners_of(contact)) contacts.push_back(std::move(corner));
     } else {
       contacts.push_back(contact);
     }
@@ -167,10 +169,12 @@ double graph_residual(const BalanceRobot& robot, const BalanceCase& posture,
   Graph graph;
   graph.parameters().set(kRobot, robot.parameter);
   std::vector<int> numbers;
-  for (const ContactDescription& contact : contacts) {
-    numbers.push_back(kFirstContact + static_cast<int>(numbers.size()));
-    graph.parameters().set(
-        numbers.back(), std::make_shared<const ContactParameter>(robot.parameter, kRobot, contact));
+  for (const Contact& contact : contacts) {
+    numbers.push_back(kFirst + static_cast<int>(numbers.size()));
+    FrictionModel cone;
+    if (contact.effector.kind != ContactKind::kRung) cone = {FrictionCone::kInner, posture.facets};
+    graph.parameters().set(numbers.back(), std::make_shared<const ContactParameter>(
+                                               robot.parameter, kRobot, contact, cone));
   }
   const auto q =
       graph.add_vertex(0, VertexConfiguration(kRobot, robot.parameter, 0.0, posture.configuration));
@@ -179,7 +183,7 @@ double graph_residual(const BalanceRobot& robot, const BalanceCase& posture,
   const double weight = weight_of(robot);
   graph.add_edge(EdgeBalance(1.0 / (weight * weight), 1.0 / (weight * weight)), q, w);
   EdgeContactWrench limits(*graph.vertex(w).contacts, 1.0);
-  limits.weights = contact_weights(contacts, weight);
+  limits.weights = contact_weights(contacts, posture.facets, weight);
   graph.add_edge(limits, w);
   EdgeTorqueLimits torques(robot.model(), 1.0, 1.0);
   for (int i = 0; i < robot.model().active_joint_count(); ++i) {

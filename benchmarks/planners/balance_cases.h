@@ -8,7 +8,7 @@
 ///     const double residual = graph_residual(robot, one, SurfaceModel::kCorners);
 
 #include <locograph/plugins/configuration/robot_parameters.h>
-#include <locograph/plugins/static_balance/contact_parameter.h>
+#include <locograph/plugins/contact/contact_parameter.h>
 
 #include <Eigen/Core>
 #include <memory>
@@ -30,7 +30,8 @@ BalanceRobot balance_robot(const std::string& name);
 
 struct BalanceCase {
   Eigen::VectorXd configuration;
-  std::vector<ContactDescription> contacts;
+  std::vector<Contact> contacts;  ///< closed there
+  int facets = 16;                ///< of the pyramids that the graph has inside the cones
 };
 
 /// One to six contacts: surfaces, points and rungs, on slopes, in any order.

@@ -1,14 +1,16 @@
 // Boxes at random in a walled corridor: how often the local planner gets the CENTAURO drive past
-// them, judged by the feasibility checker.
+// them, judged by the judge.
 //
 //     box_campaign [SEED] [CASES]
 //
 // Prints one JSON object: a row for each case, then the totals. A case counts as passed when every
-// configuration was refined, the checker finds the result feasible, and the base ends within 0.3 m
+// configuration was refined, the judge finds the result feasible, and the base ends within 0.3 m
 // of the plan's end along x.
-#include <locograph/planners/offline/wheeled_drive.h>
+#include <locograph/check/judge.h>
+#include <locograph/planners/offline/drive/wheeled_drive.h>
 #include <locograph/planners/online/refine.h>
-#include <locograph/planners/plan/feasibility_checker.h>
+#include <locograph/planners/plan/plan.h>
+#include <locograph/world/distance_view.h>
 #include <locograph/world/octree.h>
 
 #include <algorithm>
@@ -74,21 +76,16 @@ class Campaign {
     const Graph graph = plan_wheeled_drive(scenario_);
     const Plan plan = plan_of(graph);
     motion_ = motion_of(graph, plan);
-    for (const Wheel& wheel : plan.wheels->wheels) {
-      collision_.ignore_floor_links.push_back(wheel.link);
-      collision_.ignore_floor_links.push_back(wheel.carrier);
-    }
     robot_ = plan.robot;
-    check_.obstacles.emplace();
+    check_.known = scenario_.end_effectors;
   }
 
   /// False when the box stands where the robot starts or is to end.
   bool usable(const Scene& scene) const {
-    const CollisionWorld world(*robot_->robot, map_of(scene, false), {}, collision_);
+    const Judge judge(robot_->robot, world_with(map_of(scene, false)));
     for (const Eigen::VectorXd& q :
          {motion_.configurations.front(), motion_.configurations.back()}) {
-      const Motion stand{{0.0}, {q}, motion_.wheels};
-      if (check_motion(*robot_->robot, world, stand, check_)
+      if (judge.check(q, motion_.stances.front(), check_)
               .constraint("obstacle_distance")
               .violated) {
         return false;
@@ -98,19 +95,16 @@ class Campaign {
   }
 
   nlohmann::ordered_json run(const Scene& scene) {
-    const std::shared_ptr<const octomap::OcTree> map = map_of(scene, true);
-    const CollisionWorld world(*robot_->robot, map, {}, collision_);
-    const CheckReport before = check_motion(*robot_->robot, world, motion_, check_);
+    const World world = world_with(map_of(scene, true));
+    const Judge judge(robot_->robot, world);
+    const CheckReport before = judge.check(motion_, check_);
 
     Graph graph = plan_wheeled_drive(scenario_);
-    DistanceFieldOptions field;
-    field.ground_z = kGroundVoxelTop_m;
-    WorldDistance seen;
-    seen.map = std::make_shared<const DistanceField>(DistanceField::from_octree(*map, field));
+    const WorldDistance seen = distance_view(world);
     const RefineReport report =
         refine(graph, [&seen](int executed) { return executed == 0 ? &seen : nullptr; }, {});
     const Motion refined = motion_of(graph, plan_of(graph));
-    const CheckReport after = check_motion(*robot_->robot, world, refined, check_);
+    const CheckReport after = judge.check(refined, check_);
 
     std::vector<double> times;
     for (const CycleReport& cycle : report.cycles) times.push_back(cycle.time_total);
@@ -141,7 +135,7 @@ class Campaign {
         {"violated", violated},
         {"passed", passed},
         {"final_x", final_x},
-        {"min_clearance_m", after.min_clearance_m},
+        {"min_clearance_m", after.min_clearance_m.value_or(0.0)},
         {"lateral_slip_m", after.constraint("lateral_slip").worst},
         {"longitudinal_slip_m", after.constraint("longitudinal_slip").worst},
         {"cycle_ms",
@@ -149,10 +143,15 @@ class Campaign {
   }
 
  private:
+  World world_with(std::shared_ptr<const octomap::OcTree> map) const {
+    World world = world_of(scenario_);
+    world.map = std::move(map);
+    return world;
+  }
+
   Scenario scenario_;
   Motion motion_;
   std::shared_ptr<const RobotParameter> robot_;
-  CollisionWorldOptions collision_;
   CheckOptions check_;
 };
 

@@ -74,18 +74,17 @@ Json campaign(const std::string& name, int wanted, std::uint64_t seed, PostureOp
   const test::PostureRobot robot =
       test::posture_robot(name, LOCOGRAPH_SOURCE_DIR, LOCOGRAPH_SHARED_DATA);
   const PostureSolver solver(robot.robot);
-  const PostureChecker checker(robot.robot->robot, nullptr, {});
+  const Judge judge(robot.robot->robot, posture_world());
   test::ContactSets sets(robot, seed);
   Tally known, unknown;
   while (known.sets < wanted && known.sets + unknown.sets < 20 * wanted) {
     const test::ContactSet set = sets.draw();
-    const bool feasible = checker.check(set.drawn, set.contacts, options.check).feasible;
+    const bool feasible = judge.check(set.drawn, set.stance, options.check).feasible;
     options.seed = static_cast<std::uint64_t>(known.sets + unknown.sets);
     const PostureResult result =
-        solver.solve({set.contacts, placed_at(robot.model(), robot.home, set.contacts)}, options);
-    // The judgement once more, by the checker of our own and all of it.
-    if (result.success &&
-        !checker.check(result.configuration, set.contacts, options.check).feasible) {
+        solver.solve({set.stance, placed_at(robot.model(), robot.home, set.stance)}, options);
+    // The judgement once more, by a judge of our own and all of it.
+    if (result.success && !judge.check(result.configuration, set.stance, options.check).feasible) {
       throw Error("a posture was accepted that the check refuses");
     }
     (feasible ? known : unknown).add(result);

@@ -4,11 +4,13 @@
 ///     const PostureRobot coman = posture_robot("coman_plus");
 ///     ContactSets sets(coman, 7);
 ///     const ContactSet set = sets.draw();
-///     PostureProblem problem{set.contacts, placed_at(model, coman.home, set.contacts)};
+///     PostureProblem problem{set.stance, placed_at(model, coman.home, set.stance)};
 ///
 /// How a set is drawn. A configuration: every joint within ±0.4 rad of the home posture and inside
 /// its limits, the base tilted by up to 0.15 rad about x and y and turned anywhere; again until it
-/// does not collide with itself; then lifted or lowered so that its lowest point is on the ground.
+/// does not collide with itself; then lifted or lowered so that its lowest point is 1 cm above the
+/// ground: what it touches are stones of any height, and a link may touch what its own contact is on
+/// and nothing else.
 /// Then one to four end effectors: for humanoids one foot or both, for robots on four legs three or
 /// all of them, since fewer hold them at single configurations only; hands at random. The poses
 /// that these have become the contacts, so there is a configuration that closes them without
@@ -17,6 +19,7 @@
 
 #include <locograph/planners/posture/posture_solver.h>
 #include <locograph/robots/robot_state.h>
+#include <locograph/world/collision_world.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,32 +35,32 @@ struct PostureRobot {
   std::string name;
   std::shared_ptr<const RobotParameter> robot;
   Eigen::VectorXd home;
-  std::vector<ContactDescription> feet, hands;
+  std::vector<EndEffector> feet, hands;
   int fewest_feet = 1;
 
   const Robot& model() const { return *robot->robot; }
 };
 
-inline ContactDescription surface_contact(const std::string& link, const Eigen::Vector3d& point,
-                                          double half_x_m, double half_y_m) {
-  ContactDescription contact;
-  contact.link = link;
-  contact.point = point;
-  contact.half_x_m = half_x_m;
-  contact.half_y_m = half_y_m;
-  contact.mu = 0.6;
-  contact.max_force_N = 3000.0;
-  return contact;
+inline EndEffector surface_contact(const std::string& link, const Eigen::Vector3d& point,
+                                   double half_x_m, double half_y_m) {
+  EndEffector end;
+  end.link = link;
+  end.point = point;
+  end.half_x_m = half_x_m;
+  end.half_y_m = half_y_m;
+  end.friction = 0.6;
+  end.max_force_N = 3000.0;
+  return end;
 }
 
-inline ContactDescription point_contact(const std::string& link, const Eigen::Vector3d& point) {
-  ContactDescription contact;
-  contact.link = link;
-  contact.point = point;
-  contact.kind = WrenchKind::kPoint;
-  contact.mu = 0.6;
-  contact.max_force_N = 3000.0;
-  return contact;
+inline EndEffector point_contact(const std::string& link, const Eigen::Vector3d& point) {
+  EndEffector end;
+  end.link = link;
+  end.point = point;
+  end.kind = ContactKind::kPoint;
+  end.friction = 0.6;
+  end.max_force_N = 3000.0;
+  return end;
 }
 
 /// centauro, coman_plus, which come along; go2, anymal, which are public data: data_folder holds
@@ -98,14 +101,14 @@ inline PostureRobot posture_robot(const std::string& name, const std::filesystem
 }
 
 struct ContactSet {
-  std::vector<PlacedContact> contacts;
+  Stance stance;
   Eigen::VectorXd drawn;  ///< closes them
 };
 
 class ContactSets {
  public:
   ContactSets(const PostureRobot& robot, std::uint64_t seed)
-      : robot_(robot), random_(seed), shapes_(robot.model()), world_(robot.model(), nullptr, {}) {}
+      : robot_(robot), random_(seed), world_(robot.model(), posture_world()) {}
 
   ContactSet draw() {
     ContactSet set;
@@ -116,17 +119,26 @@ class ContactSets {
       state.update(set.drawn.data());
       if (world_.self_distance(poses(state)).distance_m > 0.005) break;
     }
+    // The distance to the ground, a plane, is the height of the lowest point; as covering spheres
+    // have it first, since it is looked for up to a hand's breadth only.
     double lowest = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < shapes_.size(); ++i) {
-      lowest = std::min(lowest, shapes_.lowest_point(i, poses(state)).z());
+    for (const CollisionSphere& sphere : robot_.robot->spheres) {
+      const Eigen::Vector3d centre = state.world_from_link(sphere.link) * sphere.center;
+      lowest = std::min(lowest, centre.z() - sphere.radius);
     }
     set.drawn[2] -= lowest;
     state.update(set.drawn.data());
-    for (const ContactDescription& end : ends()) set.contacts.push_back(place(end, state));
+    const std::vector<Eigen::Isometry3d> at = poses(state);
+    set.drawn[2] += kAboveGround_m;
+    set.drawn[2] -= world_.surroundings({.world_from_link = at}).surface.distance_m;
+    state.update(set.drawn.data());
+    for (const EndEffector& end : ends()) set.stance.contacts.push_back(place(end, state));
     return set;
   }
 
  private:
+  static constexpr double kAboveGround_m = 0.01;
+
   double uniform(double lower, double upper) {
     return lower + (upper - lower) * 0x1.0p-53 * static_cast<double>(random_() >> 11);
   }
@@ -158,8 +170,8 @@ class ContactSets {
     return q;
   }
 
-  std::vector<ContactDescription> ends() {
-    std::vector<ContactDescription> feet = shuffled(robot_.feet), hands = shuffled(robot_.hands);
+  std::vector<EndEffector> ends() {
+    std::vector<EndEffector> feet = shuffled(robot_.feet), hands = shuffled(robot_.hands);
     const auto count = [&](std::size_t from, std::size_t to) {
       return from +
              static_cast<std::size_t>(uniform(0.0, 1.0) * static_cast<double>(to - from + 1));
@@ -171,7 +183,7 @@ class ContactSets {
     return feet;
   }
 
-  std::vector<ContactDescription> shuffled(std::vector<ContactDescription> ends) {
+  std::vector<EndEffector> shuffled(std::vector<EndEffector> ends) {
     for (std::size_t i = ends.size(); i > 1; --i) {
       std::swap(ends[i - 1], ends[static_cast<std::size_t>(uniform(0.0, 1.0) * double(i))]);
     }
@@ -180,19 +192,18 @@ class ContactSets {
 
   /// On wheels and round ends yaw is free; a round end touches from the side that its frame's z
   /// points to where it is a hand, from above where it is a foot.
-  PlacedContact place(const ContactDescription& end, const RobotState& state) const {
+  Contact place(const EndEffector& end, const RobotState& state) const {
     const Eigen::Isometry3d& pose = state.world_from_link(robot_.model().link_index(end.link));
-    PlacedContact placed;
-    placed.contact = end;
+    Contact placed;
+    placed.effector = end;
     placed.position = pose * end.point;
     placed.normal = pose.linear() * end.normal;
-    if (end.kind == WrenchKind::kSurface && robot_.name == "coman_plus") {
+    if (end.kind == ContactKind::kSurface && robot_.name == "coman_plus") {
       placed.forward = pose.linear() * end.forward;
     }
-    if (end.kind == WrenchKind::kPoint) {
-      const bool hand =
-          std::any_of(robot_.hands.begin(), robot_.hands.end(),
-                      [&](const ContactDescription& h) { return h.link == end.link; });
+    if (end.kind == ContactKind::kPoint) {
+      const bool hand = std::any_of(robot_.hands.begin(), robot_.hands.end(),
+                                    [&](const EndEffector& h) { return h.link == end.link; });
       placed.normal = hand ? Eigen::Vector3d(-pose.linear().col(2)) : Eigen::Vector3d::UnitZ();
     }
     return placed;
@@ -200,7 +211,6 @@ class ContactSets {
 
   const PostureRobot& robot_;
   std::mt19937_64 random_;
-  MovingShapes shapes_;
   CollisionWorld world_;
 };
 

@@ -22,7 +22,6 @@
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits_timed.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
-#include <locograph/plugins/wheel_contact/edge_wheel_contact.h>
 #include <locograph/world/octree.h>
 
 #include <filesystem>
@@ -31,7 +30,8 @@ namespace {
 
 using namespace locograph;  // NOLINT: a program, not a header
 
-constexpr int kRobot = 0, kWheels = 1, kWorld = 2, kFrame = 3, kConfigurations = 21;
+constexpr int kRobot = 0, kWorld = 2, kFrame = 3, kFeet = 10, kWheels = 20, kHeld = 30,
+              kStance = 40, kConfigurations = 21;
 
 /// A straight drive along x, 0.08 m for each configuration, past boxes on both sides.
 class Drive {
@@ -42,12 +42,6 @@ class Drive {
     robot_ =
         std::make_shared<const RobotParameter>(folder / "centauro.urdf", folder / "centauro.srdf",
                                                RobotOptions{.active_joints = {"lower_body"}});
-    std::vector<Wheel> wheels(4);
-    for (int i = 0; i < 4; ++i) {
-      wheels[i].link_name = "wheel_" + std::to_string(i + 1);
-      wheels[i].radius_m = 0.078;
-    }
-    wheels_ = std::make_shared<const WheelsParameter>(*robot_->robot, kRobot, wheels);
     auto world = std::make_shared<WorldParameter>();
     std::vector<Box> boxes(2);
     for (int side : {0, 1}) {
@@ -69,10 +63,10 @@ class Drive {
       }
     }
     graph_.parameters().set(kRobot, robot_);
-    graph_.parameters().set(kWheels, wheels_);
     graph_.parameters().set(kWorld, world);
     graph_.parameters().set(
         kFrame, std::make_shared<const FrameParameter>(*robot_->robot, kRobot, "wheel_1"));
+    add_wheels();
     const Robot& model = *robot_->robot;
     Eigen::VectorXd q = model.named_configuration("home");
     q[2] = 0.7188;
@@ -119,18 +113,35 @@ class Drive {
       graph_.add_edge(edge, ids_[i - 2], ids_[i - 1], ids_[i], steps_[i - 2], steps_[i - 1]);
     }
   }
+  /// Somewhere in the world: closed or not costs the same.
+  void set_contact(int number, const std::string& link, ContactKind kind, bool forward) {
+    locograph::Contact contact;
+    EndEffector& end = contact.effector;
+    end.link = link;
+    end.kind = kind;
+    if (kind == ContactKind::kWheel) end.radius_m = 0.078;
+    end.half_x_m = end.half_y_m = 0.02;
+    end.friction = 0.5;
+    end.max_force_N = 1000.0;
+    if (forward) contact.forward = Eigen::Vector3d::UnitX();
+    graph_.parameters().set(
+        number, std::make_shared<const ContactParameter>(robot_, kRobot, std::move(contact)));
+  }
+  void add_wheels() {
+    std::vector<int> numbers;
+    for (int i = 0; i < 4; ++i) {
+      numbers.push_back(kWheels + i);
+      set_contact(numbers.back(), "wheel_" + std::to_string(i + 1), ContactKind::kWheel, false);
+    }
+    graph_.parameters().set(kStance,
+                            std::make_shared<const StanceParameter>(graph_.parameters(), numbers));
+  }
   /// Each configuration stands on its four feet: surfaces, the wheels braked.
   void add_wrenches() {
     std::vector<int> numbers;
     for (int i = 0; i < 4; ++i) {
-      ContactDescription contact;
-      contact.link = wheels_->wheels[static_cast<std::size_t>(i)].link_name;
-      contact.half_x_m = contact.half_y_m = 0.02;
-      contact.mu = 0.5;
-      contact.max_force_N = 1000.0;
-      numbers.push_back(10 + i);
-      graph_.parameters().set(numbers.back(), std::make_shared<const ContactParameter>(
-                                                  robot_, kRobot, std::move(contact)));
+      numbers.push_back(kFeet + i);
+      set_contact(numbers.back(), "wheel_" + std::to_string(i + 1), ContactKind::kSurface, true);
     }
     for (int i = 0; i < kConfigurations; ++i) {
       VertexWrenches wrenches(graph_.parameters(), numbers);
@@ -154,14 +165,18 @@ class Drive {
     workspace_.evaluate(workspace_.state());
   }
   const RobotParameter& robot() const { return *robot_; }
-  const WheelsParameter& wheels() const { return *wheels_; }
+  const ContactParameter& contact(int number) const {
+    return *graph_.parameters().get<ContactParameter>(number);
+  }
+  const StanceParameter& stance() const {
+    return *graph_.parameters().get<StanceParameter>(kStance);
+  }
   const Robot& model() const { return *robot_->robot; }
   Workspace& workspace() { return workspace_; }
   const Problem& problem() const { return problem_; }
 
  private:
   std::shared_ptr<const RobotParameter> robot_;
-  std::shared_ptr<const WheelsParameter> wheels_;
   Graph graph_;
   std::vector<VertexId<VertexConfiguration>> ids_;
   std::vector<VertexId<VertexWrenches>> wrenches_;
@@ -304,23 +319,26 @@ BENCHMARK_CAPTURE(SweptObstacleDistance, four_obstacles_linearise, true, false, 
 
 void WheelContact(benchmark::State& run, bool linearise) {
   Drive drive(true);
-  drive.add_unary(EdgeWheelContact(drive.wheels(), kWheels, 1e5));
+  for (int i = kWheels; i < kWheels + 4; ++i) {
+    drive.add_unary(EdgeContact(drive.contact(i), i, 1e5));
+  }
   measure(run, drive, linearise);
 }
 BENCHMARK_CAPTURE(WheelContact, error, false);
 BENCHMARK_CAPTURE(WheelContact, linearise, true);
 
-void Contact(benchmark::State& run, bool linearise, ContactKind kind) {
+void Contact(benchmark::State& run, bool linearise, ContactKind kind, bool forward) {
   Drive drive(true);
-  drive.add_unary(EdgeContact(kFrame, kind, Eigen::Isometry3d::Identity(), 1e5));
+  drive.set_contact(kHeld, "wheel_1", kind, forward);
+  drive.add_unary(EdgeContact(drive.contact(kHeld), kHeld, 1e5));
   measure(run, drive, linearise);
 }
-BENCHMARK_CAPTURE(Contact, surface_error, false, ContactKind::kSurface);
-BENCHMARK_CAPTURE(Contact, surface_linearise, true, ContactKind::kSurface);
-BENCHMARK_CAPTURE(Contact, surface_free_yaw_linearise, true, ContactKind::kSurfaceFreeYaw);
-BENCHMARK_CAPTURE(Contact, point_error, false, ContactKind::kPoint);
-BENCHMARK_CAPTURE(Contact, point_linearise, true, ContactKind::kPoint);
-BENCHMARK_CAPTURE(Contact, rung_linearise, true, ContactKind::kRung);
+BENCHMARK_CAPTURE(Contact, surface_error, false, ContactKind::kSurface, true);
+BENCHMARK_CAPTURE(Contact, surface_linearise, true, ContactKind::kSurface, true);
+BENCHMARK_CAPTURE(Contact, surface_free_yaw_linearise, true, ContactKind::kSurface, false);
+BENCHMARK_CAPTURE(Contact, point_error, false, ContactKind::kPoint, true);
+BENCHMARK_CAPTURE(Contact, point_linearise, true, ContactKind::kPoint, true);
+BENCHMARK_CAPTURE(Contact, rung_linearise, true, ContactKind::kRung, true);
 
 void FramePose(benchmark::State& run, bool linearise) {
   Drive drive(true);
@@ -341,7 +359,7 @@ BENCHMARK_CAPTURE(Com, linearise, true);
 
 void Rolling(benchmark::State& run, bool linearise) {
   Drive drive(true);
-  drive.add_binary(EdgeRolling(drive.wheels(), kWheels, 1e5));
+  drive.add_binary(EdgeRolling(drive.stance(), kStance, 1e5));
   measure(run, drive, linearise);
 }
 BENCHMARK_CAPTURE(Rolling, error, false);

@@ -1,5 +1,5 @@
+#include <locograph/planners/offline/drive/wheel_motion.h>
 #include <locograph/planners/online/local_planner.h>
-#include <locograph/planners/plan/wheel_motion.h>
 #include <locograph/solvers/linear_solvers.h>
 
 #include <algorithm>
@@ -42,7 +42,11 @@ LocalPlanner::LocalPlanner(Graph& graph, const LocalPlannerOptions& options)
       optimiser_(optimiser_options(options)),
       detour_(plan_.robot, options.detour) {
   options.validate();
-  if (!plan_.wheels) throw Error("the plan has no wheels", "a PARAMS_WHEELS line");
+  for (const auto& stance : plan_.stance_from) {
+    if (!stance || stance->wheels.empty()) {
+      throw Error("a configuration of the plan stands on no wheels", "a stance with wheels");
+    }
+  }
   if (!plan_.world) throw Error("the plan has no world", "a PARAMS_WORLD line");
   for (int i = 0; i < plan_size(); ++i) planned_.emplace_back(configuration(i));
   // Builds the lists of edges of all vertices now rather than in the first cycle.
@@ -132,16 +136,14 @@ void LocalPlanner::apply_detour(int executed, int last) {
     q = planned_[i];
     q.head<3>() += offsets[i - executed - 1] * DetourSearch::left(planned_[i].data());
   }
-  WheelMotion wheels(robot, *plan_.wheels);
+  WheelMotion wheels(robot, plan_.stance_from[static_cast<std::size_t>(executed)]->stance);
   Eigen::VectorXd before = configuration(executed);
   for (int i = executed + 1; i <= last; ++i) {
     Eigen::VectorXd q = configuration(i);
     const Eigen::VectorXd after = configuration(std::min(i + 1, last));
-    const Eigen::Vector2d way = (after - before).head<2>();
+    const Eigen::Vector3d way = (after - before).head<3>();
     if (way.norm() > 1e-3) {
-      for (std::size_t w = 0; w < plan_.wheels->wheels.size(); ++w) {
-        wheels.steer(q, static_cast<int>(w), way);
-      }
+      for (int w = 0; w < wheels.wheels(); ++w) wheels.steer(q, w, way);
     }
     wheels.roll(before, q);
     configuration(i) = q;

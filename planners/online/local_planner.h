@@ -59,8 +59,8 @@ struct CycleReport {
 
 class LocalPlanner {
  public:
-  /// The graph must outlive the planner. Throws Error for a graph without a plan or without wheels,
-  /// and for options out of range.
+  /// The graph must outlive the planner. Throws Error for a graph without a plan, for one that
+  /// leaves its wheels, and for options out of range.
   LocalPlanner(Graph& graph, const LocalPlannerOptions& options);
   ~LocalPlanner();
 

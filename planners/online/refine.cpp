@@ -28,7 +28,9 @@ std::string describe(int executed, const CheckReport& check) {
 /// The motion from one configuration of the plan to the next.
 Motion step_of(const Graph& graph, const Plan& plan, int executed) {
   Plan step = plan;
-  step.slots = {plan.slots[executed], plan.slots[executed + 1]};
+  const auto i = static_cast<std::size_t>(executed);
+  step.slots = {plan.slots[i], plan.slots[i + 1]};
+  step.stance_from = {plan.stance_from[i], plan.stance_from[i + 1]};
   return motion_of(graph, step);
 }
 

@@ -2,15 +2,16 @@
 /// Walks along a plan, one cycle of the local planner at each step, as if a robot executed it.
 ///
 ///     RefineOptions options;
-///     options.verify = [&](const Motion& step) { return check_motion(robot, world, step, limits);
-///     }; RefineReport report = refine(graph, world_seen_at, options);
+///     options.verify = [&](const Motion& step) { return judge.check(step, limits); };
+///     RefineReport report = refine(graph, world_seen_at, options);
 ///
 /// Stops before a configuration that cannot be made feasible: the rest of the plan is removed from
 /// the graph, and the report says which constraint stood in the way. A plan that is feasible but
 /// ends short of its goal, because the robot had to wait in front of something, is no success.
 
+#include <locograph/check/check_report.h>
+#include <locograph/check/motion.h>
 #include <locograph/planners/online/local_planner.h>
-#include <locograph/planners/plan/check_report.h>
 
 #include <functional>
 
@@ -22,7 +23,7 @@ struct RefineOptions {
   /// Called after each cycle, e.g. to show progress; may be empty.
   std::function<void(const CycleReport&)> on_cycle;
   /// The independent verdict on the motion from the executed configuration to the next, before it
-  /// is executed: check_motion() with what is known of the world. May be empty: then the local
+  /// is executed: Judge::check() with what is known of the world. May be empty: then the local
   /// planner's own view is all there is.
   std::function<CheckReport(const Motion&)> verify;
 };

@@ -1,9 +1,9 @@
 #include <locograph/planners/online/window_check.h>
+#include <locograph/plugins/contact/edge_contact.h>
 #include <locograph/plugins/joint_limits/edge_joint_limits.h>
 #include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
 #include <locograph/plugins/rolling/edge_rolling.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
-#include <locograph/plugins/wheel_contact/edge_wheel_contact.h>
 
 #include <cmath>
 
@@ -24,8 +24,8 @@ class Allowance {
       set("joint_limits", "rad", typed<EdgeJointLimits>(pool, index).margin);
     } else if (pool.type() == typeid(EdgeVelocityLimits)) {
       set("velocity_limits", "rad", kVelocity);
-    } else if (pool.type() == typeid(EdgeWheelContact)) {
-      set("wheel_contact", "m", kContact_m);
+    } else if (pool.type() == typeid(EdgeContact)) {
+      set("contact", "m", kContact_m);
       odd_ = kTilt;
     } else if (pool.type() == typeid(EdgeRolling)) {
       set("rolling", "m", kSlip_m);

@@ -1,14 +1,9 @@
 #include <locograph/planners/plan/plan.h>
-#include <locograph/plugins/joint_limits/edge_joint_limits.h>
-#include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
-#include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
-#include <locograph/plugins/rolling/edge_rolling.h>
+#include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
-#include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
-#include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
-#include <locograph/plugins/wheel_contact/edge_wheel_contact.h>
 
 #include <algorithm>
+#include <map>
 
 namespace locograph {
 namespace {
@@ -17,147 +12,144 @@ const VertexConfiguration& configuration(const Graph& graph, int slot) {
   return graph.vertex(VertexId<VertexConfiguration>{slot});
 }
 
-/// Steering: the joint above a wheel's carrier.
-bool steers(const Robot& robot, const WheelsParameter& wheels, int active) {
-  for (const Wheel& wheel : wheels.wheels) {
-    const int above = robot.links()[wheel.carrier].parent_joint;
-    if (above >= 0 && robot.joints()[above].index == active) return true;
-  }
-  return false;
-}
-
-bool turns_wheel(const WheelsParameter& wheels, int active) {
-  return std::any_of(wheels.wheels.begin(), wheels.wheels.end(),
-                     [active](const Wheel& wheel) { return wheel.joint == active; });
-}
-
 template <class V>
 bool is(const Graph& graph, int slot) {
   return graph.vertex_pools()[graph.vertex_record(slot).pool]->type() == typeid(V);
 }
 
-/// By the slot of a configuration: the VERTEX_WRENCHES that shares an edge with it, -1 for none.
-std::vector<int> wrenches_by_configuration(const Graph& graph) {
-  std::vector<int> wrenches(static_cast<std::size_t>(graph.vertex_slots()), -1);
+/// The only parameter of its type, null if there is none.
+template <class P>
+std::shared_ptr<const P> only(const Parameters& parameters) {
+  std::shared_ptr<const P> found;
+  int first_line = 0;
+  for (const auto& [number, parameter] : parameters.all()) {
+    auto typed = std::dynamic_pointer_cast<const P>(parameter);
+    if (!typed) continue;
+    const int line = parameters.line(number);
+    if (found) {
+      throw Error("", std::max(line, first_line),
+                  "a second " + std::string(typed->tag()) + " in a plan", "one");
+    }
+    found = std::move(typed);
+    first_line = line;
+  }
+  return found;
+}
+
+/// Wrenches act at contacts of a stance that the configuration is in: of the step before or after.
+void require_wrenches_of_stances(const Graph& graph, const Plan& plan) {
+  std::vector<int> place(static_cast<std::size_t>(graph.vertex_slots()), -1);
+  for (std::size_t i = 0; i < plan.slots.size(); ++i) {
+    place[static_cast<std::size_t>(plan.slots[i])] = static_cast<int>(i);
+  }
+  const auto holds = [&](int i, int contact) {
+    if (i < 0 || !plan.stance_from[static_cast<std::size_t>(i)]) return false;
+    const std::vector<int>& numbers =
+        plan.stance_from[static_cast<std::size_t>(i)]->contact_numbers;
+    return std::find(numbers.begin(), numbers.end(), contact) != numbers.end();
+  };
   for (int edge = 0; edge < graph.edge_slots(); ++edge) {
     if (!graph.edge_alive(edge)) continue;
     for (const int a : graph.edge_vertices(edge)) {
       if (!is<VertexConfiguration>(graph, a)) continue;
-      int& found = wrenches[static_cast<std::size_t>(a)];
       for (const int b : graph.edge_vertices(edge)) {
         if (!is<VertexWrenches>(graph, b)) continue;
-        if (found >= 0 && found != b) {
+        const int i = place[static_cast<std::size_t>(a)];
+        for (const int contact : graph.vertex(VertexId<VertexWrenches>{b}).contact_numbers) {
+          if (holds(i, contact) || holds(i - 1, contact)) continue;
           throw Error("configuration " + std::to_string(graph.vertex_record(a).id) +
-                          " shares edges with several VERTEX_WRENCHES",
-                      "one with all its contacts");
+                          " has wrenches at contact " + std::to_string(contact) +
+                          ", which no stance of it has",
+                      "contacts of its stances");
         }
-        found = b;
       }
     }
   }
-  return wrenches;
 }
 
-void add_contacts(const Graph& graph, const Plan& plan, Motion& motion) {
-  const std::vector<int> wrenches = wrenches_by_configuration(graph);
-  for (const int slot : plan.slots) {
-    std::vector<ContactDescription>& contacts = motion.contacts.emplace_back();
-    const int found = wrenches[static_cast<std::size_t>(slot)];
-    if (found < 0) continue;
-    const VertexWrenches& vertex = graph.vertex(VertexId<VertexWrenches>{found});
-    if (!vertex.contacts) throw Error("wrenches without contacts", "a VERTEX_WRENCHES line");
-    for (const auto& contact : *vertex.contacts) contacts.push_back(contact->given);
-  }
+std::string text_of(const ContactParameter& contact) {
+  FieldWriter out;
+  contact.write(out);
+  return out.text();
 }
 
 }  // namespace
 
 Plan plan_of(const Graph& graph) {
   Plan plan;
+  const Parameters& parameters = graph.parameters();
   for (int slot = 0; slot < graph.vertex_slots(); ++slot) {
-    if (!graph.vertex_alive(slot)) continue;
-    const int pool = graph.vertex_record(slot).pool;
-    if (graph.vertex_pools()[pool]->type() == typeid(VertexConfiguration)) {
+    if (graph.vertex_alive(slot) && is<VertexConfiguration>(graph, slot)) {
       plan.slots.push_back(slot);
     }
   }
   if (plan.slots.empty()) throw Error("the graph holds no plan", "VERTEX_CONFIGURATION lines");
-  std::stable_sort(plan.slots.begin(), plan.slots.end(), [&graph](int a, int b) {
-    return configuration(graph, a).time_s < configuration(graph, b).time_s;
-  });
+  const auto format = only<PlanParameter>(parameters);
+  if (!format) throw Error("a plan without a format version", "a PARAMS_PLAN line");
+  plan.stances_only = format->stances_only;
+  plan.world = only<WorldParameter>(parameters);
+  only<RobotParameter>(parameters);
+  if (!plan.stances_only) {
+    std::stable_sort(plan.slots.begin(), plan.slots.end(), [&graph](int a, int b) {
+      return configuration(graph, a).time_s < configuration(graph, b).time_s;
+    });
+  }
   plan.robot = configuration(graph, plan.slots.front()).robot;
   for (const int slot : plan.slots) {
-    if (configuration(graph, slot).robot != plan.robot) {
+    const VertexConfiguration& vertex = configuration(graph, slot);
+    if (vertex.robot != plan.robot) {
       throw Error("the plan has configurations of several robots", "one robot");
     }
+    const bool known = vertex.stance_number != kNoStance;
+    plan.stance_from.push_back(known ? parameters.get<StanceParameter>(vertex.stance_number)
+                                     : nullptr);
   }
-  plan.wheels = graph.parameters().find<WheelsParameter>();
-  plan.world = graph.parameters().find<WorldParameter>();
+  require_wrenches_of_stances(graph, plan);
   return plan;
 }
 
 Motion motion_of(const Graph& graph, const Plan& plan) {
   Motion motion;
-  for (const int slot : plan.slots) {
-    const VertexConfiguration& vertex = configuration(graph, slot);
+  motion.stances_only = plan.stances_only;
+  std::map<const StanceParameter*, int> known;
+  for (std::size_t i = 0; i < plan.slots.size(); ++i) {
+    const VertexConfiguration& vertex = configuration(graph, plan.slots[i]);
     motion.time_s.push_back(vertex.time_s);
     motion.configurations.push_back(vertex.state);
-  }
-  if (plan.wheels) {
-    for (const Wheel& wheel : plan.wheels->wheels) {
-      motion.wheels.push_back({wheel.link, wheel.radius_m});
+    const StanceParameter* stance = plan.stance_from[i].get();
+    if (stance == nullptr) {
+      motion.stance_from.push_back(-1);
+      continue;
     }
+    const auto [found, added] = known.emplace(stance, static_cast<int>(motion.stances.size()));
+    if (added) motion.stances.push_back(stance->stance);
+    motion.stance_from.push_back(found->second);
   }
-  if (!graph.vertices_of<VertexWrenches>().empty()) add_contacts(graph, plan, motion);
   return motion;
 }
 
-void add_wheeled_plan(Graph& graph, const std::vector<double>& time_s,
-                      const std::vector<Eigen::VectorXd>& configurations,
-                      const PlanEdgeOptions& options) {
-  const auto robot = graph.parameters().get<RobotParameter>(kRobotNumber);
-  const auto wheels = graph.parameters().get<WheelsParameter>(kWheelsNumber);
-  const Robot& model = *robot->robot;
-  const int base = model.base_tangent_size();
-  Eigen::VectorXd track = Eigen::VectorXd::Constant(model.tangent_size(), options.track_joint);
-  Eigen::VectorXd steps = Eigen::VectorXd::Constant(model.tangent_size(), options.step_joint);
-  track.head<6>() << options.track_forward, options.track_lateral, options.track_height,
-      options.track_tilt, options.track_tilt, options.track_yaw;
-  steps.head<6>().setConstant(options.step_base);
-  for (int i = 0; i < model.active_joint_count(); ++i) {
-    if (steers(model, *wheels, i)) {
-      track[base + i] = 0.0;
-      steps[base + i] = options.step_steering;
-    } else if (turns_wheel(*wheels, i)) {
-      track[base + i] = 0.0;
-      steps[base + i] = 0.0;
+std::vector<int> add_stances(Graph& graph, const std::shared_ptr<const RobotParameter>& robot,
+                             const std::vector<Stance>& stances) {
+  Parameters& parameters = graph.parameters();
+  parameters.set(kPlanNumber, std::make_shared<const PlanParameter>());
+  std::map<std::string, int> numbers;
+  std::vector<std::vector<int>> contacts_of;
+  int next = kFirstContact;
+  for (const Stance& stance : stances) {
+    std::vector<int>& contacts = contacts_of.emplace_back();
+    for (const Contact& contact : stance.contacts) {
+      const auto parameter = std::make_shared<const ContactParameter>(robot, kRobotNumber, contact);
+      const auto [found, added] = numbers.emplace(text_of(*parameter), next);
+      if (added) parameters.set(next++, parameter);
+      contacts.push_back(found->second);
     }
   }
-
-  std::vector<VertexId<VertexConfiguration>> ids;
-  for (std::size_t i = 0; i < configurations.size(); ++i) {
-    ids.push_back(
-        graph.add_vertex(static_cast<int>(i),
-                         VertexConfiguration(kRobotNumber, robot, time_s[i], configurations[i])));
+  std::vector<int> result;
+  for (std::vector<int>& contacts : contacts_of) {
+    parameters.set(next, std::make_shared<const StanceParameter>(parameters, std::move(contacts)));
+    result.push_back(next++);
   }
-  graph.set_fixed(ids.front(), true);
-  Eigen::VectorXd step(model.tangent_size());
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    graph.add_edge(EdgePlanTracking(configurations[i], track), ids[i]);
-    graph.add_edge(EdgeJointLimits(model, options.joint_margin_rad, options.limit_weight), ids[i]);
-    graph.add_edge(
-        EdgeObstacleDistance(*robot, kWorldNumber, options.obstacle_margin_m, options.limit_weight),
-        ids[i]);
-    graph.add_edge(EdgeWheelContact(*wheels, kWheelsNumber, options.constraint_weight), ids[i]);
-    if (i == 0) continue;
-    model.difference(configurations[i - 1].data(), configurations[i].data(), step.data());
-    graph.add_edge(EdgeVelocityTracking(step, steps), ids[i - 1], ids[i]);
-    graph.add_edge(EdgeVelocityLimits(model, options.velocity_fraction, options.base_linear_m_s,
-                                      options.base_angular_rad_s, options.limit_weight),
-                   ids[i - 1], ids[i]);
-    graph.add_edge(EdgeRolling(*wheels, kWheelsNumber, options.constraint_weight), ids[i - 1],
-                   ids[i]);
-  }
+  return result;
 }
 
 }  // namespace locograph

@@ -1,5 +1,5 @@
 #include <locograph/planners/posture/contacts_file.h>
-#include <locograph/robots/xml_file.h>
+#include <locograph/planners/scenario/effector_element.h>
 
 #include <map>
 #include <set>
@@ -15,102 +15,65 @@ class ContactsReader {
   ContactsReader(const std::filesystem::path& file, const Robot& robot)
       : robot_(robot), xml_(file, "contacts") {}
 
-  std::vector<PlacedContact> read() const {
+  Stance read() {
     const Element& root = xml_.root();
     xml_.allow(root, {"version", "name"}, {"contact"});
     if (const std::string version = xml_.attribute(root, "version"); version != "1") {
       throw xml_.error(root, "contacts of version '" + version + "'", "version=\"1\"");
     }
-    std::vector<PlacedContact> contacts;
+    Stance stance;
     for (const Element& element : xml_.children(root, "contact")) {
-      contacts.push_back(read_contact(element));
+      stance.contacts.push_back(read_contact(element));
       // Whatever contradicts the contacts before is this one's mistake.
-      with_line(element, [&] { require_sound_contacts(robot_, all_loaded(contacts)); });
+      blame(xml_, element, [&] { require_sound_stance(robot_, all_loaded(stance)); });
     }
-    with_line(root, [&] { require_sound_contacts(robot_, contacts); });
-    return contacts;
+    blame(xml_, root, [&] { require_sound_stance(robot_, stance); });
+    return stance;
   }
 
  private:
-  template <class F>
-  void with_line(const Element& element, F&& f) const {
-    try {
-      f();
-    } catch (const Error& error) {
-      throw xml_.error(element, error.what(), "");
-    }
+  static Stance all_loaded(Stance stance) {
+    for (Contact& contact : stance.contacts) contact.bears_load = true;
+    return stance;
   }
 
-  static std::vector<PlacedContact> all_loaded(std::vector<PlacedContact> contacts) {
-    for (PlacedContact& contact : contacts) contact.bears_load = true;
-    return contacts;
-  }
-
-  PlacedContact read_contact(const Element& element) const {
-    static const std::map<std::string, WrenchKind> kKinds = {{"surface", WrenchKind::kSurface},
-                                                             {"point", WrenchKind::kPoint},
-                                                             {"rung", WrenchKind::kRung}};
-    const std::string kind = xml_.attribute(element, "kind");
-    if (!kKinds.contains(kind)) {
-      throw xml_.error(element, "unknown kind of contact '" + kind + "'", "surface, point or rung");
-    }
-    PlacedContact placed;
-    ContactDescription& contact = placed.contact;
-    contact.kind = kKinds.at(kind);
-    std::set<std::string> allowed = {"kind",   "link",    "point", "position",
-                                     "normal", "forward", "load",  "max_force"};
-    if (contact.kind == WrenchKind::kSurface) allowed.insert({"half_x", "half_y"});
-    allowed.insert(contact.kind == WrenchKind::kRung ? "max_moment" : "mu");
-    if (contact.kind != WrenchKind::kPoint) allowed.insert({"link_normal", "link_forward"});
+  Contact read_contact(const Element& element) {
+    const ContactKind kind = read_contact_kind(xml_, element);
+    std::set<std::string> allowed = effector_attributes(kind);
+    allowed.insert({"kind", "position", "normal", "forward", "load"});
+    if (kind != ContactKind::kRung) allowed.insert("mu");
     xml_.allow(element, allowed, {});
 
-    contact.link = xml_.attribute(element, "link");
-    contact.point = vector(element, "point", Eigen::Vector3d::Zero());
-    contact.normal = vector(element, "link_normal", Eigen::Vector3d::UnitZ());
-    contact.forward = vector(element, "link_forward", Eigen::Vector3d::UnitX());
-    contact.max_force_N = xml_.positive(element, "max_force");
-    if (contact.kind == WrenchKind::kRung) {
-      contact.max_moment_Nm = xml_.number(element, "max_moment");
-      if (contact.max_moment_Nm < 0.0) {
-        throw xml_.error(element, "max_moment is " + std::to_string(contact.max_moment_Nm),
-                         "zero or more");
-      }
-    } else {
-      contact.mu = xml_.positive(element, "mu");
+    Contact contact;
+    contact.effector = read_effector(xml_, element, kind);
+    if (kind != ContactKind::kRung) contact.effector.friction = xml_.positive(element, "mu");
+    const int before = of_link_[contact.effector.link]++;
+    if (before > 0) {
+      contact.effector.name = contact.effector.link + "_" + std::to_string(before + 1);
     }
-    if (contact.kind == WrenchKind::kSurface) {
-      contact.half_x_m = xml_.positive(element, "half_x");
-      contact.half_y_m = xml_.positive(element, "half_y");
+    contact.position = read_vector(xml_, element, "position");
+    contact.normal = read_vector(xml_, element, "normal");
+    if (element.Attribute("forward") != nullptr) {
+      contact.forward = read_vector(xml_, element, "forward");
     }
-    placed.position = vector(element, "position");
-    placed.normal = vector(element, "normal");
-    if (element.Attribute("forward") != nullptr) placed.forward = vector(element, "forward");
     if (element.Attribute("load") != nullptr) {
       const std::string load = xml_.attribute(element, "load");
       if (load != "yes" && load != "no") {
         throw xml_.error(element, "load is '" + load + "'", "yes or no");
       }
-      placed.bears_load = load == "yes";
+      contact.bears_load = load == "yes";
     }
-    return placed;
-  }
-
-  Eigen::Vector3d vector(const Element& element, const char* name) const {
-    const std::vector<double> numbers = xml_.numbers(element, name, 3);
-    return {numbers[0], numbers[1], numbers[2]};
-  }
-  Eigen::Vector3d vector(const Element& element, const char* name,
-                         const Eigen::Vector3d& otherwise) const {
-    return element.Attribute(name) == nullptr ? otherwise : vector(element, name);
+    return contact;
   }
 
   const Robot& robot_;
   XmlFile xml_;
+  std::map<std::string, int> of_link_;
 };
 
 }  // namespace
 
-std::vector<PlacedContact> load_contacts(const std::filesystem::path& file, const Robot& robot) {
+Stance load_contacts(const std::filesystem::path& file, const Robot& robot) {
   return ContactsReader(file, robot).read();
 }
 

@@ -1,17 +1,18 @@
 #pragma once
 /// Reads where a robot is to touch the world.
 ///
-///     std::vector<PlacedContact> contacts = load_contacts("standing.xml", robot);
+///     Stance stance = load_contacts("standing.xml", robot);
 ///
 /// The format is described in doc/posture.md. Every mistake is an Error with file and line.
+/// A contact of a link that the file names several times gets a name of its own, "LINK_2" for the
+/// second one.
 
-#include <locograph/planners/plan/placed_contact.h>
+#include <locograph/robots/contact.h>
 
 #include <filesystem>
-#include <vector>
 
 namespace locograph {
 
-std::vector<PlacedContact> load_contacts(const std::filesystem::path& file, const Robot& robot);
+Stance load_contacts(const std::filesystem::path& file, const Robot& robot);
 
 }  // namespace locograph

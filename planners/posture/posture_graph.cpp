@@ -1,6 +1,5 @@
 #include <locograph/planners/plan/plan.h>
 #include <locograph/planners/posture/posture_graph.h>
-#include <locograph/plugins/configuration/surface_axes.h>
 #include <locograph/plugins/contact/edge_contact.h>
 #include <locograph/plugins/ground_distance/edge_ground_distance.h>
 #include <locograph/plugins/joint_limits/edge_joint_limits.h>
@@ -40,42 +39,15 @@ Eigen::VectorXd all(Eigen::Index rows, double value) {
   return Eigen::VectorXd::Constant(rows, value);
 }
 
-ContactKind closure_of(const PlacedContact& placed) {
-  switch (placed.contact.kind) {
-    case WrenchKind::kPoint:
-      return ContactKind::kPoint;
-    case WrenchKind::kRung:
-      return ContactKind::kRung;
-    case WrenchKind::kSurface:
-      break;
-  }
-  return placed.forward ? ContactKind::kSurface : ContactKind::kSurfaceFreeYaw;
-}
-
-Eigen::Isometry3d frame_in_link(const ContactDescription& contact) {
-  Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
-  frame.translation() = contact.point;
-  if (contact.kind != WrenchKind::kPoint) {
-    frame.linear() = surface_axes("contact of " + contact.link, contact.normal, contact.forward);
-  }
-  return frame;
-}
-
-Eigen::Isometry3d frame_in_world(const PlacedContact& placed) {
-  Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
-  frame.translation() = placed.position;
-  frame.linear() = world_axes(placed);
-  return frame;
-}
-
 /// What the contact bears, less a margin.
-ContactDescription with_margin(ContactDescription contact, double margin) {
+Contact with_margin(Contact contact, double margin) {
   const double part = 1.0 - margin;
-  contact.mu *= part;
-  contact.half_x_m *= part;
-  contact.half_y_m *= part;
-  contact.max_force_N *= part;
-  contact.max_moment_Nm *= part;
+  EndEffector& effector = contact.effector;
+  effector.friction *= part;
+  effector.half_x_m *= part;
+  effector.half_y_m *= part;
+  effector.max_force_N *= part;
+  effector.max_moment_Nm *= part;
   return contact;
 }
 
@@ -151,47 +123,47 @@ Violated WatchedRows::violated(Workspace& workspace) {
   return violated;
 }
 
-PostureGraph::PostureGraph(std::shared_ptr<const RobotParameter> robot, const PostureWorld& world,
+PostureGraph::PostureGraph(std::shared_ptr<const RobotParameter> robot,
+                           std::shared_ptr<const WorldParameter> seen,
                            const PostureProblem& problem, const PostureOptions& options,
                            const std::vector<bool>& coarse_pairs)
     : robot_(std::move(robot)), weight_N_(robot_->robot->total_mass() * standard_gravity().norm()) {
   const Robot& model = *robot_->robot;
-  add_parameters(world, problem, options);
-  q_ = graph.add_vertex(0, VertexConfiguration(kRobotNumber, robot_, 0.0, problem.preferred));
+  add_parameters(std::move(seen), problem, options);
+  q_ = graph.add_vertex(
+      0, VertexConfiguration(kRobotNumber, robot_, 0.0, problem.preferred, stance_number_));
   w_ = graph.add_vertex(1, VertexWrenches(graph.parameters(), wrench_numbers_));
 
   Eigen::VectorXd preference = all(model.tangent_size(), kPreferredJoint);
   preference.head(model.base_tangent_size()).setConstant(kPreferredBase);
   graph.add_edge(EdgePlanTracking(problem.preferred, preference), q_);
   graph.add_edge(EdgeWrenchNorm(graph.vertex(w_), kWrenchNorm / (weight_N_ * weight_N_)), w_);
-  add_contact_edges(problem);
+  add_contact_edges();
   const int joints = model.active_joint_count();
   constrain(Kind::kJoints, EdgeJointLimits(model, options.joint_margin_rad, kLimitWeight),
             all(joints, used(options.joint_margin_rad)), -1, q_);
   add_balance_edges(options);
-  add_collision_edges(world, problem, options, coarse_pairs);
+  add_collision_edges(problem, options, coarse_pairs);
 }
 
-void PostureGraph::add_parameters(const PostureWorld& world, const PostureProblem& problem,
-                                  const PostureOptions& options) {
+void PostureGraph::add_parameters(std::shared_ptr<const WorldParameter> seen,
+                                  const PostureProblem& problem, const PostureOptions& options) {
   graph.parameters().set(kRobotNumber, robot_);
-  if (world.seen) graph.parameters().set(kWorldNumber, world.seen);
-  int number = 0;
-  for (const PlacedContact& placed : problem.contacts) {
-    const ContactDescription& contact = placed.contact;
-    graph.parameters().set(kFirstFrame + number,
-                           std::make_shared<const FrameParameter>(
-                               *robot_->robot, kRobotNumber, contact.link, frame_in_link(contact)));
-    if (placed.bears_load) {
-      wrench_numbers_.push_back(kFirstContact + number);
-      wrench_axes_.push_back(world_axes(placed));
-      loaded_links_.push_back(robot_->robot->link_index(contact.link));
-      graph.parameters().set(wrench_numbers_.back(),
-                             std::make_shared<const ContactParameter>(
-                                 robot_, kRobotNumber,
-                                 with_margin(wrench_description(placed), options.wrench_margin)));
-    }
-    ++number;
+  seen_ = seen->now.map || !seen->now.obstacles.empty();
+  ground_z_m_ = seen->ground_z_m;
+  graph.parameters().set(kWorldNumber, std::move(seen));
+  Stance stance = problem.stance;
+  for (Contact& contact : stance.contacts) contact = with_margin(contact, options.wrench_margin);
+  stance_number_ = add_stances(graph, robot_, {stance}).front();
+  const auto parameter = graph.parameters().get<StanceParameter>(stance_number_);
+  for (std::size_t i = 0; i < parameter->contacts.size(); ++i) {
+    const Contact& contact = parameter->contacts[i]->contact;
+    contact_numbers_.push_back(parameter->contact_numbers[i]);
+    if (!contact.bears_load) continue;
+    wrench_numbers_.push_back(contact_numbers_.back());
+    wrench_axes_.push_back(axes_in_world(contact));
+    loaded_.push_back(i);
+    loaded_links_.push_back(parameter->contacts[i]->link);
   }
 }
 
@@ -204,13 +176,12 @@ void PostureGraph::constrain(Kind kind, E edge, const Eigen::VectorXd& tolerance
   constraints_.push_back({kind, id, link, tolerance, std::move(weights)});
 }
 
-void PostureGraph::add_contact_edges(const PostureProblem& problem) {
-  int number = kFirstFrame;
-  for (const PlacedContact& placed : problem.contacts) {
-    EdgeContact closure(number++, closure_of(placed), frame_in_world(placed), kContactWeight);
+void PostureGraph::add_contact_edges() {
+  for (const int number : contact_numbers_) {
+    const auto contact = graph.parameters().get<ContactParameter>(number);
+    EdgeContact closure(*contact, number, kContactWeight);
     const Eigen::VectorXd tolerance = all(closure.dimension(), kContactTolerance);
-    constrain(Kind::kContact, std::move(closure), tolerance,
-              robot_->robot->link_index(placed.contact.link), q_);
+    constrain(Kind::kContact, std::move(closure), tolerance, contact->closure.link(), q_);
   }
 }
 
@@ -235,8 +206,7 @@ void PostureGraph::add_balance_edges(const PostureOptions& options) {
   constrain(Kind::kTorques, std::move(torques), allowed, -1, q_, w_);
 }
 
-void PostureGraph::add_collision_edges(const PostureWorld& world, const PostureProblem& problem,
-                                       const PostureOptions& options,
+void PostureGraph::add_collision_edges(const PostureProblem& problem, const PostureOptions& options,
                                        const std::vector<bool>& coarse_pairs) {
   const auto pairs = static_cast<Eigen::Index>(robot_->self_collision.pairs.size());
   if (pairs > 0) {
@@ -248,20 +218,21 @@ void PostureGraph::add_collision_edges(const PostureWorld& world, const PostureP
   }
   const auto spheres = static_cast<Eigen::Index>(robot_->spheres.size());
   if (spheres == 0) return;
-  const std::vector<bool> touching = touching_links(*robot_->robot, problem.contacts);
+  const std::vector<bool> touching = touching_links(*robot_->robot, problem.stance.contacts);
   const auto release_touching = [&](Eigen::VectorXd& weights) {
     for (Eigen::Index i = 0; i < spheres; ++i) {
       const CollisionSphere& sphere = robot_->spheres[static_cast<std::size_t>(i)];
       if (touching[static_cast<std::size_t>(sphere.link)]) weights[i] = 0.0;
     }
   };
-  if (world.ground) {
+  // The edge knows the plane z = 0 only; other ground is left to the judge.
+  if (ground_z_m_ == 0.0) {
     EdgeGroundDistance ground(*robot_, options.ground_margin_m, kLimitWeight);
     release_touching(ground.weights);
     constrain(Kind::kSpheres, std::move(ground), all(spheres, used(options.ground_margin_m)), -1,
               q_);
   }
-  if (world.seen) {
+  if (seen_) {
     EdgeObstacleDistance obstacles(*robot_, kWorldNumber, options.obstacle_margin_m, kLimitWeight);
     release_touching(obstacles.weights);
     constrain(Kind::kSpheres, std::move(obstacles), all(spheres, used(options.obstacle_margin_m)),
@@ -271,10 +242,10 @@ void PostureGraph::add_collision_edges(const PostureWorld& world, const PostureP
 
 void PostureGraph::set_start(const Eigen::VectorXd& configuration) {
   const double share_N = weight_N_ / static_cast<double>(wrench_axes_.size());
-  std::vector<Eigen::VectorXd> wrenches;
-  for (const Eigen::Matrix3d& axes : wrench_axes_) {
-    wrenches.push_back(Eigen::VectorXd::Zero(6));
-    wrenches.back().head<3>() = axes.transpose() * (share_N * Eigen::Vector3d::UnitZ());
+  std::vector<Eigen::VectorXd> wrenches(contact_numbers_.size(), Eigen::VectorXd::Zero(6));
+  for (std::size_t i = 0; i < loaded_.size(); ++i) {
+    wrenches[loaded_[i]].head<3>() =
+        wrench_axes_[i].transpose() * (share_N * Eigen::Vector3d::UnitZ());
   }
   set(configuration, wrenches);
 }
@@ -285,9 +256,9 @@ void PostureGraph::set(const Eigen::VectorXd& configuration,
   if (wrenches.empty()) return;
   VertexWrenches& vertex = graph.vertex(w_);
   Eigen::Index at = 0;
-  for (std::size_t i = 0; i < wrenches.size(); ++i) {
+  for (std::size_t i = 0; i < loaded_.size(); ++i) {
     for (const int component : (*vertex.contacts)[i]->components()) {
-      vertex.state[at++] = wrenches[i][component];
+      vertex.state[at++] = wrenches[loaded_[i]][component];
     }
   }
 }

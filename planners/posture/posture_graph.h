@@ -1,7 +1,7 @@
 #pragma once
 /// The graph that a posture is the optimum of, and which of its rows are violated.
 ///
-///     PostureGraph posture(robot, world, problem, options);
+///     PostureGraph posture(robot, seen, problem, options, coarse_pairs);
 ///     posture.set_start(problem.preferred);
 ///     Problem compiled;
 ///     compiled.compile(posture.graph);
@@ -56,13 +56,14 @@ class WatchedRows {
 
 class PostureGraph {
  public:
-  PostureGraph(std::shared_ptr<const RobotParameter> robot, const PostureWorld& world,
-               const PostureProblem& problem, const PostureOptions& options,
-               const std::vector<bool>& coarse_pairs);
+  /// seen: what is in the way, as edges see it.
+  PostureGraph(std::shared_ptr<const RobotParameter> robot,
+               std::shared_ptr<const WorldParameter> seen, const PostureProblem& problem,
+               const PostureOptions& options, const std::vector<bool>& coarse_pairs);
 
   /// The configuration, and wrenches that share the weight evenly among the contacts.
   void set_start(const Eigen::VectorXd& configuration);
-  /// wrenches: 6 numbers for each contact that bears load; empty: as they are.
+  /// wrenches: 6 numbers for each contact of the stance; empty: as they are.
   void set(const Eigen::VectorXd& configuration, const std::vector<Eigen::VectorXd>& wrenches);
   Eigen::VectorXd configuration() const;
 
@@ -71,12 +72,12 @@ class PostureGraph {
   Graph graph;
 
  private:
-  void add_parameters(const PostureWorld& world, const PostureProblem& problem,
+  void add_parameters(std::shared_ptr<const WorldParameter> seen, const PostureProblem& problem,
                       const PostureOptions& options);
-  void add_contact_edges(const PostureProblem& problem);
+  void add_contact_edges();
   void add_balance_edges(const PostureOptions& options);
-  void add_collision_edges(const PostureWorld& world, const PostureProblem& problem,
-                           const PostureOptions& options, const std::vector<bool>& coarse_pairs);
+  void add_collision_edges(const PostureProblem& problem, const PostureOptions& options,
+                           const std::vector<bool>& coarse_pairs);
   template <class E, class... Vertices>
   void constrain(WatchedRows::Kind kind, E edge, const Eigen::VectorXd& tolerance, int link,
                  Vertices... vertices);
@@ -92,6 +93,11 @@ class PostureGraph {
   double weight_N_;
   VertexId<VertexConfiguration> q_;
   VertexId<VertexWrenches> w_;
+  bool seen_ = false;  ///< there is something in the way
+  std::optional<double> ground_z_m_;
+  int stance_number_ = kNoStance;
+  std::vector<int> contact_numbers_;
+  std::vector<std::size_t> loaded_;  ///< which of them bear load
   std::vector<int> wrench_numbers_;
   std::vector<Eigen::Matrix3d> wrench_axes_;  ///< in the world, once closed
   std::vector<int> loaded_links_;

@@ -2,9 +2,10 @@
 #include <locograph/planners/plan/plan.h>
 #include <locograph/planners/posture/posture_graph.h>
 #include <locograph/planners/posture/posture_solver.h>
+#include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
 #include <locograph/solvers/linear_solvers.h>
-#include <locograph/world/octree.h>
+#include <locograph/world/distance_view.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +27,7 @@ double uniform(std::mt19937_64& random, double lower, double upper) {
 /// Pairs of RobotParameter::self_collision that the edges would keep apart where the exact shapes
 /// do not touch.
 std::vector<bool> coarse_pairs(const std::shared_ptr<const RobotParameter>& robot,
-                               const PostureChecker& checker) {
+                               const Judge& judge) {
   const Robot& model = *robot->robot;
   const std::size_t pairs = robot->self_collision.pairs.size();
   std::vector<bool> coarse(pairs, false);
@@ -39,7 +40,7 @@ std::vector<bool> coarse_pairs(const std::shared_ptr<const RobotParameter>& robo
   ConfigurationState state(robot);
   for (const Eigen::VectorXd& q : examples) {
     state.update(q.data());
-    if (checker.self_distance_m(state.kinematics) < 0.0) continue;
+    if (judge.self_distance_m(state.kinematics) < 0.0) continue;
     edge.error(state, depth);
     for (std::size_t p = 0; p < pairs; ++p) {
       if (depth[static_cast<Eigen::Index>(p)] > 0.0) coarse[p] = true;
@@ -51,19 +52,18 @@ std::vector<bool> coarse_pairs(const std::shared_ptr<const RobotParameter>& robo
 /// One solve: the graph compiled once, attempts on it.
 class Search {
  public:
-  Search(const std::shared_ptr<const RobotParameter>& robot, const PostureWorld& world,
-         const PostureChecker& checker, const PostureProblem& problem,
-         const PostureOptions& options, const std::vector<bool>& coarse, Workspace& workspace)
+  Search(const std::shared_ptr<const RobotParameter>& robot,
+         const std::shared_ptr<const WorldParameter>& seen, const Judge& judge,
+         const PostureProblem& problem, const PostureOptions& options,
+         const std::vector<bool>& coarse, Workspace& workspace)
       : robot_(*robot->robot),
-        checker_(checker),
+        judge_(judge),
         problem_(problem),
         options_(options),
         random_(options.seed),
-        posture_(robot, world, problem, options, coarse),
+        posture_(robot, seen, problem, options, coarse),
         solver_(make_linear_solver("dense")),
         workspace_(workspace) {
-    check_.ground_z_m =
-        world.ground ? options.check.ground_z_m : -std::numeric_limits<double>::infinity();
     compiled_.compile(posture_.graph);
     workspace_.allocate(compiled_);
     watched_ = posture_.watch(compiled_);
@@ -123,9 +123,9 @@ class Search {
       result_.configuration = posture_.configuration();
       checked_ = false;
     }
-    PostureCheckOptions asked = check_;
+    CheckOptions asked = options_.check;
     asked.certify_only_if_rest_holds = true;
-    PostureReport report = checked(posture_.configuration(), asked);
+    CheckReport report = checked(posture_.configuration(), asked);
     result_.success = report.feasible;
     if (best || report.feasible) {
       result_.configuration = posture_.configuration();
@@ -141,15 +141,15 @@ class Search {
     return *std::min_element(split, worst.end()) > 0.9 * *std::min_element(worst.begin(), split);
   }
 
-  PostureReport checked(const Eigen::VectorXd& q, const PostureCheckOptions& options) {
-    PostureReport report = checker_.check(q, problem_.contacts, options);
+  CheckReport checked(const Eigen::VectorXd& q, const CheckOptions& options) {
+    CheckReport report = judge_.check(q, problem_.stance, options);
     result_.geometry_s += report.geometry_s;
     result_.balance_s += report.balance_s;
     return report;
   }
 
   void explain() {
-    if (!checked_) result_.report = checked(result_.configuration, check_);
+    if (!checked_) result_.report = checked(result_.configuration, options_.check);
     result_.reason = "no posture found: " + violation_text(result_.report.worst());
     if (options_.deadline.passed()) result_.reason += "; the time allowed is used up";
   }
@@ -178,10 +178,9 @@ class Search {
   }
 
   const Robot& robot_;
-  const PostureChecker& checker_;
+  const Judge& judge_;
   const PostureProblem& problem_;
   const PostureOptions& options_;
-  PostureCheckOptions check_ = options_.check;
   const Stopwatch watch_;
   std::mt19937_64 random_;
   PostureGraph posture_;
@@ -229,22 +228,24 @@ void PostureOptions::validate() const {
   require(torque_margin >= 0.0 && torque_margin < 1.0, "torque_margin", "a part in [0, 1)");
 }
 
-PostureWorld load_posture_world(const std::filesystem::path& map,
-                                const std::filesystem::path& obstacles) {
-  PostureWorld world;
-  if (map.empty() && obstacles.empty()) return world;
-  world.seen = std::make_shared<const WorldParameter>(map, obstacles);
-  if (!map.empty()) world.map = load_octree(map);
-  if (!obstacles.empty()) world.obstacles = load_obstacles(obstacles);
-  return world;
+World posture_world(World in_the_way) {
+  in_the_way.surfaces = {ground()};
+  return in_the_way;
 }
 
-PostureSolver::PostureSolver(std::shared_ptr<const RobotParameter> robot, PostureWorld world)
+PostureSolver::PostureSolver(std::shared_ptr<const RobotParameter> robot, World world,
+                             const WorldFiles& files)
     : robot_(std::move(robot)),
-      world_(std::move(world)),
-      checker_(robot_->robot, world_.map, world_.obstacles),
-      coarse_pairs_(coarse_pairs(robot_, checker_)),
+      judge_(robot_->robot, world),
+      coarse_pairs_(coarse_pairs(robot_, judge_)),
       workspaces_(std::make_unique<Workspaces>()) {
+  const auto seen = std::make_shared<WorldParameter>();
+  seen->set_files(files.map, files.obstacles);
+  if (const double ground = ground_height(world); std::isfinite(ground)) {
+    seen->ground_z_m = ground;
+  }
+  seen->now = distance_view(world);
+  seen_ = seen;
   if (!robot_->robot->floating_base()) {
     throw Error("a posture of a robot with a fixed base", "a floating base");
   }
@@ -256,7 +257,7 @@ PostureSolver::~PostureSolver() = default;
 PostureResult PostureSolver::solve(const PostureProblem& problem,
                                    const PostureOptions& options) const {
   options.validate();
-  require_sound_contacts(robot(), problem.contacts);
+  require_sound_stance(robot(), problem.stance);
   if (problem.preferred.size() != robot().configuration_size() || !problem.preferred.allFinite() ||
       !(problem.preferred.segment<4>(3).norm() > 1e-3)) {
     throw Error("a preferred configuration that is none of " + robot().name(),
@@ -264,7 +265,7 @@ PostureResult PostureSolver::solve(const PostureProblem& problem,
   }
   std::unique_ptr<Workspace> workspace = workspaces_->take();
   PostureResult result =
-      Search(robot_, world_, checker_, problem, options, coarse_pairs_, *workspace).run();
+      Search(robot_, seen_, judge_, problem, options, coarse_pairs_, *workspace).run();
   workspaces_->give_back(std::move(workspace));
   return result;
 }
@@ -275,15 +276,22 @@ Graph PostureSolver::graph(const PostureProblem& problem, const PostureResult& r
   exact.joint_margin_rad = exact.self_margin_m = exact.obstacle_margin_m = 0.0;
   exact.ground_margin_m = exact.wrench_margin = exact.torque_margin = 0.0;
   // What it stays near is itself: the graph is at rest.
-  const PostureProblem found{problem.contacts, result.configuration};
-  PostureGraph posture(robot_, world_, found, exact, coarse_pairs_);
-  posture.set(result.configuration, result.report.balance.wrenches);
+  const PostureProblem found{problem.stance, result.configuration, problem.file};
+  PostureGraph posture(robot_, seen_, found, exact, coarse_pairs_);
+  const std::optional<BalanceCertificate>& balance = result.report.balance;
+  posture.set(result.configuration, balance ? balance->wrenches : std::vector<Eigen::VectorXd>());
+  if (!problem.file.empty()) {
+    const auto contacts = std::make_shared<ContactsParameter>();
+    contacts->file = problem.file;
+    posture.graph.parameters().set(kContactsNumber, contacts);
+  }
   return std::move(posture.graph);
 }
 
 Eigen::VectorXd placed_at(const Robot& robot, const Eigen::VectorXd& configuration,
-                          std::span<const PlacedContact> contacts) {
-  require_sound_contacts(robot, contacts);
+                          const Stance& stance) {
+  require_sound_stance(robot, stance);
+  const std::vector<Contact>& contacts = stance.contacts;
   RobotState state(robot);
   state.update(configuration.data());
   // Each contact is a few points: its own, one along the normal and one forward where these are
@@ -293,25 +301,33 @@ Eigen::VectorXd placed_at(const Robot& robot, const Eigen::VectorXd& configurati
   std::vector<Eigen::Vector3d> own, wanted;
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), ahead = Eigen::Vector3d::UnitX();
   // What the robot stands on says where it is; a hand reaches out from there.
-  const bool stands = std::any_of(contacts.begin(), contacts.end(), [](const PlacedContact& c) {
-    return c.contact.kind == WrenchKind::kSurface;
+  const bool stands = std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) {
+    return c.effector.kind == ContactKind::kSurface || c.effector.kind == ContactKind::kWheel;
   });
-  for (const PlacedContact& placed : contacts) {
-    if (stands && placed.contact.kind != WrenchKind::kSurface) continue;
-    const Eigen::Isometry3d& pose = state.world_from_link(robot.link_index(placed.contact.link));
-    const Eigen::Vector3d point = pose * placed.contact.point;
+  for (const Contact& placed : contacts) {
+    const EndEffector& effector = placed.effector;
+    const bool bears =
+        effector.kind == ContactKind::kSurface || effector.kind == ContactKind::kWheel;
+    if (stands && !bears) continue;
+    const Eigen::Isometry3d& pose = state.world_from_link(robot.link_index(effector.link));
+    const Eigen::Vector3d point = pose * effector.point;
+    // A ball's centre, and that of an upright wheel, is above the place it touches.
+    const bool round = effector.kind == ContactKind::kPoint || effector.kind == ContactKind::kWheel;
+    const Eigen::Vector3d place =
+        placed.position +
+        (round ? effector.radius_m : 0.0) * Eigen::Vector3d(placed.normal.stableNormalized());
     const auto pair = [&](const Eigen::Vector3d& of_robot, const Eigen::Vector3d& of_world) {
       own.push_back(point + of_robot);
-      wanted.push_back(placed.position + of_world);
+      wanted.push_back(place + of_world);
     };
     pair(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
     pair(kUpright_m * up, kUpright_m * up);
     pair(kHeading_m * ahead, kHeading_m * ahead);
-    if (placed.contact.kind == WrenchKind::kPoint) continue;
-    const Eigen::Vector3d normal = pose.linear() * placed.contact.normal.normalized();
+    if (round) continue;
+    const Eigen::Vector3d normal = pose.linear() * effector.normal.normalized();
     pair(kAxis_m * normal, kAxis_m * placed.normal.normalized());
     if (!placed.forward) continue;
-    pair(kAxis_m * (pose.linear() * placed.contact.forward.normalized()),
+    pair(kAxis_m * (pose.linear() * effector.forward.normalized()),
          kAxis_m * placed.forward->normalized());
   }
   const Eigen::Index count = static_cast<Eigen::Index>(own.size());

@@ -3,8 +3,8 @@
 ///
 ///     const PostureSolver solver(std::make_shared<const RobotParameter>(urdf, srdf, options));
 ///     PostureProblem problem;
-///     problem.contacts = load_contacts("standing.xml", solver.robot());
-///     problem.preferred = placed_at(solver.robot(), home, problem.contacts);
+///     problem.stance = load_contacts("standing.xml", solver.robot());
+///     problem.preferred = placed_at(solver.robot(), home, problem.stance);
 ///     PostureResult result = solver.solve(problem);
 ///     if (!result.success) std::cerr << result.reason;
 ///     else write_graph(solver.graph(problem, result), "standing.g2o");
@@ -15,7 +15,7 @@
 /// from a bounded number of seeded restarts that move what was violated: the chains that collide or
 /// do not reach, the base when balance fails (the idea of Rossini et al. 2021). An attempt ends as
 /// soon as its worst violation no longer comes down. What counts as found is decided by
-/// PostureChecker alone, never by cost.
+/// the judge alone (check/judge.h), never by cost.
 ///
 /// Constraints are solved with margins (PostureOptions), so that what the check asks for holds with
 /// room to spare. Pairs of links whose covering shapes overlap although the links do not, in a
@@ -23,37 +23,42 @@
 /// Deterministic but for the deadline, up to rounding that depends on where vectors lie in memory:
 /// a program that makes the same calls gets the same bits. Thread-safe.
 
+#include <locograph/check/judge.h>
 #include <locograph/common/deadline.h>
 #include <locograph/core/graph.h>
-#include <locograph/planners/plan/posture_check.h>
 #include <locograph/plugins/configuration/robot_parameters.h>
 
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
 namespace locograph {
 
 struct PostureProblem {
-  std::vector<PlacedContact> contacts;
+  Stance stance;
   /// The posture to stay near, and the first start: Robot::configuration_size() numbers.
-  Eigen::VectorXd preferred;
+  Eigen::VectorXd preferred = {};
+  /// The contacts file the stance was read from: who judges a saved posture goes by it. Empty:
+  /// none.
+  std::filesystem::path file = {};
 };
 
-/// What is around the robot, as the edges see it and as the check sees it.
-struct PostureWorld {
-  std::shared_ptr<const WorldParameter> seen;  ///< null: nothing
-  std::shared_ptr<const octomap::OcTree> map;  ///< null: none
-  std::vector<Obstacle> obstacles;
-  bool ground = true;  ///< the plane z = 0
+/// Where a world was read from; empty: nowhere.
+struct WorldFiles {
+  std::filesystem::path map = {}, obstacles = {};
 };
 
-/// Empty paths: none. Throws Error for files that cannot be used.
-PostureWorld load_posture_world(const std::filesystem::path& map,
-                                const std::filesystem::path& obstacles);
+/// With the plane z = 0 as the ground, and nothing else that may be touched.
+World posture_world(World in_the_way = {});
+
+/// Contacts files do not say on what contacts are.
+inline CheckOptions posture_check() {
+  CheckOptions options;
+  options.surfaces_known = false;
+  return options;
+}
 
 struct PostureOptions {
   std::uint64_t seed = 0;
@@ -72,7 +77,8 @@ struct PostureOptions {
   /// The part of friction, contact areas and force limits that is left as a margin.
   double wrench_margin = 0.1;
   double torque_margin = 0.05;
-  PostureCheckOptions check;
+  /// What the judge is asked.
+  CheckOptions check = posture_check();
 
   /// Throws Error naming the option that is out of range.
   void validate() const;
@@ -84,7 +90,7 @@ struct PostureResult {
   std::string reason;
   /// The posture; without success, the best attempt.
   Eigen::VectorXd configuration;
-  PostureReport report;  ///< of that configuration; its wrenches are the certificate's
+  CheckReport report;  ///< of that configuration; its wrenches are the certificate's
   int restarts = 0, iterations = 0;
   /// Seconds: building the graph, Levenberg-Marquardt, exact geometry, balance certificates.
   double build_s = 0.0, optimise_s = 0.0, geometry_s = 0.0, balance_s = 0.0, total_s = 0.0;
@@ -92,20 +98,21 @@ struct PostureResult {
 
 class PostureSolver {
  public:
-  /// Throws Error for a robot without a floating base, without masses, or with shapes that cannot
-  /// be used.
-  explicit PostureSolver(std::shared_ptr<const RobotParameter> robot, PostureWorld world = {});
+  /// files: what graph() is saved with. Throws Error for a robot without a floating base, without
+  /// masses, or with shapes that cannot be used.
+  explicit PostureSolver(std::shared_ptr<const RobotParameter> robot, World world = posture_world(),
+                         const WorldFiles& files = {});
   ~PostureSolver();
 
   const Robot& robot() const { return *robot_->robot; }
 
-  /// Throws Error for contacts that are not sound (placed_contact.h) or cannot bear anything, a
-  /// preferred configuration of the wrong size or not finite, and an effort limit that is not
-  /// positive where torques are limited.
+  /// Throws Error for a stance that is not sound (robots/contact.h), a preferred configuration of
+  /// the wrong size or not finite, and an effort limit that is not positive where torques are
+  /// limited.
   PostureResult solve(const PostureProblem& problem, const PostureOptions& options = {}) const;
 
-  /// The posture as a graph without margins, for `optimize`, `view` and `info`: the configuration,
-  /// which is also the one it stays near, and the certificate's wrenches.
+  /// The posture as a plan of one configuration, without margins: the configuration, which is also
+  /// the one it stays near, its stance, and the certificate's wrenches.
   Graph graph(const PostureProblem& problem, const PostureResult& result,
               const PostureOptions& options = {}) const;
 
@@ -114,8 +121,8 @@ class PostureSolver {
   class Workspaces;
 
   std::shared_ptr<const RobotParameter> robot_;
-  PostureWorld world_;
-  PostureChecker checker_;
+  std::shared_ptr<const WorldParameter> seen_;  ///< the world as edges see it
+  Judge judge_;
   std::vector<bool> coarse_pairs_;
   std::unique_ptr<Workspaces> workspaces_;
 };
@@ -124,6 +131,6 @@ class PostureSolver {
 /// places and it stands as upright as that allows. Where there are surface contacts, by these
 /// alone.
 Eigen::VectorXd placed_at(const Robot& robot, const Eigen::VectorXd& configuration,
-                          std::span<const PlacedContact> contacts);
+                          const Stance& stance);
 
 }  // namespace locograph

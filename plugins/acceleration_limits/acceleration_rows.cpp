@@ -1,6 +1,6 @@
 #include <locograph/plugins/acceleration_limits/acceleration_rows.h>
 #include <locograph/plugins/configuration/edge_fit.h>
-#include <locograph/plugins/configuration/orientation_error.h>
+#include <locograph/robots/orientation_error.h>
 
 #include <cmath>
 

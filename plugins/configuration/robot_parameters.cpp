@@ -1,3 +1,4 @@
+#include <locograph/plugins/configuration/path_field.h>
 #include <locograph/plugins/configuration/robot_parameters.h>
 #include <locograph/plugins/configuration/sphere_overshoot.h>
 #include <locograph/world/octree.h>
@@ -5,27 +6,6 @@
 #include <algorithm>
 
 namespace locograph {
-namespace {
-
-std::filesystem::path read_path(FieldReader& in) {
-  const std::string word = in.word();
-  if (word == "-") return {};
-  const std::filesystem::path path(word);
-  return path.is_absolute() ? path : in.where().folder / path;
-}
-
-void write_path(FieldWriter& out, const std::filesystem::path& path) {
-  if (path.empty()) {
-    out.word("-");
-    return;
-  }
-  const std::filesystem::path folder =
-      std::filesystem::absolute(out.folder().empty() ? "." : out.folder());
-  out.word(std::filesystem::proximate(std::filesystem::absolute(path), folder).generic_string());
-}
-
-}  // namespace
-
 RobotParameter::RobotParameter(std::filesystem::path urdf_file, std::filesystem::path srdf_file,
                                RobotOptions robot_options)
     : urdf(std::move(urdf_file)), srdf(std::move(srdf_file)), options(std::move(robot_options)) {
@@ -92,59 +72,9 @@ void RobotParameter::write(FieldWriter& out) const {
   }
 }
 
-WheelsParameter::WheelsParameter(const Robot& robot, int number, std::vector<Wheel> named)
-    : robot_number(number), wheels(std::move(named)) {
-  for (Wheel& wheel : wheels) {
-    wheel.link = robot.link_index(wheel.link_name);
-    if (!(wheel.radius_m > 0.0)) {
-      throw Error("wheel " + wheel.link_name + " has radius " + std::to_string(wheel.radius_m),
-                  "a radius > 0 m");
-    }
-    const int above = robot.links()[wheel.link].parent_joint;
-    if (above < 0 || robot.joints()[above].type == JointType::kFixed ||
-        robot.joints()[above].type == JointType::kPrismatic) {
-      throw Error("wheel " + wheel.link_name + " cannot turn", "a link below a revolute joint");
-    }
-    const Joint& joint = robot.joints()[above];
-    wheel.carrier = joint.parent_link;
-    wheel.joint = joint.index;
-    wheel.axle_in_carrier = joint.parent_from_joint.linear() * joint.axis;
-    wheel.centre_in_carrier = joint.parent_from_joint.translation();
-    // The carrier's axis that is most nearly normal to the axle, made normal to it.
-    int axis = 0;
-    wheel.axle_in_carrier.cwiseAbs().minCoeff(&axis);
-    Eigen::Vector3d upright = Eigen::Vector3d::Unit(axis);
-    upright -= wheel.axle_in_carrier * wheel.axle_in_carrier.dot(upright);
-    wheel.upright_in_carrier = upright.normalized();
-  }
-}
-
-void WheelsParameter::read(FieldReader& in) {
-  const int number = in.integer();
-  const int count = in.integer();
-  if (count < 1) in.fail("number of wheels " + std::to_string(count), "at least one");
-  std::vector<Wheel> named;
-  for (int i = 0; i < count; ++i) {
-    Wheel wheel;
-    wheel.link_name = in.word();
-    wheel.radius_m = in.number();
-    named.push_back(std::move(wheel));
-  }
-  *this = WheelsParameter(*in.parameters()->get<RobotParameter>(number)->robot, number,
-                          std::move(named));
-}
-
-void WheelsParameter::write(FieldWriter& out) const {
-  out.integer(robot_number);
-  out.integer(static_cast<long>(wheels.size()));
-  for (const Wheel& wheel : wheels) {
-    out.word(wheel.link_name);
-    out.number(wheel.radius_m);
-  }
-}
-
-WorldParameter::WorldParameter(std::filesystem::path map_file, std::filesystem::path obstacle_file)
-    : map(std::move(map_file)), obstacles(std::move(obstacle_file)) {
+WorldParameter::WorldParameter(std::filesystem::path map_file, std::filesystem::path obstacle_file,
+                               std::optional<double> ground)
+    : map(std::move(map_file)), obstacles(std::move(obstacle_file)), ground_z_m(ground) {
   load();
 }
 
@@ -152,7 +82,7 @@ void WorldParameter::load() {
   now = {};
   if (!map.empty()) {
     DistanceFieldOptions options;
-    options.ground_z = kGroundVoxelTop_m;
+    if (ground_z_m) options.ground_z = *ground_z_m;
     now.map = std::make_shared<const DistanceField>(
         DistanceField::from_octree(*load_octree(map), options));
   }
@@ -162,12 +92,21 @@ void WorldParameter::load() {
 void WorldParameter::read(FieldReader& in) {
   map = read_path(in);
   obstacles = read_path(in);
+  if (!in.at_end()) {
+    if (const std::string word = in.word(); word != "ground") {
+      in.fail("'" + word + "'", "'ground' and its height, or the end of the line");
+    }
+    ground_z_m = in.number();
+  }
   load();
 }
 
 void WorldParameter::write(FieldWriter& out) const {
   write_path(out, map);
   write_path(out, obstacles);
+  if (!ground_z_m) return;
+  out.word("ground");
+  out.number(*ground_z_m);
 }
 
 }  // namespace locograph

@@ -1,4 +1,6 @@
+#include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
+#include <locograph/plugins/contact/stance_parameter.h>
 
 #include <cmath>
 
@@ -14,6 +16,22 @@ std::shared_ptr<const RobotParameter> known(std::shared_ptr<const RobotParameter
     throw Error("a configuration without a robot", "a VERTEX_CONFIGURATION that names it");
   }
   return robot;
+}
+
+int read_stance(FieldReader& in, const std::shared_ptr<const RobotParameter>& robot) {
+  if (in.peek() == "-") {
+    in.word();
+    return kNoStance;
+  }
+  // Where the stance stands now, a plan of version 1 had the first number of the configuration.
+  const Parameters& known = *in.parameters();
+  const bool versioned = known.find<PlanParameter>() != nullptr;
+  if (!versioned && !known.find<StanceParameter>()) refuse_older_plan(in, "VERTEX_CONFIGURATION");
+  const int number = in.integer();
+  if (known.get<StanceParameter>(number)->robot != robot) {
+    in.fail("stance " + std::to_string(number) + " of another robot", "a stance of this robot");
+  }
+  return number;
 }
 
 }  // namespace
@@ -45,8 +63,8 @@ Eigen::Vector3d relative_base_rotation(const ConfigurationState& a, const Config
 
 VertexConfiguration::VertexConfiguration(int number,
                                          std::shared_ptr<const RobotParameter> parameter,
-                                         double time, const Eigen::VectorXd& q)
-    : robot_number(number), time_s(time), robot(std::move(parameter)) {
+                                         double time, const Eigen::VectorXd& q, int stance)
+    : robot_number(number), time_s(time), stance_number(stance), robot(std::move(parameter)) {
   if (q.size() != robot->robot->configuration_size()) {
     throw Error("configuration of " + std::to_string(q.size()) + " numbers",
                 std::to_string(robot->robot->configuration_size()));
@@ -58,6 +76,7 @@ void VertexConfiguration::read(FieldReader& in) {
   robot_number = in.integer();
   robot = in.parameters()->get<RobotParameter>(robot_number);
   time_s = in.number();
+  stance_number = read_stance(in, robot);
   state.resize(robot->robot->configuration_size());
   for (Eigen::Index i = 0; i < state.size(); ++i) state[i] = in.number();
   if (robot->robot->floating_base()) read_quaternion(in, state);
@@ -74,6 +93,11 @@ void read_quaternion(const FieldReader& in, Eigen::VectorXd& configuration) {
 void VertexConfiguration::write(FieldWriter& out) const {
   out.integer(robot_number);
   out.number(time_s);
+  if (stance_number == kNoStance) {
+    out.word("-");
+  } else {
+    out.integer(stance_number);
+  }
   for (Eigen::Index i = 0; i < state.size(); ++i) out.number(state[i]);
 }
 

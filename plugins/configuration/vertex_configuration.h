@@ -1,7 +1,10 @@
 #pragma once
 /// VERTEX_CONFIGURATION: where a robot is, base pose and active joints, at one moment of a plan.
 ///
-///     VERTEX_CONFIGURATION id robot time  x y z qx qy qz qw  joints…      (m, rad, s)
+///     VERTEX_CONFIGURATION id robot time stance  x y z qx qy qz qw  joints…      (m, rad, s)
+///
+/// stance: number of the PARAMS_STANCE that is held from here to the next configuration, of the
+/// last one the stance that the robot ends in; `-` where it is not known.
 ///
 /// State: Robot::configuration_size() numbers. Tangent: Robot::tangent_size(): linear and angular
 /// velocity of the base in the base frame, joint velocities; never Euler angles. Edges receive a
@@ -41,16 +44,19 @@ struct ConfigurationState {
 /// own axis alone.
 Eigen::Vector3d relative_base_rotation(const ConfigurationState& a, const ConfigurationState& b);
 
+inline constexpr int kNoStance = -1;
+
 struct VertexConfiguration : Vertex<Eigen::Dynamic, Eigen::Dynamic> {
   using Derived = ConfigurationState;
 
   int robot_number = 0;
   double time_s = 0.0;
+  int stance_number = kNoStance;
   std::shared_ptr<const RobotParameter> robot;
 
   VertexConfiguration() = default;
   VertexConfiguration(int number, std::shared_ptr<const RobotParameter> parameter, double time,
-                      const Eigen::VectorXd& q);
+                      const Eigen::VectorXd& q, int stance_number = kNoStance);
 
   int dimension() const { return robot ? robot->robot->tangent_size() : 0; }
   void oplus(const double* s, const double* d, double* out) const {

@@ -1,5 +1,5 @@
-#include <locograph/plugins/configuration/orientation_error.h>
 #include <locograph/plugins/frame_pose/edge_frame_pose.h>
+#include <locograph/robots/orientation_error.h>
 
 namespace locograph {
 

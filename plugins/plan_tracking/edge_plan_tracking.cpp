@@ -1,5 +1,5 @@
-#include <locograph/plugins/configuration/orientation_error.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
+#include <locograph/robots/orientation_error.h>
 
 namespace locograph {
 

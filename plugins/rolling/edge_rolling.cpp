@@ -10,82 +10,166 @@ template class TypedEdgePool<EdgeRolling>;
 
 namespace {
 
-const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
-
 /// A wheel as a configuration holds it, in the world frame.
-struct WheelPose {
-  Eigen::Vector3d centre, axle, upright;
-  double pitch;  ///< angle of `upright` from the vertical, about the axle
+struct RollingPose : WheelPose {
+  Eigen::Vector3d upright;
+  double pitch;  ///< angle of `upright` from the plane's normal, about the axle
   double spin;   ///< of the wheel joint
 
-  WheelPose(const ConfigurationState& q, const Wheel& wheel) {
-    const Eigen::Isometry3d& carrier = q.kinematics.world_from_link(wheel.carrier);
-    centre = carrier * wheel.centre_in_carrier;
-    axle = carrier.linear() * wheel.axle_in_carrier;
-    upright = carrier.linear() * wheel.upright_in_carrier;
-    pitch = std::atan2(kUp.cross(upright).dot(axle), kUp.dot(upright));
-    spin = wheel.joint < 0 ? 0.0 : q.joint(wheel.joint);
+  RollingPose(const ConfigurationState& q, const Wheel& wheel, const Eigen::Vector3d& normal)
+      : WheelPose(q.kinematics, wheel),
+        upright(q.kinematics.world_from_link(wheel.carrier).linear() * wheel.upright_in_carrier),
+        pitch(std::atan2(normal.cross(upright).dot(axle), normal.dot(upright))),
+        spin(wheel.joint < 0 ? 0.0 : q.joint(wheel.joint)) {}
+};
+
+Eigen::Vector3d in_plane(const Eigen::Vector3d& v, const Eigen::Vector3d& normal) {
+  return v - normal.dot(v) * normal;
+}
+
+/// What the two poses of a wheel have between them.
+struct WheelStep {
+  Eigen::Vector3d moved;     ///< of the centre, in the plane
+  Eigen::Vector3d from, to;  ///< the axles' parts in the plane
+  Eigen::Vector3d axle;      ///< midway between them, unit
+  double length;             ///< of the sum of `from` and `to`; 0: opposite, they have no middle
+  double turned;             ///< the angle between them about the normal; 0 up to a quarter turn
+  double lateral;            ///< moved · axle
+  double beyond_quarter_turn;
+
+  WheelStep(const RollingPose& a, const RollingPose& b, const Eigen::Vector3d& normal)
+      : moved(in_plane(b.centre - a.centre, normal)),
+        from(in_plane(a.axle, normal)),
+        to(in_plane(b.axle, normal)) {
+    const Eigen::Vector3d sum = from + to;
+    length = sum.norm();
+    constexpr double kOpposite = 1e-6;
+    if (length < kOpposite) length = 0.0;
+    axle = length > 0.0 ? Eigen::Vector3d(sum / length) : normal.cross(from).stableNormalized();
+    const double cosine = from.dot(to);
+    turned = cosine < 0.0 ? std::atan2(normal.dot(from.cross(to)), cosine) : 0.0;
+    lateral = moved.dot(axle);
+    beyond_quarter_turn = std::max(0.0, std::abs(turned) - 0.5 * std::numbers::pi);
+  }
+
+  /// The derivative of v · axle by either axle.
+  Eigen::Vector3d by_axle(const Eigen::Vector3d& v) const {
+    if (length == 0.0) return Eigen::Vector3d::Zero();
+    return (v - axle.dot(v) * axle) / length;
   }
 };
 
 double nearest_turn(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
 
-/// row += scale · dψ, ψ = atan2(y, x) with y = (ẑ × u) · a = ẑ · (u × a) and x = ẑ · u.
-void add_pitch_gradient(const RobotState& kinematics, const Wheel& wheel, const WheelPose& pose,
-                        double scale, double* row) {
+/// row += scale · dψ, ψ = atan2(y, x) with y = (n × u) · a = n · (u × a) and x = n · u.
+void add_pitch_gradient(const RobotState& kinematics, const Wheel& wheel, const RollingPose& pose,
+                        const Eigen::Vector3d& normal, double scale, double* row) {
   const Eigen::Vector3d side = pose.upright.cross(pose.axle);  // fixed to the carrier, as u and a
-  const double x = pose.upright.z(), y = side.z();
+  const double x = normal.dot(pose.upright), y = normal.dot(side);
   // A wheel lying flat has no pitch, hence no gradient of it.
   const double squared = std::max(1e-12, x * x + y * y);
-  kinematics.add_axis_gradient(wheel.carrier, side, kUp, scale * x / squared, row);
-  kinematics.add_axis_gradient(wheel.carrier, pose.upright, kUp, -scale * y / squared, row);
+  kinematics.add_axis_gradient(wheel.carrier, side, normal, scale * x / squared, row);
+  kinematics.add_axis_gradient(wheel.carrier, pose.upright, normal, -scale * y / squared, row);
+}
+
+int rows_of(const StanceParameter::StandingWheel& standing) { return standing.locked ? 3 : 2; }
+
+int rows_of(const StanceParameter& stance) {
+  int rows = 0;
+  for (const StanceParameter::StandingWheel& standing : stance.wheels) rows += rows_of(standing);
+  return rows;
 }
 
 }  // namespace
 
+EdgeRolling::EdgeRolling(const StanceParameter& some, int number, double weight)
+    : stance_number(number) {
+  weights.setConstant(rows_of(some), weight);
+}
+
+void EdgeRolling::bind(const Parameters& parameters) {
+  stance = parameters.get<StanceParameter>(stance_number);
+  if (stance->wheels.empty()) {
+    throw locograph::Error(std::string(kTag) + " on a stance without wheels",
+                           "a stance with wheels");
+  }
+  require_rows(kTag, dimension(), rows_of(*stance));
+}
+
 void EdgeRolling::error(const ConfigurationState& a, const ConfigurationState& b,
                         Eigen::Ref<Eigen::VectorXd> e) const {
-  require_same_robot(kTag, a.robot, robot);
-  require_same_robot(kTag, b.robot, robot);
-  for (std::size_t w = 0; w < wheels->wheels.size(); ++w) {
-    const Wheel& wheel = wheels->wheels[w];
-    const WheelPose from(a, wheel), to(b, wheel);
-    Eigen::Vector3d moved = to.centre - from.centre;
-    moved.z() = 0.0;
-    const Eigen::Vector3d axle = 0.5 * (from.axle + to.axle);
-    const double turned = to.spin - from.spin + nearest_turn(to.pitch - from.pitch);
-    e[2 * w] = moved.dot(axle);
-    e[2 * w + 1] = moved.dot(axle.cross(kUp)) - wheel.radius_m * turned;
+  require_same_robot(kTag, a.robot, stance->robot);
+  require_same_robot(kTag, b.robot, stance->robot);
+  Eigen::Index row = 0;
+  for (const StanceParameter::StandingWheel& standing : stance->wheels) {
+    const Wheel& wheel = standing.wheel;
+    const Eigen::Vector3d& normal = standing.normal;
+    const RollingPose from(a, wheel, normal), to(b, wheel, normal);
+    const WheelStep step(from, to, normal);
+    const double along = step.moved.dot(step.axle.cross(normal));
+    const double spun = to.spin - from.spin;
+    e[row++] =
+        step.lateral + std::copysign(wheel.radius_m * step.beyond_quarter_turn, step.lateral);
+    if (standing.locked) {
+      e[row++] = along;
+      e[row++] = wheel.radius_m * spun;
+    } else {
+      e[row++] = along - wheel.radius_m * (spun + nearest_turn(to.pitch - from.pitch));
+    }
   }
 }
 
 void EdgeRolling::jacobians(const ConfigurationState& a, const ConfigurationState& b,
                             JacobianRef<EdgeRolling, 0> ja, JacobianRef<EdgeRolling, 1> jb) const {
-  for (std::size_t w = 0; w < wheels->wheels.size(); ++w) {
-    const Wheel& wheel = wheels->wheels[w];
-    const WheelPose from(a, wheel), to(b, wheel);
-    Eigen::Vector3d moved = to.centre - from.centre;
-    moved.z() = 0.0;
-    Eigen::Vector3d axle = 0.5 * (from.axle + to.axle);
-    const Eigen::Vector3d heading = axle.cross(kUp);
-    axle.z() = 0.0;  // Δc is horizontal: the axle's vertical part meets nothing
-    // moved · (ā × ẑ) = ā · (ẑ × moved)
-    const Eigen::Vector3d across = kUp.cross(moved);
-    const auto rows = [&](const ConfigurationState& q, const WheelPose& pose, double sign,
-                          double* lateral, double* longitudinal) {
+  Eigen::Index row = 0;
+  for (const StanceParameter::StandingWheel& standing : stance->wheels) {
+    const Wheel& wheel = standing.wheel;
+    const Eigen::Vector3d& normal = standing.normal;
+    const RollingPose from(a, wheel, normal), to(b, wheel, normal);
+    const WheelStep step(from, to, normal);
+    const Eigen::Vector3d heading = step.axle.cross(normal);
+    // Δc · (ā × n) = ā · (n × Δc)
+    const Eigen::Vector3d along = step.by_axle(step.moved),
+                          across = step.by_axle(normal.cross(step.moved));
+    const double flip =
+        step.beyond_quarter_turn > 0.0
+            ? std::copysign(1.0, step.lateral) * std::copysign(wheel.radius_m, step.turned)
+            : 0.0;
+    const auto rows = [&](const ConfigurationState& q, const RollingPose& pose, double sign,
+                          double* lateral, std::ptrdiff_t stride) {
       const RobotState& kinematics = q.kinematics;
-      kinematics.add_point_gradient(wheel.carrier, pose.centre, axle, sign, lateral);
-      kinematics.add_axis_gradient(wheel.carrier, pose.axle, moved, 0.5, lateral);
-      kinematics.add_point_gradient(wheel.carrier, pose.centre, heading, sign, longitudinal);
-      kinematics.add_axis_gradient(wheel.carrier, pose.axle, across, 0.5, longitudinal);
-      add_pitch_gradient(kinematics, wheel, pose, -sign * wheel.radius_m, longitudinal);
-      if (wheel.joint >= 0) {
-        longitudinal[q.model().base_tangent_size() + wheel.joint] -= sign * wheel.radius_m;
+      double* longitudinal = lateral + stride;
+      kinematics.add_point_gradient(wheel.carrier, pose.centre, step.axle, sign, lateral);
+      kinematics.add_axis_gradient(wheel.carrier, pose.axle, along, 1.0, lateral);
+      if (flip != 0.0) {
+        // An angle θ about n of a vector a in the plane changes by (n × a) · da / |a|².
+        const Eigen::Vector3d flat = in_plane(pose.axle, normal);
+        kinematics.add_axis_gradient(wheel.carrier, pose.axle, normal.cross(flat),
+                                     sign * flip / flat.squaredNorm(), lateral);
       }
+      kinematics.add_point_gradient(wheel.carrier, pose.centre, heading, sign, longitudinal);
+      kinematics.add_axis_gradient(wheel.carrier, pose.axle, across, 1.0, longitudinal);
+      const int joint = q.model().base_tangent_size() + wheel.joint;
+      if (standing.locked) {
+        if (wheel.joint >= 0) (longitudinal + stride)[joint] += sign * wheel.radius_m;
+        return;
+      }
+      add_pitch_gradient(kinematics, wheel, pose, normal, -sign * wheel.radius_m, longitudinal);
+      if (wheel.joint >= 0) longitudinal[joint] -= sign * wheel.radius_m;
     };
-    rows(a, from, -1.0, ja.row(2 * w).data(), ja.row(2 * w + 1).data());
-    rows(b, to, 1.0, jb.row(2 * w).data(), jb.row(2 * w + 1).data());
+    rows(a, from, -1.0, ja.row(row).data(), ja.outerStride());
+    rows(b, to, 1.0, jb.row(row).data(), jb.outerStride());
+    row += rows_of(standing);
   }
+}
+
+RowLabel EdgeRolling::row_label(int row) const {
+  for (const StanceParameter::StandingWheel& standing : stance->wheels) {
+    static constexpr const char* kRows[] = {" lateral", " longitudinal", " turned"};
+    if (row < rows_of(standing)) return {standing.wheel.name + kRows[row], "m"};
+    row -= rows_of(standing);
+  }
+  return {};
 }
 
 }  // namespace locograph

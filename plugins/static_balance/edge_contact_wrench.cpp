@@ -19,10 +19,10 @@ struct Row {
 /// where it stands.
 template <class F>
 void each_limit(const ContactParameter& contact, const double* w, F&& f) {
-  const ContactDescription& given = contact.given;
+  const EndEffector& given = contact.contact.effector;
   int row = 0;
   const auto next = [&](const Row& limit) { f(row++, limit); };
-  if (given.kind == WrenchKind::kRung) {
+  if (given.kind == ContactKind::kRung) {
     for (int c = 0; c < 5; ++c) {
       Row limit;
       limit.gradient[c] = w[c] < 0.0 ? -1.0 : 1.0;
@@ -37,11 +37,11 @@ void each_limit(const ContactParameter& contact, const double* w, F&& f) {
   press.offset = -given.max_force_N;
   next(pull);
   next(press);
-  if (given.cone == FrictionCone::kCircle) {
+  if (contact.friction.cone == FrictionCone::kCircle) {
     Row friction;
     const double tangential = std::hypot(w[0], w[1]);
     if (tangential > 0.0) friction.gradient.head<2>() << w[0] / tangential, w[1] / tangential;
-    friction.gradient[2] = -given.mu;
+    friction.gradient[2] = -given.friction;
     next(friction);
   }
   for (const Eigen::Vector2d& facet : contact.facets) {
@@ -49,7 +49,7 @@ void each_limit(const ContactParameter& contact, const double* w, F&& f) {
     friction.gradient.head<3>() << facet.x(), facet.y(), -contact.facet_mu;
     next(friction);
   }
-  if (given.kind == WrenchKind::kPoint) return;
+  if (given.kind != ContactKind::kSurface) return;
   const double x = given.half_x_m, y = given.half_y_m, mu = contact.yaw_mu;
   for (const int axis : {4, 3}) {
     for (const double sign : {1.0, -1.0}) {
@@ -72,12 +72,12 @@ void each_limit(const ContactParameter& contact, const double* w, F&& f) {
 
 /// Of a row of each_limit().
 RowLabel limit_label(const ContactParameter& contact, int row) {
-  if (contact.given.kind == WrenchKind::kRung) {
+  if (contact.kind() == ContactKind::kRung) {
     return row < 3 ? RowLabel{"force", "N"} : RowLabel{"moment", "N m"};
   }
   const int yaw_rows = 8, pressure_rows = 4;
   const int from_end = contact.limit_rows() - row;
-  const bool surface = contact.given.kind == WrenchKind::kSurface;
+  const bool surface = contact.kind() == ContactKind::kSurface;
   if (surface && from_end <= yaw_rows) return {"yaw moment", "N m"};
   if (surface && from_end <= yaw_rows + pressure_rows) return {"centre of pressure", "N m"};
   if (row < 2) return {row == 0 ? "pull" : "normal force", "N"};
@@ -131,7 +131,7 @@ RowLabel EdgeContactWrench::row_label(int row, const VertexWrenches& wrenches) c
   for (const auto& contact : *wrenches.contacts) {
     if (row < contact->limit_rows()) {
       RowLabel label = limit_label(*contact, row);
-      label.name = contact->given.link + " " + label.name;
+      label.name = contact->contact.name() + " " + label.name;
       return label;
     }
     row -= contact->limit_rows();

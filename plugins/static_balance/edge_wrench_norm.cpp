@@ -21,7 +21,7 @@ RowLabel EdgeWrenchNorm::row_label(int row, const VertexWrenches& wrenches) cons
     const int count = static_cast<int>(components.size());
     if (row < count) {
       RowLabel label = pose_row(components[row], "N", "N m");
-      label.name = contact->given.link + " wrench " + label.name;
+      label.name = contact->contact.name() + " wrench " + label.name;
       return label;
     }
     row -= count;

@@ -42,8 +42,8 @@ AppliedWrench::AppliedWrench(const RobotState& state, const ContactParameter& c,
                              const double* components)
     : contact(&c) {
   const Eigen::Isometry3d& world_from_link = state.world_from_link(c.link);
-  point = world_from_link * c.given.point;
-  if (c.given.axes_in_world) {
+  point = world_from_link * c.contact.effector.point;
+  if (c.axes_in_world) {
     axes = c.axes;
   } else {
     axes.noalias() = world_from_link.linear() * c.axes;
@@ -54,6 +54,7 @@ AppliedWrench::AppliedWrench(const RobotState& state, const ContactParameter& c,
     (component < 3 ? force : moment) += *components * axes.col(component % 3);
     ++components;
   }
+  moment += c.touching_offset.cross(force);
 }
 
 void add_gravity_on_base(const RobotState& state, BaseWrench wrench) {
@@ -90,7 +91,7 @@ void add_wrench_on_base(const RobotState& state, const AppliedWrench& applied, B
 
 void add_wrench_on_base_gradient(const RobotState& state, const AppliedWrench& applied,
                                  BaseWrenchGradient gradient) {
-  const bool turns = !applied.contact->given.axes_in_world;
+  const bool turns = !applied.contact->axes_in_world;
   const Eigen::Matrix3d base = base_from_world(state);
   const Eigen::Vector3d arm = applied.point - state.world_from_link(0).translation();
   if (!turns) add_turning(base * arm, base * applied.force, base * applied.moment, gradient);
@@ -109,7 +110,8 @@ void add_wrench_on_base_by_components(const RobotState& state, const AppliedWren
                                       int first, BaseWrenchGradient gradient) {
   const Eigen::Matrix3d directions = base_from_world(state) * applied.axes;
   const Eigen::Vector3d arm =
-      base_from_world(state) * (applied.point - state.world_from_link(0).translation());
+      base_from_world(state) *
+      (applied.point + applied.contact->touching_offset - state.world_from_link(0).translation());
   for (const int component : applied.contact->components()) {
     const Eigen::Vector3d direction = directions.col(component % 3);
     if (component < 3) {
@@ -153,7 +155,7 @@ double wrench_torque(const RobotState& state, const AppliedWrench& applied, int 
 void add_wrench_gradient(const RobotState& state, const AppliedWrench& applied, int i, double scale,
                          double* row) {
   const Robot& robot = state.robot();
-  const bool turns = !applied.contact->given.axes_in_world;
+  const bool turns = !applied.contact->axes_in_world;
   const int base = robot.base_tangent_size();
   double* joints = row + base;
   const Eigen::Vector3d axis = scale * state.joint_axis(i);
@@ -184,7 +186,8 @@ void add_wrench_gradient(const RobotState& state, const AppliedWrench& applied, 
 
 void add_wrench_gradient_by_components(const RobotState& state, const AppliedWrench& applied, int i,
                                        double scale, double* row) {
-  const Eigen::Vector3d by_force = scale * point_column(state, i, applied.point);
+  const Eigen::Vector3d by_force =
+      scale * point_column(state, i, applied.point + applied.contact->touching_offset);
   Eigen::Vector3d by_moment = Eigen::Vector3d::Zero();
   if (revolute(state, i)) by_moment = scale * state.joint_axis(i);
   for (const int component : applied.contact->components()) {

@@ -16,9 +16,13 @@
 /// carry the whole chain along: seen from the chain only a wrench fixed in the world turns, back by
 /// a_k, and t_i changes by a_k · (j_i × f + a_i × m), j_i = a_i × (p − o_i), or j_i = a_i without
 /// the moment if i slides.
+///
+/// A ball and a wheel touch at p + r, p their centre, r fixed in the world: a force f there is the
+/// force f at p and the moment r × f, which is fixed in the world as f is, and all of the above
+/// holds for p.
 
 #include <locograph/plugins/configuration/vertex_configuration.h>
-#include <locograph/plugins/static_balance/contact_parameter.h>
+#include <locograph/plugins/contact/contact_parameter.h>
 
 #include <Eigen/Core>
 
@@ -35,7 +39,8 @@ struct AppliedWrench {
 
   const ContactParameter* contact;
   Eigen::Matrix3d axes;
-  Eigen::Vector3d point, force, moment;
+  Eigen::Vector3d point;          ///< of the end effector, fixed in its link
+  Eigen::Vector3d force, moment;  ///< about the point
 };
 
 /// The six rows of the base. Only for robots with a floating base.

@@ -16,6 +16,10 @@ VertexWrenches::VertexWrenches(const Parameters& parameters, std::vector<int> nu
       throw Error("wrenches at contact " + std::to_string(number) + " twice", "once");
     }
     list.push_back(parameters.get<ContactParameter>(number));
+    if (!list.back()->contact.bears_load) {
+      throw Error("wrenches at contact " + std::to_string(number) + ", which is unloaded",
+                  "contacts that bear load");
+    }
     if (list.back()->robot != list.front()->robot) {
       throw Error("wrenches at contacts of different robots", "one robot");
     }

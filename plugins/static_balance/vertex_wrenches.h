@@ -1,5 +1,5 @@
 #pragma once
-/// VERTEX_WRENCHES: the wrenches at all contacts that a configuration stands on.
+/// VERTEX_WRENCHES: the wrenches at all contacts that bear a configuration.
 ///
 ///     VERTEX_WRENCHES id n contact_1 … contact_n  components…           (N, N m)
 ///
@@ -13,7 +13,7 @@
 /// configurations' blocks alone.
 
 #include <locograph/core/vertex.h>
-#include <locograph/plugins/static_balance/contact_parameter.h>
+#include <locograph/plugins/contact/contact_parameter.h>
 
 #include <Eigen/Core>
 #include <memory>
@@ -22,8 +22,6 @@
 namespace locograph {
 
 class Graph;
-
-using ContactList = std::vector<std::shared_ptr<const ContactParameter>>;
 
 /// Wrenches with the contacts they act at.
 struct WrenchesState {
@@ -39,8 +37,8 @@ struct VertexWrenches : Vertex<Eigen::Dynamic, Eigen::Dynamic> {
   std::shared_ptr<const ContactList> contacts;
 
   VertexWrenches() = default;
-  /// All components zero. Throws Error for unknown contacts, one named twice, contacts of different
-  /// robots, or none.
+  /// All components zero. Throws Error for unknown contacts, one named twice, one that bears no
+  /// load, contacts of different robots, or none.
   VertexWrenches(const Parameters& parameters, std::vector<int> contact_numbers);
 
   int dimension() const { return static_cast<int>(state.size()); }

@@ -1,5 +1,5 @@
-#include <locograph/plugins/configuration/orientation_error.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
+#include <locograph/robots/orientation_error.h>
 
 namespace locograph {
 

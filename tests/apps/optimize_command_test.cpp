@@ -61,8 +61,8 @@ TEST(Optimize, TellsWhatIsFreeWhenTheSystemIsSingular) {
 /// The arm of a held configuration stands 0.25 rad beyond its limit.
 const char kBeyondALimit[] =
     "PARAMS_ROBOT 0 cart.urdf - floating 0\n"
-    "VERTEX_CONFIGURATION 3 0 0 0 0 0 0 0 0 1 2.25 0.2 0.3\n"
-    "VERTEX_CONFIGURATION 4 0 1 0 0 0 0 0 0 1 2.5 0.2 0.3\n"
+    "VERTEX_CONFIGURATION 3 0 0 - 0 0 0 0 0 0 1 2.25 0.2 0.3\n"
+    "VERTEX_CONFIGURATION 4 0 1 - 0 0 0 0 0 0 1 2.5 0.2 0.3\n"
     "FIX 3\n"
     "EDGE_JOINT_LIMITS 3 3 0 scalar 1\n"
     "EDGE_JOINT_LIMITS 4 3 0 scalar 1\n"

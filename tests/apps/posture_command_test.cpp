@@ -64,6 +64,10 @@ TEST(PostureCommand, FindsTheExamplesThatComeAlong) {
         runner.run(std::string("optimize ") + robot + ".g2o -o again.g2o --json");
     EXPECT_EQ(optimised.exit_code, 0) << optimised.err;
     EXPECT_LT(optimised.json()["initial_chi2"].get<double>(), 10.0);
+    // What the solver accepted the judge accepts, in the same numbers.
+    const Outcome checked = runner.run(std::string("check ") + robot + ".g2o --json");
+    EXPECT_EQ(checked.exit_code, 0) << checked.out;
+    EXPECT_EQ(checked.json()["min_balance_margin"], json["min_balance_margin"]);
   }
 }
 

@@ -1,7 +1,7 @@
 // Wrenches found by a graph and the certificate, which shares no code with its edges, agree on what
 // is balanced. The benchmark balance_agreement does the same on thousands of postures.
 #include <gtest/gtest.h>
-#include <locograph/planners/plan/balance_certificate.h>
+#include <locograph/check/balance_certificate.h>
 
 #include <cmath>
 
@@ -62,25 +62,24 @@ TEST(BalanceAgreement, EndsWhereTheRowsOfASurfaceGrantYawToForcesAtFullFriction)
   BalanceCase posture;
   posture.configuration = robot.model().neutral_configuration();
   for (const double side : {-1.0, 1.0}) {
-    ContactDescription wall;
+    Contact contact;
+    EndEffector& wall = contact.effector;
     wall.link = "block";
-    wall.normal = Eigen::Vector3d(side, 0.0, 0.0);
-    wall.forward = Eigen::Vector3d::UnitZ();
-    wall.point = -0.2 * wall.normal;
+    contact.normal = wall.normal = Eigen::Vector3d(side, 0.0, 0.0);
+    contact.forward = wall.forward = Eigen::Vector3d::UnitZ();
+    contact.position = wall.point = -0.2 * wall.normal;
     wall.half_x_m = 0.1;
     wall.half_y_m = 0.05;
-    wall.mu = 0.7;
-    wall.max_force_N = 0.5 * 10.0 * 9.81 / (0.97 * wall.mu);
-    wall.cone = FrictionCone::kInner;
-    wall.facets = 16;
-    posture.contacts.push_back(wall);
+    wall.friction = 0.7;
+    wall.max_force_N = 0.5 * 10.0 * 9.81 / (0.97 * wall.friction);
+    posture.contacts.push_back(contact);
   }
   EXPECT_LT(graph_residual(robot, posture, SurfaceModel::kRows), kGraphBalanced);
   const BalanceCertificate certificate =
       certify_balance(robot.model(), posture.configuration, posture.contacts);
   EXPECT_FALSE(certificate.balanced);
   EXPECT_LT(certificate.margin, -1e-3);
-  for (ContactDescription& wall : posture.contacts) wall.facets = 4;
+  posture.facets = 4;
   EXPECT_GT(graph_residual(robot, posture, SurfaceModel::kRows), 10.0 * kGraphBalanced)
       << "four sides: the rows are those of forces at the corners";
 }

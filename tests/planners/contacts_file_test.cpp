@@ -28,34 +28,64 @@ const char kGood[] =
 
 TEST(ContactsFile, ReadsEveryKind) {
   const TemporaryFolder folder;
-  const std::vector<PlacedContact> contacts =
-      load_contacts(folder.write("contacts.xml", kGood), coman_plus());
+  const std::vector<Contact> contacts =
+      load_contacts(folder.write("contacts.xml", kGood), coman_plus()).contacts;
   ASSERT_EQ(contacts.size(), 3U);
-  EXPECT_EQ(contacts[0].contact.kind, WrenchKind::kSurface);
-  EXPECT_EQ(contacts[0].contact.link, "l_sole");
-  EXPECT_EQ(contacts[0].contact.half_x_m, 0.08);
-  EXPECT_EQ(contacts[0].contact.half_y_m, 0.04);
-  EXPECT_EQ(contacts[0].contact.mu, 0.6);
-  EXPECT_EQ(contacts[0].contact.max_force_N, 900.0);
-  EXPECT_EQ(contacts[0].contact.normal, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(contacts[0].effector.kind, ContactKind::kSurface);
+  EXPECT_EQ(contacts[0].effector.link, "l_sole");
+  EXPECT_EQ(contacts[0].effector.half_x_m, 0.08);
+  EXPECT_EQ(contacts[0].effector.half_y_m, 0.04);
+  EXPECT_EQ(contacts[0].effector.friction, 0.6);
+  EXPECT_EQ(contacts[0].effector.max_force_N, 900.0);
+  EXPECT_EQ(contacts[0].effector.normal, Eigen::Vector3d::UnitZ());
   EXPECT_EQ(contacts[0].position, Eigen::Vector3d(0.0, 0.1, 0.0));
   EXPECT_EQ(contacts[0].normal, Eigen::Vector3d(0.0, 0.0, 2.0));
   EXPECT_EQ(contacts[0].forward, Eigen::Vector3d::UnitX());
   EXPECT_TRUE(contacts[0].bears_load);
-  EXPECT_EQ(contacts[1].contact.kind, WrenchKind::kPoint);
-  EXPECT_EQ(contacts[1].contact.point, Eigen::Vector3d(0.0, 0.0, 0.01));
+  EXPECT_EQ(contacts[1].effector.kind, ContactKind::kPoint);
+  EXPECT_EQ(contacts[1].effector.point, Eigen::Vector3d(0.0, 0.0, 0.01));
   EXPECT_FALSE(contacts[1].forward);
   EXPECT_FALSE(contacts[1].bears_load);
-  EXPECT_EQ(contacts[2].contact.kind, WrenchKind::kRung);
-  EXPECT_EQ(contacts[2].contact.normal, Eigen::Vector3d::UnitY());
-  EXPECT_EQ(contacts[2].contact.forward, Eigen::Vector3d::UnitZ());
-  EXPECT_EQ(contacts[2].contact.max_moment_Nm, 5.0);
+  EXPECT_EQ(contacts[2].effector.kind, ContactKind::kRung);
+  EXPECT_EQ(contacts[2].effector.normal, Eigen::Vector3d::UnitY());
+  EXPECT_EQ(contacts[2].effector.forward, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(contacts[2].effector.max_moment_Nm, 5.0);
+}
+
+TEST(ContactsFile, ReadsBallsWheelsAndSeveralContactsOfOneLink) {
+  const std::string stem = LOCOGRAPH_SOURCE_DIR "/robots/models/centauro/centauro";
+  const Robot centauro = Robot::load(stem + ".urdf", stem + ".srdf");
+  const TemporaryFolder folder;
+  const std::string rest = " normal=\"0 0 1\" mu=\"0.6\" max_force=\"900\"";
+  const std::vector<Contact> contacts =
+      load_contacts(folder.write("contacts.xml",
+                                 "<contacts version=\"1\">"
+                                 "<contact link=\"ball1_tip\" kind=\"point\" radius=\"0.03\" "
+                                 "position=\"1 0 0\"" +
+                                     rest +
+                                     "/>"
+                                     "<contact link=\"ball1_tip\" kind=\"point\" point=\"0.1 0 0\" "
+                                     "position=\"1 0.1 0.03\"" +
+                                     rest +
+                                     "/>"
+                                     "<contact link=\"wheel_1\" kind=\"wheel\" radius=\"0.078\" "
+                                     "position=\"0 0 0\"" +
+                                     rest + "/></contacts>"),
+                    centauro)
+          .contacts;
+  ASSERT_EQ(contacts.size(), 3u);
+  EXPECT_EQ(contacts[0].effector.radius_m, 0.03);
+  EXPECT_EQ(contacts[0].name(), "ball1_tip");
+  EXPECT_EQ(contacts[1].effector.radius_m, 0.0);
+  EXPECT_EQ(contacts[1].name(), "ball1_tip_2");
+  EXPECT_EQ(contacts[2].effector.kind, ContactKind::kWheel);
+  EXPECT_EQ(contacts[2].effector.radius_m, 0.078);
 }
 
 TEST(ContactsFile, TheExamplesThatComeAlongLoad) {
   EXPECT_EQ(
       load_contacts(LOCOGRAPH_SOURCE_DIR "/examples/posture/coman_plus_wall.xml", coman_plus())
-          .size(),
+          .contacts.size(),
       3U);
 }
 
@@ -111,6 +141,10 @@ const Mistake kMistakes[] = {
     {"AHalfSizeOfZero", "half_y=\"0.04\"", "half_y=\"0\"", 2, "half_y is 0"},
     {"AForceLimitThatIsNone", "max_force=\"200\"", "max_force=\"inf\"", 3, "1 finite number"},
     {"ANegativeMoment", "max_moment=\"5\"", "max_moment=\"-5\"", 4, "max_moment is -5"},
+    {"ASurfaceWithARadius", "half_x=", "radius=\"0.1\" half_x=", 2, "unknown attribute 'radius'"},
+    {"ABallWithoutARadius", "kind=\"point\"", "kind=\"point\" radius=\"0\"", 3, "radius is 0"},
+    {"AWheelThatDoesNotTurn", "kind=\"point\" point=\"0 0 0.01\"", "kind=\"wheel\" radius=\"0.1\"",
+     3, "wheel that no joint turns"},
     {"AnotherLoad", "load=\"no\"", "load=\"maybe\"", 3, "load is 'maybe'"},
     {"OneLinkAtTwoPlaces", "TCP_R", "TCP_L", 4, "contradict each other"},
 };

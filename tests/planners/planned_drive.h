@@ -5,10 +5,11 @@
 ///     EXPECT_EQ(violated(check_plan(graph, {box("b", {2, 0, 0.25}, {0.5, 0.5, 0.5})})), …);
 
 #include <gtest/gtest.h>
-#include <locograph/planners/offline/wheeled_drive.h>
-#include <locograph/planners/plan/feasibility_checker.h>
+#include <locograph/check/judge.h>
+#include <locograph/planners/offline/drive/wheeled_drive.h>
+#include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
-#include <locograph/planners/plan/scenario.h>
+#include <locograph/planners/scenario/scenario.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -16,8 +17,8 @@
 #include <fstream>
 #include <string>
 
+#include "check/centauro_on_wheels.h"
 #include "common/temporary_folder.h"
-#include "planners/centauro_on_wheels.h"
 
 namespace locograph {
 
@@ -42,26 +43,36 @@ inline Scenario centauro_drive(double distance_m = 4.0, double curvature_1_m = 0
   return scenario;
 }
 
-/// A motion of CENTAURO on its wheels, among obstacles.
-inline CheckReport check_drive(const Robot& robot, const Motion& motion,
-                               const std::vector<Obstacle>& obstacles = {},
-                               std::shared_ptr<const octomap::OcTree> map = nullptr) {
-  CollisionWorldOptions collision;
-  for (const RollingWheel& wheel : motion.wheels) {
-    collision.ignore_floor_links.push_back(wheel.link);
-    const int joint = robot.links()[wheel.link].parent_joint;
-    collision.ignore_floor_links.push_back(robot.joints()[joint].parent_link);
-  }
-  const CollisionWorld world(robot, std::move(map), obstacles, collision);
+/// What stands on the ground z = 0.
+inline World world_of(std::vector<Obstacle> obstacles,
+                      std::shared_ptr<const octomap::OcTree> map = nullptr) {
+  World world;
+  world.map = std::move(map);
+  world.obstacles = std::move(obstacles);
+  world.surfaces = {ground()};
+  return world;
+}
+
+/// What the shipped scenario knows of the wheels.
+inline CheckOptions drive_options() {
   CheckOptions options;
-  options.obstacles = obstacles;
-  return check_motion(robot, world, motion, options);
+  options.known = centauro_drive().end_effectors;
+  return options;
+}
+
+/// A step of a motion, which goes on before and after it.
+inline CheckReport check_step(const std::shared_ptr<const Robot>& robot, const Motion& step,
+                              const World& world) {
+  CheckOptions options = drive_options();
+  options.starts_at_rest = options.ends_at_rest = false;
+  return Judge(robot, world).check(step, options);
 }
 
 inline CheckReport check_plan(const Graph& graph, const std::vector<Obstacle>& obstacles = {},
                               std::shared_ptr<const octomap::OcTree> map = nullptr) {
   const Plan plan = plan_of(graph);
-  return check_drive(*plan.robot->robot, motion_of(graph, plan), obstacles, std::move(map));
+  return Judge(plan.robot->robot, world_of(obstacles, std::move(map)))
+      .check(motion_of(graph, plan), drive_options());
 }
 
 inline void expect_feasible(const CheckReport& report) {

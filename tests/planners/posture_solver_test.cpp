@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/core/optimiser.h>
+#include <locograph/planners/plan/judging.h>
 #include <locograph/planners/posture/contacts_file.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
 #include <locograph/plugins/robot_types.h>
@@ -30,9 +31,9 @@ const PostureSolver& solver_of(const std::string& name) {
   return *solver;
 }
 
-PlacedContact standing(const PostureRobot& robot, std::size_t foot, const Eigen::Vector3d& at) {
-  PlacedContact placed;
-  placed.contact = robot.feet[foot];
+Contact standing(const PostureRobot& robot, std::size_t foot, const Eigen::Vector3d& at) {
+  Contact placed;
+  placed.effector = robot.feet[foot];
   placed.position = at;
   placed.forward = Eigen::Vector3d::UnitX();
   return placed;
@@ -42,8 +43,9 @@ PlacedContact standing(const PostureRobot& robot, std::size_t foot, const Eigen:
 PostureProblem coman_standing() {
   const PostureRobot& robot = shipped("coman_plus");
   PostureProblem problem;
-  problem.contacts = {standing(robot, 0, {0.0, 0.12, 0.0}), standing(robot, 1, {0.0, -0.12, 0.0})};
-  problem.preferred = placed_at(robot.model(), robot.home, problem.contacts);
+  problem.stance.contacts = {standing(robot, 0, {0.0, 0.12, 0.0}),
+                             standing(robot, 1, {0.0, -0.12, 0.0})};
+  problem.preferred = placed_at(robot.model(), robot.home, problem.stance);
   return problem;
 }
 
@@ -66,7 +68,7 @@ TEST(PostureSolver, AHumanoidStandsOnItsSoles) {
   EXPECT_GT(joint(robot, result.configuration, "LKneePitch"), 0.1) << "knees bend forwards";
   EXPECT_GT(state.world_from_link(robot.root_link()).translation().z(), 0.7);
   // Newton: what the ground gives is the weight, and acts below the centre of mass.
-  const std::vector<Eigen::VectorXd>& wrenches = result.report.balance.wrenches;
+  const std::vector<Eigen::VectorXd>& wrenches = result.report.balance.value().wrenches;
   ASSERT_EQ(wrenches.size(), 2U);
   EXPECT_NEAR(wrenches[0][2] + wrenches[1][2], 9.81 * robot.total_mass(), 1e-3);
   EXPECT_LT(std::abs(state.center_of_mass().x()), 0.08);
@@ -82,17 +84,18 @@ TEST_P(ReachableSets, ArePosturesThatTheCheckAccepts) {
   }
   const PostureRobot& robot = shipped(name);
   const PostureSolver& solver = solver_of(name);
-  const PostureChecker checker(robot.robot->robot, nullptr, {});
+  const Judge judge(robot.robot->robot, posture_world());
   ContactSets sets(robot, 11);
   int known = 0, solved = 0;
   while (known < 10) {
     const ContactSet set = sets.draw();
-    if (!checker.check(set.drawn, set.contacts).feasible) continue;
+    if (!judge.check(set.drawn, set.stance, posture_check()).feasible) continue;
     ++known;
     const PostureResult result =
-        solver.solve({set.contacts, placed_at(robot.model(), robot.home, set.contacts)});
+        solver.solve({set.stance, placed_at(robot.model(), robot.home, set.stance)});
     solved += result.success;
-    EXPECT_EQ(result.success, checker.check(result.configuration, set.contacts).feasible)
+    EXPECT_EQ(result.success,
+              judge.check(result.configuration, set.stance, posture_check()).feasible)
         << result.reason;
   }
   EXPECT_GE(solved, 9);
@@ -108,7 +111,7 @@ TEST(PostureSolver, TakesTheSameStepsForTheSameSeed) {
   ContactSets sets(robot, 3);
   for (int i = 0; i < 3; ++i) {
     const ContactSet set = sets.draw();
-    const PostureProblem problem{set.contacts, placed_at(robot.model(), robot.home, set.contacts)};
+    const PostureProblem problem{set.stance, placed_at(robot.model(), robot.home, set.stance)};
     PostureOptions options;
     options.seed = 5;
     options.max_restarts = 2;
@@ -123,11 +126,11 @@ TEST(PostureSolver, TakesTheSameStepsForTheSameSeed) {
 
 TEST(PostureSolver, SaysWhichContactIsOutOfReachAndByHowMuch) {
   PostureProblem problem = coman_standing();
-  PlacedContact hand;
-  hand.contact = shipped("coman_plus").hands[0];
+  Contact hand;
+  hand.effector = shipped("coman_plus").hands[0];
   hand.position = {5.0, 0.3, 1.0};
   hand.normal = -Eigen::Vector3d::UnitX();
-  problem.contacts.push_back(hand);
+  problem.stance.contacts.push_back(hand);
   PostureOptions options;
   options.max_restarts = 2;
   const PostureResult result = solver_of("coman_plus").solve(problem, options);
@@ -154,11 +157,11 @@ TEST(PostureSolver, EndsWhenItsTimeIsUp) {
 TEST(PostureSolver, ReportsBalanceThatNoPostureHas) {
   // Both soles on the same line, ten times steeper than friction allows.
   PostureProblem problem = coman_standing();
-  for (PlacedContact& contact : problem.contacts) contact.contact.mu = 0.01;
-  for (PlacedContact& contact : problem.contacts) {
+  for (Contact& contact : problem.stance.contacts) contact.effector.friction = 0.01;
+  for (Contact& contact : problem.stance.contacts) {
     contact.normal = {0.0, std::sin(0.2), std::cos(0.2)};
   }
-  problem.contacts[1].position = {0.0, -0.12, 0.24 * std::tan(0.2)};
+  problem.stance.contacts[1].position = {0.0, -0.12, 0.24 * std::tan(0.2)};
   PostureOptions options;
   options.max_restarts = 1;
   const PostureResult result = solver_of("coman_plus").solve(problem, options);
@@ -168,15 +171,16 @@ TEST(PostureSolver, ReportsBalanceThatNoPostureHas) {
 
 TEST(PostureSolver, AContactThatBearsNoLoadIsClosedAllTheSame) {
   PostureProblem problem = coman_standing();
-  PlacedContact hand;
-  hand.contact = shipped("coman_plus").hands[0];
+  Contact hand;
+  hand.effector = shipped("coman_plus").hands[0];
   hand.position = {0.35, 0.25, 1.0};
   hand.normal = -Eigen::Vector3d::UnitX();
   hand.bears_load = false;
-  problem.contacts.push_back(hand);
+  problem.stance.contacts.push_back(hand);
   const PostureResult result = solver_of("coman_plus").solve(problem);
   ASSERT_TRUE(result.success) << result.reason;
-  EXPECT_EQ(result.report.balance.wrenches.size(), 2U);
+  EXPECT_EQ(result.report.balance.value().wrenches.size(), 3U);
+  EXPECT_TRUE(result.report.balance->wrenches[2].isZero(0.0));
   EXPECT_LT(result.report.constraint("contact_position").worst, 1e-4);
 }
 
@@ -192,11 +196,12 @@ TEST(PostureSolver, KeepsClearOfObstacles) {
   folder.write("block.xml", "<obstacles version=\"1\">\n<sphere name=\"ball\" center=\"" +
                                 std::to_string(at.x()) + " " + std::to_string(at.y() - 0.05) + " " +
                                 std::to_string(at.z()) + "\" radius=\"0.08\"/>\n</obstacles>\n");
-  const PostureSolver solver(robot.robot, load_posture_world({}, folder.file("block.xml")));
-  const PostureChecker checker(robot.robot->robot, nullptr,
-                               load_obstacles(folder.file("block.xml")));
-  EXPECT_TRUE(
-      checker.check(problem.preferred, problem.contacts).constraint("obstacle_distance").violated);
+  const World world = posture_world(load_world({}, folder.file("block.xml")));
+  const PostureSolver solver(robot.robot, world);
+  const Judge judge(robot.robot->robot, world);
+  EXPECT_TRUE(judge.check(problem.preferred, problem.stance, posture_check())
+                  .constraint("obstacle_distance")
+                  .violated);
   const PostureResult result = solver.solve(problem);
   ASSERT_TRUE(result.success) << result.reason;
   EXPECT_GE(result.report.constraint("obstacle_distance").worst, 0.0);
@@ -220,6 +225,59 @@ TEST(PostureSolver, SavesAGraphThatIsAtItsOptimum) {
   EXPECT_LE(optimum.final.chi2, optimum.initial.chi2);
 }
 
+TEST(PostureSolver, SavesAPlanThatIsJudgedAsThePostureWas) {
+  const TemporaryFolder folder;
+  const PostureSolver& solver = solver_of("coman_plus");
+  PostureProblem problem = coman_standing();
+  problem.file = folder.write(
+      "contacts.xml",
+      "<contacts version=\"1\">\n"
+      "<contact link=\"l_sole\" kind=\"surface\" position=\"0 0.12 0\" normal=\"0 0 1\" "
+      "forward=\"1 0 0\" half_x=\"0.08\" half_y=\"0.04\" mu=\"0.6\" max_force=\"3000\"/>\n"
+      "<contact link=\"r_sole\" kind=\"surface\" position=\"0 -0.12 0\" normal=\"0 0 1\" "
+      "forward=\"1 0 0\" half_x=\"0.08\" half_y=\"0.04\" mu=\"0.6\" max_force=\"3000\"/>\n"
+      "</contacts>\n");
+  const PostureResult result = solver.solve(problem);
+  ASSERT_TRUE(result.success) << result.reason;
+  write_graph(solver.graph(problem, result), folder.file("standing.g2o"));
+  TypeRegistry types;
+  add_robot_types(types);
+  const Graph read = read_graph(folder.file("standing.g2o"), types);
+  const Plan plan = plan_of(read);
+  const Judging judging = judging_of(read, plan, {.data_folder = folder.path()});
+  EXPECT_EQ(judging.options.known.size(), 2u);
+  const CheckReport report = judged(read, plan, judging);
+  EXPECT_TRUE(report.feasible) << violation_text(report.worst());
+  ASSERT_EQ(report.violations.size(), result.report.violations.size());
+  for (std::size_t i = 0; i < report.violations.size(); ++i) {
+    EXPECT_EQ(report.violations[i].worst, result.report.violations[i].worst)
+        << report.violations[i].constraint;
+  }
+}
+
+TEST(PostureSolver, AWheeledRobotStandsOnItsWheels) {
+  const PostureRobot& robot = shipped("centauro");
+  PostureProblem problem;
+  const double x[] = {0.35, 0.35, -0.35, -0.35}, y[] = {0.35, -0.35, 0.35, -0.35};
+  for (int i = 0; i < 4; ++i) {
+    Contact wheel;
+    wheel.effector = {.link = "wheel_" + std::to_string(i + 1),
+                      .kind = ContactKind::kWheel,
+                      .radius_m = 0.078,
+                      .friction = 0.6,
+                      .max_force_N = 3000.0};
+    wheel.position = {x[i], y[i], 0.0};
+    problem.stance.contacts.push_back(wheel);
+  }
+  problem.preferred = placed_at(robot.model(), robot.home, problem.stance);
+  const PostureResult result = solver_of("centauro").solve(problem);
+  ASSERT_TRUE(result.success) << result.reason;
+  const std::vector<Eigen::VectorXd>& wrenches = result.report.balance.value().wrenches;
+  double carried = 0.0;
+  for (const Eigen::VectorXd& wrench : wrenches) carried += wrench[2];
+  EXPECT_NEAR(carried, 9.81 * robot.model().total_mass(), 1e-2);
+}
+
 TEST(PostureSolver, RefusesContactsThatMakeNoSense) {
   const PostureSolver& solver = solver_of("coman_plus");
   const PostureProblem sound = coman_standing();
@@ -234,26 +292,27 @@ TEST(PostureSolver, RefusesContactsThatMakeNoSense) {
     }
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  refused([](PostureProblem& p) { p.contacts.clear(); }, "no contacts");
+  refused([](PostureProblem& p) { p.stance.contacts.clear(); }, "no contacts");
   refused(
       [](PostureProblem& p) {
-        for (auto& c : p.contacts) c.bears_load = false;
+        for (auto& c : p.stance.contacts) c.bears_load = false;
       },
       "bears load");
-  refused([](PostureProblem& p) { p.contacts[0].contact.link = "l_soul"; }, "l_sole");
-  refused([](PostureProblem& p) { p.contacts[0].normal.setZero(); }, "normal of length zero");
-  refused([](PostureProblem& p) { p.contacts[0].forward = Eigen::Vector3d::UnitZ(); },
+  refused([](PostureProblem& p) { p.stance.contacts[0].effector.link = "l_soul"; }, "l_sole");
+  refused([](PostureProblem& p) { p.stance.contacts[0].normal.setZero(); },
+          "normal of length zero");
+  refused([](PostureProblem& p) { p.stance.contacts[0].forward = Eigen::Vector3d::UnitZ(); },
           "along its normal");
-  refused([&](PostureProblem& p) { p.contacts[0].position.x() = nan; }, "not finite");
-  refused([&](PostureProblem& p) { p.contacts[0].normal.x() = nan; }, "not finite");
-  refused([](PostureProblem& p) { p.contacts[0].contact.mu = -0.5; }, "friction");
-  refused([](PostureProblem& p) { p.contacts[0].contact.half_x_m = 0.0; }, "half size");
-  refused([](PostureProblem& p) { p.contacts[1].contact.link = "l_sole"; }, "contradict");
-  refused([](PostureProblem& p) { p.contacts.push_back(p.contacts[0]); }, "the same");
+  refused([&](PostureProblem& p) { p.stance.contacts[0].position.x() = nan; }, "not finite");
+  refused([&](PostureProblem& p) { p.stance.contacts[0].normal.x() = nan; }, "not finite");
+  refused([](PostureProblem& p) { p.stance.contacts[0].effector.friction = -0.5; }, "friction");
+  refused([](PostureProblem& p) { p.stance.contacts[0].effector.half_x_m = 0.0; }, "half size");
+  refused([](PostureProblem& p) { p.stance.contacts[1].effector.link = "l_sole"; }, "contradict");
+  refused([](PostureProblem& p) { p.stance.contacts.push_back(p.stance.contacts[0]); }, "the same");
   refused(
       [](PostureProblem& p) {
-        p.contacts[0].contact.kind = WrenchKind::kRung;
-        p.contacts[0].forward.reset();
+        p.stance.contacts[0].effector.kind = ContactKind::kRung;
+        p.stance.contacts[0].forward.reset();
       },
       "rung without forward");
   refused([](PostureProblem& p) { p.preferred.conservativeResize(7); }, "35 finite numbers");
@@ -274,24 +333,22 @@ class PostureCheck : public testing::Test {
   int index(const std::string& name) const {
     return 7 + robot.joints()[static_cast<std::size_t>(robot.joint_index(name))].index;
   }
-  PostureReport check(const PostureCheckOptions& options = {}) const {
-    return checker.check(q, problem.contacts, options);
-  }
+  CheckReport check() const { return judge.check(q, problem.stance, posture_check()); }
 
   const PostureProblem problem = coman_standing();
   const Robot& robot = solver_of("coman_plus").robot();
-  const PostureChecker checker{shipped("coman_plus").robot->robot, nullptr, {}};
+  const Judge judge{shipped("coman_plus").robot->robot, posture_world()};
   PostureResult result;
   Eigen::VectorXd q;
 };
 
 TEST_F(PostureCheck, HoldsForAFoundPostureAndListsEverything) {
-  const PostureReport report = check();
+  const CheckReport report = check();
   EXPECT_TRUE(report.feasible);
   for (const char* name :
        {"not_finite", "base_orientation", "contact_position", "contact_orientation", "joint_limits",
-        "obstacle_distance", "touching_depth", "self_collision", "ground_penetration", "balance",
-        "torque_limits"}) {
+        "obstacle_distance", "touching_depth", "self_collision", "ground_penetration",
+        "static_balance", "torque_limits"}) {
     EXPECT_FALSE(report.constraint(name).violated) << name;
   }
   EXPECT_THROW(report.constraint("beauty"), Error);
@@ -299,7 +356,7 @@ TEST_F(PostureCheck, HoldsForAFoundPostureAndListsEverything) {
 
 TEST_F(PostureCheck, MeasuresHowFarAContactIsAway) {
   q[0] += 0.01;
-  const PostureReport report = check();
+  const CheckReport report = check();
   EXPECT_FALSE(report.feasible);
   EXPECT_NEAR(report.constraint("contact_position").worst, 0.01, 1e-4);
   EXPECT_EQ(report.worst().constraint, "contact_position");
@@ -307,7 +364,7 @@ TEST_F(PostureCheck, MeasuresHowFarAContactIsAway) {
 
 TEST_F(PostureCheck, MeasuresHowFarASoleIsTurned) {
   q[index("LAnkleRoll")] += 0.05;
-  const PostureReport report = check();
+  const CheckReport report = check();
   EXPECT_NEAR(report.constraint("contact_orientation").worst, 0.05, 2e-3);
   EXPECT_FALSE(report.feasible);
 }
@@ -326,25 +383,25 @@ TEST_F(PostureCheck, SeesAnArmInTheBody) {
 
 TEST_F(PostureCheck, SeesABodyInTheGround) {
   q[2] -= 0.3;
-  const PostureReport report = check();
+  const CheckReport report = check();
   EXPECT_TRUE(report.constraint("touching_depth").violated);
   EXPECT_NEAR(report.constraint("touching_depth").worst, 0.3, 5e-3);
-  PostureCheckOptions nowhere;
-  nowhere.ground_z_m = -std::numeric_limits<double>::infinity();
-  EXPECT_FALSE(check(nowhere).constraint("touching_depth").violated);
+  const Judge nowhere{shipped("coman_plus").robot->robot, World()};
+  EXPECT_FALSE(
+      nowhere.check(q, problem.stance, posture_check()).constraint("touching_depth").violated);
 }
 
 TEST_F(PostureCheck, SeesARobotThatWouldFall) {
   // Arms and trunk as they are, on the left sole alone: the weight is between the feet.
-  std::vector<PlacedContact> one = {problem.contacts[0]};
-  const PostureReport report = checker.check(q, one);
-  EXPECT_TRUE(report.constraint("balance").violated);
-  EXPECT_LT(report.constraint("balance").worst, 0.0);
+  const Stance one{{problem.stance.contacts[0]}};
+  const CheckReport report = judge.check(q, one, posture_check());
+  EXPECT_TRUE(report.constraint("static_balance").violated);
+  EXPECT_LT(report.constraint("static_balance").worst, 0.0);
 }
 
 TEST_F(PostureCheck, SaysWhenNumbersAreNone) {
   q[3] = std::numeric_limits<double>::quiet_NaN();
-  const PostureReport report = check();
+  const CheckReport report = check();
   EXPECT_FALSE(report.feasible);
   EXPECT_EQ(report.worst().constraint, "not_finite");
 }

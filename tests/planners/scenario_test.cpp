@@ -15,11 +15,18 @@ TEST(Scenario, TheShippedDriveLoadsByName) {
   EXPECT_TRUE(std::filesystem::equivalent(scenario.srdf, centauro_file("centauro.srdf")));
   EXPECT_EQ(scenario.robot.active_joints, std::vector<std::string>{"lower_body"});
   EXPECT_EQ(scenario.start_state, "home");
-  ASSERT_EQ(scenario.wheels.size(), 4u);
-  for (int i = 0; i < 4; ++i) {
-    EXPECT_EQ(scenario.wheels[i].link, "wheel_" + std::to_string(i + 1));
-    EXPECT_EQ(scenario.wheels[i].radius_m, kRadius);
+  ASSERT_EQ(scenario.end_effectors.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const EndEffector& wheel = scenario.end_effectors[i];
+    EXPECT_EQ(wheel.kind, ContactKind::kWheel);
+    EXPECT_EQ(wheel.link, "wheel_" + std::to_string(i + 1));
+    EXPECT_EQ(wheel.name, wheel.link);
+    EXPECT_EQ(wheel.radius_m, kRadius);
+    EXPECT_EQ(wheel.friction, kWheelFriction);
+    EXPECT_EQ(wheel.max_force_N, kWheelForce_N);
   }
+  EXPECT_TRUE(scenario.enforce_torque_limits);
+  EXPECT_EQ(scenario.limits.base_linear_m_s, 0.0);
   EXPECT_TRUE(scenario.map.empty());
   EXPECT_TRUE(scenario.obstacles.empty());
   ASSERT_TRUE(scenario.drive.has_value());
@@ -62,6 +69,48 @@ TEST(Scenario, OneThatIsNotThereIsRefusedNamingTheOnesThatAre) {
     EXPECT_EQ(error.line(), 0);
     EXPECT_NE(std::string(error.what()).find("centauro_drive"), std::string::npos) << error.what();
   }
+}
+
+TEST(Scenario, KnowsWhatEveryKindOfEndEffectorCanBearAndTheLimitsOfTheMotion) {
+  const DataFolder data;
+  const std::filesystem::path file = data.write(
+      "s.xml",
+      "<scenario version=\"1\" name=\"all\">\n"
+      "<robot model=\"centauro\"/>\n"
+      "<wheels><wheel link=\"wheel_1\" radius=\"0.078\" friction=\"0.4\" max_force=\"900\"/>\n"
+      "<wheel link=\"wheel_2\" radius=\"0.078\"/></wheels>\n"
+      "<end_effectors>\n"
+      "<end_effector name=\"foot\" link=\"ankle2_3\" kind=\"surface\" half_x=\"0.08\""
+      " half_y=\"0.04\" max_force=\"1000\" point=\"0 0 -0.1\" link_normal=\"0 1 0\"/>\n"
+      "<end_effector name=\"ball\" link=\"ball1_tip\" kind=\"point\" radius=\"0.03\""
+      " max_force=\"400\"/>\n"
+      "<end_effector name=\"grip\" link=\"ball2_tip\" kind=\"rung\" max_force=\"300\""
+      " max_moment=\"5\"/>\n"
+      "</end_effectors>\n"
+      "<limits base_linear=\"0.5\" base_angular=\"1\" joint_acceleration=\"10\"/>\n"
+      "<environment friction=\"0.6\"/>\n"
+      "<drive distance=\"2\" speed=\"0.2\" configurations=\"2\"/>\n"
+      "<planner torque_limits=\"report\"/>\n"
+      "</scenario>\n");
+  const Scenario scenario = load_scenario(file.string(), data.path());
+  ASSERT_EQ(scenario.end_effectors.size(), 5u);
+  EXPECT_EQ(scenario.end_effectors[0].friction, 0.4);
+  EXPECT_EQ(scenario.end_effectors[0].max_force_N, 900.0);
+  EXPECT_EQ(scenario.end_effectors[1].friction, 0.6) << "of the environment";
+  const EndEffector& foot = scenario.end_effectors[2];
+  EXPECT_EQ(foot.name, "foot");
+  EXPECT_EQ(foot.kind, ContactKind::kSurface);
+  EXPECT_EQ(foot.half_y_m, 0.04);
+  EXPECT_EQ(foot.friction, 0.6);
+  EXPECT_EQ(foot.point, Eigen::Vector3d(0.0, 0.0, -0.1));
+  EXPECT_EQ(foot.normal, Eigen::Vector3d::UnitY());
+  EXPECT_EQ(scenario.end_effectors[3].radius_m, 0.03);
+  EXPECT_EQ(scenario.end_effectors[4].max_moment_Nm, 5.0);
+  EXPECT_EQ(scenario.limits.base_linear_m_s, 0.5);
+  EXPECT_EQ(scenario.limits.base_angular_rad_s, 1.0);
+  EXPECT_EQ(scenario.limits.joint_acceleration_rad_s2, 10.0);
+  EXPECT_FALSE(scenario.enforce_torque_limits);
+  ASSERT_EQ(world_of(scenario).surfaces.size(), 1u) << "a drive stands on the ground";
 }
 
 struct Mistake {
@@ -115,6 +164,34 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"UnknownElement", "<environment/>", "<enviroment/>", 6,
                 "unknown element <enviroment>"},
         Mistake{"UnknownAttribute", "speed=", "pace=\"1\" speed=", 7, "unknown attribute 'pace'"},
+        Mistake{"FrictionOfZero", "<environment/>", "<environment friction=\"0\"/>", 6, "friction"},
+        Mistake{"NegativeForceOfAWheel", "radius=", "max_force=\"-1\" radius=", 4, "max_force"},
+        Mistake{"TheSameWheelTwice", "</wheels>",
+                "<wheel link=\"wheel_1\" radius=\"0.078\"/></wheels>", 5,
+                "a second end effector wheel_1"},
+        Mistake{"EndEffectorWithoutFriction", "<environment/>",
+                "<end_effectors><end_effector name=\"f\" link=\"l\" kind=\"point\" "
+                "max_force=\"1\"/></end_effectors>",
+                6, "the friction of f is not known"},
+        Mistake{"EndEffectorOfAnUnknownKind", "<environment/>",
+                "<end_effectors><end_effector name=\"f\" link=\"l\" kind=\"hook\"/>"
+                "</end_effectors>",
+                6, "unknown kind of contact 'hook'"},
+        Mistake{"EndEffectorWithASizeOfAnother", "<environment/>",
+                "<end_effectors><end_effector name=\"f\" link=\"l\" kind=\"point\" half_x=\"1\" "
+                "max_force=\"1\"/></end_effectors>",
+                6, "unknown attribute 'half_x'"},
+        Mistake{"EndEffectorWithoutAName", "<environment/>",
+                "<end_effectors><end_effector link=\"l\" kind=\"point\" max_force=\"1\"/>"
+                "</end_effectors>",
+                6, "without name"},
+        Mistake{"NegativeLimit", "<environment/>", "<limits base_linear=\"-1\"/>", 6,
+                "base_linear"},
+        Mistake{"UnknownLimit", "<environment/>", "<limits jerk=\"1\"/>", 6, "'jerk'"},
+        Mistake{"TorqueLimitsThatAreNone", "<environment/>", "<planner torque_limits=\"no\"/>", 6,
+                "torque_limits is 'no'"},
+        Mistake{"ASurfaceThatIsNotBuiltYet", "<environment/>",
+                "<environment><plane name=\"p\"/></environment>", 6, "unknown element <plane>"},
         Mistake{"UnknownAttributeOfAWheel", "radius=", "width=\"1\" radius=", 4, "'width'"},
         Mistake{"MissingRobot", "<robot model=\"centauro\" active=\"lower_body\"/>", "", 1,
                 "no <robot>"},

@@ -1,4 +1,4 @@
-#include <locograph/planners/plan/wheel_motion.h>
+#include <locograph/planners/offline/drive/wheel_motion.h>
 
 #include "planners/planned_drive.h"
 
@@ -20,18 +20,19 @@ std::string one_wheel(const std::string& steering) {
 struct OneWheel {
   explicit OneWheel(const std::string& steering)
       : robot(Robot::load(folder.write("robot.urdf", one_wheel(steering)))),
-        wheels(robot, 0, named()),
-        motion(robot, wheels),
+        motion(robot, standing()),
         q(robot.neutral_configuration()) {}
-  static std::vector<Wheel> named() {
-    std::vector<Wheel> wheels(1);
-    wheels[0].link_name = "wheel";
-    wheels[0].radius_m = 0.1;
-    return wheels;
+  static Stance standing() {
+    Contact wheel;
+    wheel.effector = {.link = "wheel",
+                      .kind = ContactKind::kWheel,
+                      .radius_m = 0.1,
+                      .friction = 1.0,
+                      .max_force_N = 1.0};
+    return {{wheel}};
   }
   TemporaryFolder folder;
   Robot robot;
-  WheelsParameter wheels;
   WheelMotion motion;
   Eigen::VectorXd q;
 };
@@ -41,7 +42,7 @@ std::string revolute(const std::string& axis, double lower, double upper) {
          "\" upper=\"" + std::to_string(upper) + "\" effort=\"1\" velocity=\"1\"/>";
 }
 
-Eigen::Vector2d along(double angle) { return {std::cos(angle), std::sin(angle)}; }
+Eigen::Vector3d along(double angle) { return {std::cos(angle), std::sin(angle), 0.0}; }
 
 /// CENTAURO at the start of the straight drive: every wheel heads along x.
 struct Drive {
@@ -49,7 +50,7 @@ struct Drive {
       : graph(plan_wheeled_drive(centauro_drive())),
         plan(plan_of(graph)),
         robot(*plan.robot->robot),
-        motion(robot, *plan.wheels),
+        motion(robot, plan.stance_from.front()->stance),
         q(configurations(graph).front()) {}
   int yaw(int wheel) const {
     return 7 + robot.joints()[robot.joint_index("ankle_yaw_" + std::to_string(wheel + 1))].index;
@@ -64,9 +65,9 @@ struct Drive {
   Eigen::VectorXd q;
 };
 
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
+const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
+
+double cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a.cross(b).z(); }
 
 TEST(WheelMotion, SteersAWheelAlongADirectionAndMovesNothingElse) {
   Drive drive;
@@ -74,8 +75,8 @@ TEST(WheelMotion, SteersAWheelAlongADirectionAndMovesNothingElse) {
     for (const double angle : {-3.0, -1.2, -0.1, 0.0, 0.4, 1.5, 2.9}) {
       Eigen::VectorXd q = drive.q;
       ASSERT_TRUE(drive.motion.steer(q, wheel, 3.0 * along(angle))) << wheel << ' ' << angle;
-      const Eigen::Vector3d heading = drive.motion.pose(q, wheel).heading;
-      EXPECT_NEAR(cross(heading.head<2>(), along(angle)), 0.0, 1e-9);
+      const Eigen::Vector3d heading = drive.motion.pose(q, wheel).heading(kUp);
+      EXPECT_NEAR(cross(heading, along(angle)), 0.0, 1e-9);
       EXPECT_LE(std::abs(q[drive.yaw(wheel)] - drive.q[drive.yaw(wheel)]),
                 0.5 * std::numbers::pi + 1e-9)
           << "not the smaller turn";
@@ -96,13 +97,12 @@ TEST(WheelMotion, SteersTheOtherWayRoundWhenALimitIsInTheWay) {
       // Wherever the steering axis points, one of two small turns goes beyond the limit.
       for (const double turn : {-0.1, 0.1}) {
         Eigen::VectorXd steered = q;
-        const Eigen::Vector3d heading = drive.motion.pose(q, wheel).heading;
-        const Eigen::Vector2d direction = along(std::atan2(heading.y(), heading.x()) + turn);
+        const Eigen::Vector3d heading = drive.motion.pose(q, wheel).heading(kUp);
+        const Eigen::Vector3d direction = along(std::atan2(heading.y(), heading.x()) + turn);
         ASSERT_TRUE(drive.motion.steer(steered, wheel, direction));
         EXPECT_GE(steered[drive.yaw(wheel)], joint.lower);
         EXPECT_LE(steered[drive.yaw(wheel)], joint.upper);
-        EXPECT_NEAR(cross(drive.motion.pose(steered, wheel).heading.head<2>(), direction), 0.0,
-                    1e-9);
+        EXPECT_NEAR(cross(drive.motion.pose(steered, wheel).heading(kUp), direction), 0.0, 1e-9);
       }
     }
   }
@@ -150,16 +150,28 @@ TEST(WheelMotion, RollsEveryWheelAsFarAsItsCentreComesTheRightWayRound) {
     to[0] += distance;
     drive.motion.roll(drive.q, to);
     for (int wheel = 0; wheel < 4; ++wheel) {
-      const Wheel& of = drive.plan.wheels->wheels[wheel];
+      const Wheel& of = drive.motion.wheel(wheel).wheel;
       const Eigen::Vector3d axle = state.world_from_link(of.link).linear() *
                                    drive.robot.active_joint(drive.spin(wheel) - 7).axis;
       // The contact point rests: v + ω × (−r ẑ) = 0.
       const Eigen::Vector3d spin = (to[drive.spin(wheel)] - drive.q[drive.spin(wheel)]) * axle;
       const Eigen::Vector3d contact =
           Eigen::Vector3d(distance, 0, 0) + spin.cross(Eigen::Vector3d(0, 0, -kRadius));
-      EXPECT_NEAR(contact.norm(), 0.0, 1e-9) << of.link_name;
+      EXPECT_NEAR(contact.norm(), 0.0, 1e-9) << of.name;
     }
   }
+}
+
+TEST(WheelMotion, LeavesALockedWheelAsItIs) {
+  Drive drive;
+  Stance stance = drive.plan.stance_from.front()->stance;
+  stance.contacts[2].locked = true;
+  WheelMotion motion(drive.robot, stance);
+  Eigen::VectorXd to = drive.q;
+  to[0] += 0.1;
+  motion.roll(drive.q, to);
+  EXPECT_EQ(to[drive.spin(2)], drive.q[drive.spin(2)]);
+  EXPECT_NE(to[drive.spin(1)], drive.q[drive.spin(1)]);
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 #include <locograph/common/error.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/core/optimiser.h>
-#include <locograph/planners/plan/wheel_rolling.h>
+#include <locograph/plugins/configuration/plan_parameters.h>
+#include <locograph/plugins/contact/edge_contact.h>
 #include <locograph/plugins/robot_types.h>
 #include <locograph/plugins/rolling/edge_rolling.h>
 #include <locograph/solvers/linear_solvers.h>
@@ -28,13 +29,14 @@ TEST(WheeledDrive, StraightOnIsFiftyConfigurationsOverFourMetresAtOneHeight) {
     EXPECT_EQ(q[2], first[2]) << "height";
     EXPECT_EQ(q.segment<4>(3), Eigen::Vector4d(0, 0, 0, 1));
     state.update(q.data());
-    for (const Wheel& wheel : plan.wheels->wheels) {
+    for (const auto& standing : plan.stance_from.front()->wheels) {
+      const Wheel& wheel = standing.wheel;
       const Joint& joint = plan.robot->robot->active_joint(wheel.joint);
       const double axle_y = (state.world_from_link(wheel.link).linear() * joint.axis).y();
       EXPECT_NEAR(std::abs(axle_y), 1.0, 1e-9);
       EXPECT_NEAR(q[7 + wheel.joint] - first[7 + wheel.joint],
                   std::copysign(distance / kRadius, axle_y), 1e-9)
-          << wheel.link_name;
+          << wheel.name;
     }
   }
 }
@@ -45,17 +47,16 @@ TEST_P(Curved, DriveStandsOnItsWheelsAndRollsToTheOrderOfTheEdge) {
   const double curvature = GetParam();
   const Graph graph = plan_wheeled_drive(centauro_drive(4.0, curvature));
   const Plan plan = plan_of(graph);
-  const Robot& robot = *plan.robot->robot;
   const std::vector<Eigen::VectorXd> all = configurations(graph);
-  RobotState state(robot);
+  RobotState state(*plan.robot->robot);
   for (const Eigen::VectorXd& q : all) {
     state.update(q.data());
-    for (const Wheel& wheel : plan.wheels->wheels) {
-      const WheelOnGround ground(robot, {wheel.link, wheel.radius_m});
-      EXPECT_NEAR(ground.lowest_point(state.world_from_link(wheel.link)).z(), 0.0, 1e-9);
+    for (const auto& standing : plan.stance_from.front()->wheels) {
+      const WheelPose pose(state, standing.wheel);
+      EXPECT_NEAR(lowest_point(pose, kRadius, Eigen::Vector3d::UnitZ()).z(), 0.0, 1e-9);
     }
   }
-  // The ends of a chord are tangent to the arc: the edge's trapezoidal rule holds exactly …
+  // The ends of a chord are tangent to the arc: the edge's midpoint rule holds exactly …
   ConfigurationState a(plan.robot), b(plan.robot);
   ASSERT_EQ(graph.edges_of<EdgeRolling>().size(), all.size() - 1);
   for (std::size_t i = 1; i < all.size(); ++i) {
@@ -65,9 +66,10 @@ TEST_P(Curved, DriveStandsOnItsWheelsAndRollsToTheOrderOfTheEdge) {
     graph.edges_of<EdgeRolling>()[i - 1].error(a, b, error);
     EXPECT_LT(error.cwiseAbs().maxCoeff(), 1e-9) << i;
   }
-  // … and turns a wheel by Δθ²/6 of its arc too little.
+  // … and turns a wheel by Δθ²/24 of its arc too little.
   const double turn = curvature * 4.0 / 49.0;
-  for (const Wheel& wheel : plan.wheels->wheels) {
+  for (const auto& standing : plan.stance_from.front()->wheels) {
+    const Wheel& wheel = standing.wheel;
     state.update(all.front().data());
     const Eigen::Vector3d centre = state.world_from_link(wheel.link).translation();
     const double radius =
@@ -75,7 +77,7 @@ TEST_P(Curved, DriveStandsOnItsWheelsAndRollsToTheOrderOfTheEdge) {
     const double arc = curvature == 0.0 ? 4.0 : 4.0 * std::abs(curvature) * radius;
     const double rolled =
         kRadius * std::abs(all.back()[7 + wheel.joint] - all.front()[7 + wheel.joint]);
-    EXPECT_NEAR(1.0 - rolled / arc, turn * turn / 6.0, 1e-3 * turn * turn + 1e-10);
+    EXPECT_NEAR(1.0 - rolled / arc, turn * turn / 24.0, 1e-3 * turn * turn + 1e-10);
   }
 }
 
@@ -90,6 +92,22 @@ TEST_P(Curved, DriveIsFeasibleForTheIndependentChecker) {
   EXPECT_LT(report.constraint("lateral_slip").worst,
             1.2 * step * std::abs(GetParam() * step) / 8.0 + 1e-6);
   EXPECT_LT(report.constraint("longitudinal_slip").worst, 1e-4);
+}
+
+TEST_P(Curved, DriveSaysThatItStandsOnItsFourWheels) {
+  const Graph graph = plan_wheeled_drive(centauro_drive(4.0, GetParam(), 7));
+  const Plan plan = plan_of(graph);
+  const Motion motion = motion_of(graph, plan);
+  ASSERT_EQ(motion.stances.size(), 1u);
+  EXPECT_EQ(motion.stance_from, std::vector<int>(7, 0));
+  ASSERT_EQ(motion.stances[0].contacts.size(), 4u);
+  for (const Contact& contact : motion.stances[0].contacts) {
+    EXPECT_EQ(contact.effector.kind, ContactKind::kWheel);
+    EXPECT_EQ(contact.position.z(), 0.0);
+    EXPECT_FALSE(contact.locked);
+  }
+  EXPECT_EQ(graph.edges_of<EdgeContact>().size(), 4u * 7u);
+  EXPECT_EQ(graph.edges_of<EdgeRolling>().size(), 6u);
 }
 
 TEST_P(Curved, DriveFollowsItsArc) {
@@ -144,7 +162,7 @@ INSTANTIATE_TEST_SUITE_P(WheeledDrive, Curved, testing::Values(0.0, 0.3, -0.3),
 
 TEST(WheeledDrive, RefusesAStartStateWhoseWheelsAreNotLevel) {
   Scenario scenario = centauro_drive();
-  scenario.wheels[2].radius_m = 0.07;
+  scenario.end_effectors[2].radius_m = 0.07;
   try {
     plan_wheeled_drive(scenario);
     FAIL() << "accepted";

@@ -4,33 +4,35 @@
 namespace locograph::test {
 namespace {
 
-// A good plan: parameters 0 to 2 and vertices 0 and 1; the bad line is line 6.
+// A good plan: parameters 0 to 4 and vertices 0 and 1.
 constexpr const char* kGood =
     "PARAMS_ROBOT 0 cart.urdf cart.srdf floating 0\n"
-    "PARAMS_WHEELS 1 0 1 wheel 0.1\n"
+    "PARAMS_PLAN 1 2\n"
     "PARAMS_WORLD 2 - -\n"
-    "VERTEX_CONFIGURATION 0 0 0 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
-    "VERTEX_CONFIGURATION 1 0 1 0 0 0 0 0 0 1 0.1 0.2 0.3\n";
+    "PARAMS_CONTACT 3 0 wheel wheel wheel 0.1 0.8 100 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free\n"
+    "PARAMS_STANCE 5 1 3\n"
+    "VERTEX_CONFIGURATION 0 0 0 - 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
+    "VERTEX_CONFIGURATION 1 0 1 5 0 0 0 0 0 0 1 0.1 0.2 0.3\n";
 
 const BadLine kBadLines[] = {
     // VERTEX_CONFIGURATION
-    {"VertexOfAnUnknownRobot", "VERTEX_CONFIGURATION 9 5 0 0 0 0 0 0 0 1 0 0 0",
-     "unknown parameter 5"},
-    {"VertexOfAParameterThatIsNoRobot", "VERTEX_CONFIGURATION 9 2 0 0 0 0 0 0 0 1 0 0 0",
+    {"VertexOfAnUnknownRobot", "VERTEX_CONFIGURATION 9 55 0 - 0 0 0 0 0 0 1 0 0 0",
+     "unknown parameter 55"},
+    {"VertexOfAParameterThatIsNoRobot", "VERTEX_CONFIGURATION 9 2 0 - 0 0 0 0 0 0 1 0 0 0",
      "parameter 2 is a PARAMS_WORLD"},
-    {"VertexWithTooFewJoints", "VERTEX_CONFIGURATION 9 0 0 0 0 0 0 0 0 1 0 0", "too few fields"},
-    {"VertexWithTooManyJoints", "VERTEX_CONFIGURATION 9 0 0 0 0 0 0 0 0 1 0 0 0 7",
+    {"VertexWithTooFewJoints", "VERTEX_CONFIGURATION 9 0 0 - 0 0 0 0 0 0 1 0 0", "too few fields"},
+    {"VertexWithTooManyJoints", "VERTEX_CONFIGURATION 9 0 0 - 0 0 0 0 0 0 1 0 0 0 7",
      "too many fields, from '7' on"},
     {"VertexWithoutTime", "VERTEX_CONFIGURATION 9 0", "too few fields"},
-    {"VertexWithAZeroQuaternion", "VERTEX_CONFIGURATION 9 0 0 1 2 3 0 0 0 0 0 0 0",
+    {"VertexWithAZeroQuaternion", "VERTEX_CONFIGURATION 9 0 0 - 1 2 3 0 0 0 0 0 0 0",
      "quaternion of length zero"},
-    {"VertexWithANaNJoint", "VERTEX_CONFIGURATION 9 0 0 0 0 0 0 0 0 1 0 nan 0",
+    {"VertexWithANaNJoint", "VERTEX_CONFIGURATION 9 0 0 - 0 0 0 0 0 0 1 0 nan 0",
      "'nan' is not finite"},
-    {"VertexWithANaNTime", "VERTEX_CONFIGURATION 9 0 nan 0 0 0 0 0 0 1 0 0 0",
+    {"VertexWithANaNTime", "VERTEX_CONFIGURATION 9 0 nan - 0 0 0 0 0 0 1 0 0 0",
      "'nan' is not finite"},
-    {"VertexWithAnInfinitePosition", "VERTEX_CONFIGURATION 9 0 0 inf 0 0 0 0 0 1 0 0 0",
+    {"VertexWithAnInfinitePosition", "VERTEX_CONFIGURATION 9 0 0 - inf 0 0 0 0 0 1 0 0 0",
      "'inf' is not finite"},
-    {"VertexTwice", "VERTEX_CONFIGURATION 1 0 0 0 0 0 0 0 0 1 0 0 0", "declared twice"},
+    {"VertexTwice", "VERTEX_CONFIGURATION 1 0 0 - 0 0 0 0 0 0 1 0 0 0", "declared twice"},
     // PARAMS_ROBOT
     {"RobotWithoutUrdf", "PARAMS_ROBOT 4 nowhere.urdf - floating 0", "nowhere.urdf"},
     {"RobotWithoutSrdf", "PARAMS_ROBOT 4 cart.urdf nowhere.srdf floating 0", "nowhere.srdf"},
@@ -49,24 +51,58 @@ const BadLine kBadLines[] = {
      "too few fields"},
     {"RobotWithATakenNumber", "PARAMS_ROBOT 0 cart.urdf - floating 0",
      "parameter 0 is given twice"},
-    // PARAMS_WHEELS
-    {"WheelsOfAnUnknownRobot", "PARAMS_WHEELS 4 8 1 wheel 0.1", "unknown parameter 8"},
-    {"WheelsOfAWorld", "PARAMS_WHEELS 4 2 1 wheel 0.1", "parameter 2 is a PARAMS_WORLD"},
-    {"WheelThatIsNoLink", "PARAMS_WHEELS 4 0 1 wheal 0.1", "wheal"},
-    {"WheelOfRadiusZero", "PARAMS_WHEELS 4 0 1 wheel 0", "a radius > 0 m"},
-    {"WheelOfNegativeRadius", "PARAMS_WHEELS 4 0 1 wheel -0.1", "a radius > 0 m"},
-    {"WheelOfNoRadius", "PARAMS_WHEELS 4 0 1 wheel nan", "'nan' is not finite"},
-    {"WheelOnAFixedJoint", "PARAMS_WHEELS 4 0 1 mast 0.1", "wheel mast cannot turn"},
-    {"WheelOnAPrismaticJoint", "PARAMS_WHEELS 4 0 1 lift 0.1", "wheel lift cannot turn"},
-    {"WheelThatIsTheBase", "PARAMS_WHEELS 4 0 1 base 0.1", "wheel base cannot turn"},
-    {"NoWheels", "PARAMS_WHEELS 4 0 0", "number of wheels 0"},
-    {"ANegativeNumberOfWheels", "PARAMS_WHEELS 4 0 -3", "number of wheels -3"},
-    {"FewerWheelsThanAnnounced", "PARAMS_WHEELS 4 0 2 wheel 0.1", "too few fields"},
-    {"MillionsOfWheelsAnnounced", "PARAMS_WHEELS 4 0 2000000000 wheel 0.1", "too few fields"},
+    // Plans of version 1
+    {"WheelsOfAnOlderPlan", "PARAMS_WHEELS 4 0 1 wheel 0.1",
+     "PARAMS_WHEELS of an older format, expected a plan of format version 2"},
+    {"WheelContactOfAnOlderPlan", "EDGE_WHEEL_CONTACT 0 2 1 scalar 1",
+     "EDGE_WHEEL_CONTACT of an older format"},
+    {"ContactOfAnOlderPlan", "PARAMS_CONTACT 9 0 arm 0 0 0 link 0 0 1 1 0 0 point .5 1",
+     "PARAMS_CONTACT of a plan of format version 1"},
+    {"PlanOfAnotherVersion", "PARAMS_PLAN 9 1", "a plan of format version 1, expected version 2"},
+    {"PlanOfAVersionToCome", "PARAMS_PLAN 9 3", "a plan of format version 3"},
+    {"PlanWithAnUnknownWord", "PARAMS_PLAN 9 2 stances", "'stances', expected 'stances_only'"},
+    // Wheels
+    {"WheelThatIsNoLink",
+     "PARAMS_CONTACT 9 0 w wheal wheel 0.1 0.8 100 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free", "wheal"},
+    {"WheelOfRadiusZero",
+     "PARAMS_CONTACT 9 0 w wheel wheel 0 0.8 100 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free",
+     "radius of 0"},
+    {"WheelOfNegativeRadius",
+     "PARAMS_CONTACT 9 0 w wheel wheel -0.1 0.8 100 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free",
+     "radius of -0.1"},
+    {"WheelOfNoRadius",
+     "PARAMS_CONTACT 9 0 w wheel wheel nan 0.8 100 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free",
+     "'nan' is not finite"},
+    {"WheelOnAFixedJoint",
+     "PARAMS_CONTACT 9 0 w mast wheel 0.1 0.8 100 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free",
+     "wheel that no joint turns"},
+    {"WheelOnAPrismaticJoint",
+     "PARAMS_CONTACT 9 0 w lift wheel 0.1 0.8 100 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free",
+     "wheel that no joint turns"},
+    {"WheelThatIsTheBase",
+     "PARAMS_CONTACT 9 0 w base wheel 0.1 0.8 100 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free",
+     "wheel that no joint turns"},
+    {"WheelBesideItsAxle",
+     "PARAMS_CONTACT 9 0 w wheel wheel 0.1 0.8 100 0.1 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free",
+     "0.100000 m beside its axle"},
+    // PARAMS_STANCE
+    {"StanceOfNothing", "PARAMS_STANCE 9 0", "number of contacts 0"},
+    {"StanceOfAnUnknownContact", "PARAMS_STANCE 9 1 77", "unknown parameter 77"},
+    {"StanceOfAWorld", "PARAMS_STANCE 9 1 2", "parameter 2 is a PARAMS_WORLD"},
+    {"StanceWithFewerContactsThanAnnounced", "PARAMS_STANCE 9 2 3", "too few fields"},
+    {"StanceOfMillionsOfContacts", "PARAMS_STANCE 9 2000000000 3", "too few fields"},
+    {"StanceWithMoreContactsThanAnnounced", "PARAMS_STANCE 9 1 3 3", "too many fields"},
+    {"StanceWithAContactTwice", "PARAMS_STANCE 9 2 3 3", "contacts 1 and 2"},
+    {"VertexInAnUnknownStance", "VERTEX_CONFIGURATION 9 0 0 77 0 0 0 0 0 0 1 0 0 0",
+     "unknown parameter 77"},
+    {"VertexInAWorld", "VERTEX_CONFIGURATION 9 0 0 2 0 0 0 0 0 0 1 0 0 0",
+     "parameter 2 is a PARAMS_WORLD"},
     // PARAMS_WORLD and PARAMS_SCENARIO
     {"WorldWithoutItsMap", "PARAMS_WORLD 4 nowhere.bt -", "nowhere.bt"},
     {"WorldWithoutItsObstacles", "PARAMS_WORLD 4 - nowhere.xml", "nowhere.xml"},
     {"WorldWithOneFile", "PARAMS_WORLD 4 -", "too few fields"},
+    {"WorldOnSomethingElse", "PARAMS_WORLD 4 - - floor 0", "'floor', expected 'ground'"},
+    {"WorldOnGroundWithoutHeight", "PARAMS_WORLD 4 - - ground", "too few fields"},
     {"ScenarioWithoutName", "PARAMS_SCENARIO 4", "too few fields"},
     // EDGE_JOINT_LIMITS
     {"JointLimitsWithTooFewRows", "EDGE_JOINT_LIMITS 0 2 0.1 scalar 1",
@@ -132,21 +168,14 @@ const BadLine kBadLines[] = {
     {"SweptObstacleDistanceFromAVertexToItself",
      "EDGE_SWEPT_OBSTACLE_DISTANCE 0 0 3 2 0.1 2 scalar 1", "names vertex 0 twice"},
     {"SweptObstacleDistanceWithOneVertex", "EDGE_SWEPT_OBSTACLE_DISTANCE 0", "too few fields"},
-    // EDGE_WHEEL_CONTACT and EDGE_ROLLING
-    {"WheelContactOfUnknownWheels", "EDGE_WHEEL_CONTACT 0 2 6 scalar 1", "unknown parameter 6"},
-    {"WheelContactOfAWorld", "EDGE_WHEEL_CONTACT 0 2 2 scalar 1", "parameter 2 is a PARAMS_WORLD"},
-    {"WheelContactWithTooFewRows", "EDGE_WHEEL_CONTACT 0 1 1 scalar 1",
-     "EDGE_WHEEL_CONTACT with n = 1, expected n = 2"},
-    {"WheelContactWithTooManyRows", "EDGE_WHEEL_CONTACT 0 8 1 scalar 1",
-     "EDGE_WHEEL_CONTACT with n = 8, expected n = 2"},
-    {"WheelContactWithANegativeWeight", "EDGE_WHEEL_CONTACT 0 2 1 diagonal 1 -1",
-     "a negative weight"},
-    {"RollingOfUnknownWheels", "EDGE_ROLLING 0 1 2 6 scalar 1", "unknown parameter 6"},
-    {"RollingWithTooFewRows", "EDGE_ROLLING 0 1 1 1 scalar 1",
+    // EDGE_ROLLING
+    {"RollingInAnUnknownStance", "EDGE_ROLLING 0 1 2 6 scalar 1", "unknown parameter 6"},
+    {"RollingOnAContact", "EDGE_ROLLING 0 1 2 3 scalar 1", "parameter 3 is a PARAMS_CONTACT"},
+    {"RollingWithTooFewRows", "EDGE_ROLLING 0 1 1 5 scalar 1",
      "EDGE_ROLLING with n = 1, expected n = 2"},
-    {"RollingWithTooManyRows", "EDGE_ROLLING 0 1 3 1 scalar 1",
+    {"RollingWithTooManyRows", "EDGE_ROLLING 0 1 3 5 scalar 1",
      "EDGE_ROLLING with n = 3, expected n = 2"},
-    {"RollingWithAMisspeltWord", "EDGE_ROLLING 0 1 2 1 Diagonal 1 1",
+    {"RollingWithAMisspeltWord", "EDGE_ROLLING 0 1 2 5 Diagonal 1 1",
      "weights begin with 'Diagonal'"},
     // EDGE_PLAN_TRACKING
     {"PlanTrackingWithTooFewRows", "EDGE_PLAN_TRACKING 0 8 0 0 0 0 0 0 1 0 0 scalar 1",
@@ -191,6 +220,22 @@ TEST_P(BadInput, IsAnErrorWithFileAndLine) { expect_bad_line(folder, kGood, GetP
 
 INSTANTIATE_TEST_SUITE_P(Plugins, BadInput, testing::ValuesIn(kBadLines), bad_line_name);
 
+TEST(OlderPlans, AreRefusedWhereTheyHaveNoStances) {
+  const TemporaryFolder folder;
+  folder.write("cart.urdf", kCartUrdf);
+  try {
+    read_graph(folder.write("plan.g2o",
+                            "PARAMS_ROBOT 0 cart.urdf - floating 0\n"
+                            "VERTEX_CONFIGURATION 0 0 0 0 0 0 0 0 0 1 0.1 0.2 0.3\n"),
+               robot_types());
+    FAIL() << "was read";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.line(), 2);
+    EXPECT_NE(std::string(error.what()).find("of a plan of format version 1"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(BadFiles, NamedByAPlanAreBlamedThemselves) {
   const TemporaryFolder folder;
   folder.write("cart.urdf", kCartUrdf);
@@ -226,8 +271,8 @@ TEST(GoodInput, OfEveryKindIsRead) {
                                    "EDGE_OBSTACLE_DISTANCE 0 3 2 0.1 diagonal 1 2 3\n"
                                    "EDGE_SELF_COLLISION 0 3 0.05 diagonal 1 2 3\n"
                                    "EDGE_SWEPT_OBSTACLE_DISTANCE 0 1 3 2 0.1 4 scalar 1\n"
-                                   "EDGE_WHEEL_CONTACT 0 2 1 scalar 1\n"
-                                   "EDGE_ROLLING 0 1 2 1 scalar 1\n"
+                                   "EDGE_CONTACT 0 2 3 scalar 1\n"
+                                   "EDGE_ROLLING 0 1 2 5 scalar 1\n"
                                    "EDGE_PLAN_TRACKING 0 9 0 0 0 0 0 0 2 0 0 -.5 scalar 1\n"
                                    "EDGE_VELOCITY_TRACKING 0 1 9 1 2 3 4 5 6 7 8 9 scalar 0\n");
   const Graph graph = read_graph(plan, robot_types());
@@ -248,8 +293,8 @@ class TwoRobots : public testing::Test {
   void expect_refused(const std::string& edge, const std::string& message) {
     const std::string text = std::string(kGood) +
                              "PARAMS_ROBOT 4 cart.urdf - floating 1 arm_joint\n"
-                             "VERTEX_CONFIGURATION 2 4 0 0 0 0 0 0 0 1 0.1\n"
-                             "VERTEX_CONFIGURATION 3 4 1 0 0 0 0 0 0 1 0.1\n" +
+                             "VERTEX_CONFIGURATION 2 4 0 - 0 0 0 0 0 0 1 0.1\n"
+                             "VERTEX_CONFIGURATION 3 4 1 - 0 0 0 0 0 0 1 0.1\n" +
                              edge + "\n";
     Graph graph = read_graph(folder.write("plan.g2o", text), robot_types());
     Problem problem;
@@ -286,13 +331,13 @@ TEST_F(TwoRobots, AreNotTiedTogether) {
   expect_refused("EDGE_VELOCITY_LIMITS 0 2 5 1 0 0 scalar 1", message);
   expect_refused("EDGE_VELOCITY_LIMITS 2 0 3 1 0 0 scalar 1", message);
   expect_refused("EDGE_VELOCITY_TRACKING 0 2 9 0 0 0 0 0 0 0 0 0 scalar 1", message);
-  expect_refused("EDGE_ROLLING 0 2 2 1 scalar 1", message);
+  expect_refused("EDGE_ROLLING 0 2 2 5 scalar 1", message);
   expect_refused("EDGE_SWEPT_OBSTACLE_DISTANCE 0 2 3 2 0.1 2 scalar 1", message);
 }
 
 TEST_F(TwoRobots, KeepTheirOwnWheels) {
-  expect_refused("EDGE_WHEEL_CONTACT 2 2 1 scalar 1", "configurations of different robots");
-  expect_refused("EDGE_ROLLING 2 3 2 1 scalar 1", "configurations of different robots");
+  expect_refused("EDGE_CONTACT 2 2 3 scalar 1", "configurations of different robots");
+  expect_refused("EDGE_ROLLING 2 3 2 5 scalar 1", "configurations of different robots");
 }
 
 TEST(EdgesOnly, AreRefusedWhereNoVertexNamesARobot) {
@@ -331,13 +376,13 @@ TEST(EdgesInAGraph, AreRefusedWhenAddedWithTheWrongSize) {
       Error);
   EXPECT_THROW(graph.add_edge(EdgeSweptObstacleDistance(*robot.robot, kWorld, 0.1, 0, 1.0), a, b),
                Error);
-  EXPECT_THROW(graph.add_edge(wrong(EdgeWheelContact(*robot.wheels, kWheels, 1.0)), a), Error);
+  EXPECT_THROW(graph.add_edge(wrong(wheel_contact(graph, 0)), a), Error);
   EXPECT_THROW(graph.add_edge(wrong(EdgePlanTracking(home(robot), Eigen::VectorXd::Ones(30))), a),
                Error);
   EXPECT_THROW(graph.add_edge(EdgePlanTracking(home(robot).head(30), Eigen::VectorXd::Ones(30)), a),
                Error);
   EXPECT_THROW(graph.add_edge(wrong(EdgeVelocityLimits(model, 1.0, 1.0, 1.0, 1.0)), a, b), Error);
-  EXPECT_THROW(graph.add_edge(wrong(EdgeRolling(*robot.wheels, kWheels, 1.0)), a, b), Error);
+  EXPECT_THROW(graph.add_edge(wrong(rolling_of(graph)), a, b), Error);
   EXPECT_THROW(
       graph.add_edge(EdgeVelocityTracking(Eigen::VectorXd::Zero(29), Eigen::VectorXd::Ones(30)), a,
                      b),

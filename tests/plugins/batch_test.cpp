@@ -38,7 +38,7 @@ Graph plan_with_everything(const RobotCase& robot, const WorldDistance& now, boo
     graph.add_edge(dress(EdgeJointLimits(model, 0.5, 1.0)), ids[i]);
     graph.add_edge(dress(EdgeObstacleDistance(*robot.robot, kWorld, 0.1, 1.0)), ids[i]);
     graph.add_edge(dress(EdgeSelfCollision(*robot.robot, 0.05, 1.0)), ids[i]);
-    graph.add_edge(dress(EdgeWheelContact(*robot.wheels, kWheels, 1.0)), ids[i]);
+    for (int w = 0; w < 4; ++w) graph.add_edge(dress(wheel_contact(graph, w)), ids[i]);
     graph.add_edge(dress(EdgePlanTracking(random.configuration(model, 1.0, 0.0),
                                           Eigen::VectorXd::Ones(tangent))),
                    ids[i]);
@@ -46,7 +46,7 @@ Graph plan_with_everything(const RobotCase& robot, const WorldDistance& now, boo
     const bool swap = backwards && i % 2 == 0;
     const auto a = ids[swap ? i : i - 1], b = ids[swap ? i - 1 : i];
     graph.add_edge(dress(EdgeSweptObstacleDistance(*robot.robot, kWorld, 0.1, 3, 1.0)), a, b);
-    graph.add_edge(dress(EdgeRolling(*robot.wheels, kWheels, 1.0)), a, b);
+    graph.add_edge(dress(rolling_of(graph)), a, b);
     graph.add_edge(
         dress(EdgeVelocityTracking(random.vector(tangent, 0.1), Eigen::VectorXd::Ones(tangent))), a,
         b);
@@ -168,16 +168,13 @@ TEST(Window, TakesTheRobotOfEachConfigurationWhenItSlidesFromOneRobotToAnother) 
   std::vector<int> slots;
   for (int r : {0, 1}) {
     graph.parameters().set(10 * r, robots[r].robot);
-    std::vector<Wheel> wheels(1);
-    wheels[0].link_name = r == 0 ? "wheel_1" : "wheel_4";
-    wheels[0].radius_m = 0.078;
-    const auto parameter =
-        std::make_shared<const WheelsParameter>(robots[r].model(), 10 * r, wheels);
+    const auto parameter = std::make_shared<const ContactParameter>(
+        robots[r].robot, 10 * r, wheel_on_ground(r == 0 ? "wheel_1" : "wheel_4", 0.078));
     graph.parameters().set(10 * r + 1, parameter);
     Eigen::VectorXd q = home(robots[r]);
     q[7] += 0.3;
     const auto id = graph.add_vertex(r, VertexConfiguration(10 * r, robots[r].robot, 0.0, q));
-    graph.add_edge(EdgeWheelContact(*parameter, 10 * r + 1, 1.0), id);
+    graph.add_edge(EdgeContact(*parameter, 10 * r + 1, 1.0), id);
     slots.push_back(id.slot);
   }
   Problem problem;

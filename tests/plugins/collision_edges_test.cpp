@@ -212,7 +212,7 @@ class TwoCapsules : public testing::Test {
                   std::make_shared<const RobotParameter>(folder.write("slider.urdf", kTwoCapsules),
                                                          std::filesystem::path(),
                                                          RobotOptions{.floating_base = false}),
-                  nullptr};
+                  {}};
   std::pair<double, double> at(double slide) const {
     Graph graph = graph_of(robot);
     graph.add_edge(EdgeSelfCollision(*robot.robot, kMargin, 1.0),

@@ -32,7 +32,8 @@ class ContactsAndTasksInAFile : public RobotCaseTest {
     for (int i = 0; i < 10; ++i) {
       const auto id = ids[i];
       add(graph, random, i,
-          EdgeContact(kFrame + i % 2, kContactKinds[i / 2], random_pose(random, 9.0), 1.0), id);
+          contact_edge(graph, robot, kFrame + i % 2, kHeldKinds[i % 4], random_pose(random, 9.0)),
+          id);
       add(graph, random, i,
           EdgeFramePose(kFrame + i % 2, random_pose(random, 9.0),
                         Eigen::Matrix<double, 6, 1>::Ones()),
@@ -81,8 +82,13 @@ TEST_P(ContactsAndTasksInAFile, KeepEveryBit) {
   write_graph(graph, folder.file("plan.g2o"));
   Graph again = read_graph(folder.file("plan.g2o"), robot_types());
   EXPECT_EQ(write_graph_text(graph, folder.path()), write_graph_text(again, folder.path()));
-  expect_same_bits<EdgeContact>(graph, again,
-                                [](const EdgeContact& e) { return numbers(e.contact); });
+  expect_same_bits<EdgeContact>(graph, again, [](const EdgeContact& e) {
+    const Contact& contact = e.contact->contact;
+    Eigen::VectorXd all(18);
+    all << contact.effector.point, contact.effector.normal, contact.effector.forward,
+        contact.position, contact.normal, contact.forward.value_or(Eigen::Vector3d::Zero());
+    return all;
+  });
   expect_same_bits<EdgeFramePose>(graph, again,
                                   [](const EdgeFramePose& e) { return numbers(e.target); });
   expect_same_bits<EdgeCom>(graph, again,
@@ -90,9 +96,10 @@ TEST_P(ContactsAndTasksInAFile, KeepEveryBit) {
   expect_same_bits<EdgeAccelerationLimits>(
       graph, again, [](const EdgeAccelerationLimits& e) { return e.limits; });
   for (std::size_t i = 0; i < graph.edges_of<EdgeContact>().size(); ++i) {
-    EXPECT_EQ(graph.edges_of<EdgeContact>()[i].kind, again.edges_of<EdgeContact>()[i].kind);
-    EXPECT_EQ(graph.edges_of<EdgeContact>()[i].frame_number,
-              again.edges_of<EdgeContact>()[i].frame_number);
+    EXPECT_EQ(graph.edges_of<EdgeContact>()[i].contact->kind(),
+              again.edges_of<EdgeContact>()[i].contact->kind());
+    EXPECT_EQ(graph.edges_of<EdgeContact>()[i].contact_number,
+              again.edges_of<EdgeContact>()[i].contact_number);
   }
   for (const int number : {kFrame, kFrame + 1}) {
     const auto one = graph.parameters().get<FrameParameter>(number);
@@ -111,16 +118,20 @@ INSTANTIATE_TEST_SUITE_P(Plugins, ContactsAndTasksInAFile,
 constexpr const char* kCartsAndFrames =
     "PARAMS_ROBOT 0 cart.urdf - floating 0\n"
     "PARAMS_WORLD 2 - -\n"
+    "PARAMS_PLAN 5 2\n"
     "PARAMS_FRAME 3 0 arm 0 0 0.1 0 0 0 1\n"
-    "VERTEX_CONFIGURATION 0 0 0 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
-    "VERTEX_CONFIGURATION 1 0 1 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
-    "VERTEX_CONFIGURATION 2 0 3 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
+    "PARAMS_CONTACT 6 0 hand arm point 0 0.5 9 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free\n"
+    "PARAMS_CONTACT 7 0 sole arm surface 0.1 0.1 0.5 9 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0\n"
+    "PARAMS_CONTACT 8 0 turning arm surface 0.1 0.1 0.5 9 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free\n"
+    "VERTEX_CONFIGURATION 0 0 0 - 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
+    "VERTEX_CONFIGURATION 1 0 1 - 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
+    "VERTEX_CONFIGURATION 2 0 3 - 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
     "PARAMS_ROBOT 4 cart.urdf - floating 1 arm_joint\n"
-    "VERTEX_CONFIGURATION 3 4 0 0 0 0 0 0 0 1 0.1\n";
+    "VERTEX_CONFIGURATION 3 4 0 - 0 0 0 0 0 0 1 0.1\n";
 
 const BadLine kBadContactsAndTasks[] = {
     // PARAMS_FRAME
-    {"FrameOfAnUnknownRobot", "PARAMS_FRAME 9 5 arm 0 0 0 0 0 0 1", "unknown parameter 5"},
+    {"FrameOfAnUnknownRobot", "PARAMS_FRAME 9 55 arm 0 0 0 0 0 0 1", "unknown parameter 55"},
     {"FrameOfAWorld", "PARAMS_FRAME 9 2 arm 0 0 0 0 0 0 1", "parameter 2 is a PARAMS_WORLD"},
     {"FrameOnALinkThatIsNotThere", "PARAMS_FRAME 9 0 amr 0 0 0 0 0 0 1", "amr"},
     {"FrameWithoutLink", "PARAMS_FRAME 9 0", "too few fields"},
@@ -130,35 +141,22 @@ const BadLine kBadContactsAndTasks[] = {
     {"FrameWithTooManyFields", "PARAMS_FRAME 9 0 arm 0 0 0 0 0 0 1 7", "too many fields"},
     {"FrameWithATakenNumber", "PARAMS_FRAME 3 0 arm 0 0 0 0 0 0 1", "parameter 3 is given twice"},
     // EDGE_CONTACT
-    {"ContactOfAnUnknownFrame", "EDGE_CONTACT 0 3 8 point 0 0 0 0 0 0 1 scalar 1",
-     "unknown parameter 8"},
-    {"ContactOfARobot", "EDGE_CONTACT 0 3 0 point 0 0 0 0 0 0 1 scalar 1",
-     "parameter 0 is a PARAMS_ROBOT"},
-    {"ContactOfAnUnknownKind", "EDGE_CONTACT 0 3 3 glue 0 0 0 0 0 0 1 scalar 1",
-     "contact of kind 'glue', expected one of 'surface', 'surface_free_yaw'"},
-    {"ContactOfASurfaceWithTheRowsOfAPoint", "EDGE_CONTACT 0 3 3 surface 0 0 0 0 0 0 1 scalar 1",
+    {"ContactThatIsUnknown", "EDGE_CONTACT 0 3 88 scalar 1", "unknown parameter 88"},
+    {"ContactOfARobot", "EDGE_CONTACT 0 3 0 scalar 1", "parameter 0 is a PARAMS_ROBOT"},
+    {"ContactOfAFrame", "EDGE_CONTACT 0 3 3 scalar 1", "parameter 3 is a PARAMS_FRAME"},
+    {"ContactOfAnOlderPlan", "EDGE_CONTACT 0 3 3 point 0 0 0 0 0 0 1 scalar 1",
+     "weights begin with 'point'"},
+    {"ContactOfASurfaceWithTheRowsOfAPoint", "EDGE_CONTACT 0 3 7 scalar 1",
      "EDGE_CONTACT with n = 3, expected n = 6"},
-    {"ContactOfASurfaceWithFreeYawAndItsRow",
-     "EDGE_CONTACT 0 6 3 surface_free_yaw 0 0 0 0 0 0 1 scalar 1",
+    {"ContactOfASurfaceWithFreeYawAndItsRow", "EDGE_CONTACT 0 6 8 scalar 1",
      "EDGE_CONTACT with n = 6, expected n = 5"},
-    {"ContactOfAPointWithSixRows", "EDGE_CONTACT 0 6 3 point 0 0 0 0 0 0 1 scalar 1",
+    {"ContactOfAPointWithSixRows", "EDGE_CONTACT 0 6 6 scalar 1",
      "EDGE_CONTACT with n = 6, expected n = 3"},
-    {"ContactOfASlidingRungWithFiveRows", "EDGE_CONTACT 0 5 3 sliding_rung 0 0 0 0 0 0 1 scalar 1",
-     "EDGE_CONTACT with n = 5, expected n = 4"},
-    {"ContactWithoutNormal", "EDGE_CONTACT 0 6 3 surface 0 0 0 0 0 0 0 scalar 1",
-     "quaternion of length zero"},
-    {"ContactWithANaN", "EDGE_CONTACT 0 3 3 point 0 0 nan 0 0 0 1 scalar 1", "'nan' is not finite"},
-    {"ContactAtInfinity", "EDGE_CONTACT 0 3 3 point 0 inf 0 0 0 0 1 scalar 1",
-     "'inf' is not finite"},
-    {"ContactWithANegativeWeight", "EDGE_CONTACT 0 3 3 point 0 0 0 0 0 0 1 diagonal 1 -1 1",
-     "a negative weight"},
-    {"ContactWithATruncatedPose", "EDGE_CONTACT 0 3 3 point 0 0 0 0 0 0 scalar 1",
-     "'scalar' is not a number"},
-    {"ContactOfAnUnknownVertex", "EDGE_CONTACT 8 3 3 point 0 0 0 0 0 0 1 scalar 1",
-     "unknown vertex 8"},
+    {"ContactWithANegativeWeight", "EDGE_CONTACT 0 3 6 diagonal 1 -1 1", "a negative weight"},
+    {"ContactOfAnUnknownVertex", "EDGE_CONTACT 88 3 6 scalar 1", "unknown vertex 88"},
     // EDGE_FRAME_POSE
-    {"FramePoseOfAnUnknownFrame", "EDGE_FRAME_POSE 0 8 0 0 0 0 0 0 1 scalar 1",
-     "unknown parameter 8"},
+    {"FramePoseOfAnUnknownFrame", "EDGE_FRAME_POSE 0 88 0 0 0 0 0 0 1 scalar 1",
+     "unknown parameter 88"},
     {"FramePoseOfAWorld", "EDGE_FRAME_POSE 0 2 0 0 0 0 0 0 1 scalar 1",
      "parameter 2 is a PARAMS_WORLD"},
     {"FramePoseWithAZeroQuaternion", "EDGE_FRAME_POSE 0 3 0 0 0 0 0 0 0 scalar 1",
@@ -205,7 +203,7 @@ TEST(ContactsOfTwoRobots, AreNotMixedUp) {
   const struct {
     const char *edge, *message;
   } cases[] = {
-      {"EDGE_CONTACT 3 3 3 point 0 0 0 0 0 0 1 scalar 1", "configurations of different robots"},
+      {"EDGE_CONTACT 3 3 6 scalar 1", "configurations of different robots"},
       {"EDGE_FRAME_POSE 3 3 0 0 0 0 0 0 1 scalar 1", "configurations of different robots"},
       {"EDGE_ACCELERATION_LIMITS 0 1 3 5 1 1 1 1 1 scalar 1", "configurations of different robots"},
       {"EDGE_ACCELERATION_LIMITS 0 1 2 3 1 1 1 scalar 1", "EDGE_ACCELERATION_LIMITS with n = 3"},
@@ -227,33 +225,33 @@ TEST(ContactsOfTwoRobots, AreNotMixedUp) {
   }
 }
 
-TEST(ContactPose, HasTheNormalAsZAndForwardAsXInTheSurface) {
+TEST(ContactAxes, HaveTheNormalAsZAndForwardAsXInTheSurface) {
   Random random(82);
   for (int i = 0; i < 100; ++i) {
     const Eigen::Vector3d normal = random.uniform(1e-8, 10.0) * random.direction();
     const Eigen::Vector3d forward = random.direction();
-    const Eigen::Isometry3d pose = contact_pose(Eigen::Vector3d(1.0, 2.0, 3.0), normal, forward);
-    EXPECT_TRUE(pose.translation() == Eigen::Vector3d(1.0, 2.0, 3.0));
-    EXPECT_LT((pose.linear() * pose.linear().transpose() - Eigen::Matrix3d::Identity()).norm(),
-              1e-12);
-    EXPECT_NEAR(pose.linear().determinant(), 1.0, 1e-12);
-    EXPECT_LT((pose.linear().col(2) - normal.normalized()).norm(), 1e-12);
-    EXPECT_GT(pose.linear().col(0).dot(forward), 0.0);
-    EXPECT_NEAR(pose.linear().col(1).dot(forward), 0.0, 1e-12);
+    const Eigen::Matrix3d axes = contact_axes("a contact", normal, forward);
+    EXPECT_LT((axes * axes.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+    EXPECT_NEAR(axes.determinant(), 1.0, 1e-12);
+    EXPECT_LT((axes.col(2) - normal.normalized()).norm(), 1e-12);
+    EXPECT_GT(axes.col(0).dot(forward), 0.0);
+    EXPECT_NEAR(axes.col(1).dot(forward), 0.0, 1e-12);
   }
 }
 
-TEST(ContactPose, IsRefusedWithoutDirections) {
+TEST(ContactAxes, AreRefusedWithoutDirections) {
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero(), x = Eigen::Vector3d::UnitX(),
                         z = Eigen::Vector3d::UnitZ(), nan = Eigen::Vector3d::Constant(std::nan(""));
-  EXPECT_THROW(contact_pose(zero, zero, x), Error) << "a surface with zero normal";
-  EXPECT_THROW(contact_pose(zero, z, zero), Error);
-  EXPECT_THROW(contact_pose(zero, z, -2.0 * z), Error) << "forward along the normal";
-  EXPECT_THROW(contact_pose(nan, z, x), Error);
-  EXPECT_THROW(contact_pose(zero, nan, x), Error);
-  EXPECT_THROW(contact_pose(zero, z, nan), Error);
-  EXPECT_THROW(contact_pose(zero, z * HUGE_VAL, x), Error);
-  EXPECT_NO_THROW(contact_pose(zero, 1e-200 * z, 1e200 * x));
+  const auto axes = [](const Eigen::Vector3d& normal, const Eigen::Vector3d& forward) {
+    return contact_axes("a contact", normal, forward);
+  };
+  EXPECT_THROW(axes(zero, x), Error) << "a surface with zero normal";
+  EXPECT_THROW(axes(z, zero), Error);
+  EXPECT_THROW(axes(z, -2.0 * z), Error) << "forward along the normal";
+  EXPECT_THROW(axes(nan, x), Error);
+  EXPECT_THROW(axes(z, nan), Error);
+  EXPECT_THROW(axes(z * HUGE_VAL, x), Error);
+  EXPECT_NO_THROW(axes(1e-200 * z, 1e200 * x));
 }
 
 TEST(EdgesOfContactsAndTasks, AreRefusedWhenAddedWithWhatMakesNoSense) {
@@ -275,12 +273,12 @@ TEST(EdgesOfContactsAndTasks, AreRefusedWhenAddedWithWhatMakesNoSense) {
   Eigen::Isometry3d unturned = Eigen::Isometry3d::Identity();
   unturned.linear().setConstant(nan);
   for (const Eigen::Isometry3d& pose : {bent, mirrored, nowhere, unturned}) {
-    EXPECT_THROW(EdgeContact(kFrame, ContactKind::kSurface, pose, 1.0), Error);
     EXPECT_THROW(EdgeFramePose(kFrame, pose, Eigen::Matrix<double, 6, 1>::Ones()), Error);
     EXPECT_THROW(FrameParameter(model, kRobot, "pelvis", pose), Error);
   }
   EXPECT_THROW(FrameParameter(model, kRobot, "left_foot"), Error);
-  EdgeContact wrong(kFrame, ContactKind::kPoint, Eigen::Isometry3d::Identity(), 1.0);
+  EdgeContact wrong =
+      contact_edge(graph, robot, kFrame, kHeldKinds[2], Eigen::Isometry3d::Identity());
   wrong.weights.setOnes(6);
   EXPECT_THROW(graph.add_edge(wrong, a), Error);
   EXPECT_THROW(graph.add_edge(EdgeCom(Eigen::Vector3d(0.0, nan, 0.0), Eigen::Vector3d::Ones()), a),

@@ -19,32 +19,31 @@ double some_angle(Random& random, int i) {
 }
 
 TEST_P(ContactsAndTasks, ContactHasTheJacobianOfNumericDifferences) {
-  for (const ContactKind kind : kContactKinds) {
-    Random random(61 + static_cast<unsigned>(kind));
+  for (const HeldKind& held : kHeldKinds) {
+    Random random(61 + static_cast<unsigned>(held.rows));
     Graph graph = graph_of(robot);
     add_frames(graph, robot, random);
     for (int i = 0; i < kStates; ++i) {
       const Eigen::VectorXd q = random.configuration(robot.model(), 2.0, 0.0);
       // About an axis in the surface or, a surface with a yaw of its own, about any.
-      const Eigen::Vector3d free = kind == ContactKind::kSurfaceFreeYaw ? Eigen::Vector3d::UnitZ()
-                                                                        : Eigen::Vector3d::UnitY();
-      const Eigen::Vector3d about = kind == ContactKind::kSurface
-                                        ? random.direction()
-                                        : free.cross(random.direction()).normalized();
+      const bool all_held = held.rows == 6;
+      const Eigen::Vector3d free =
+          held.free_yaw ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitY();
+      const Eigen::Vector3d about =
+          all_held ? random.direction() : free.cross(random.direction()).normalized();
       const Eigen::Isometry3d open =
           Eigen::Translation3d(random.vector(3, 0.5)) * turn(some_angle(random, i), about) *
-          (kind == ContactKind::kSurface ? Eigen::Isometry3d::Identity()
-                                         : turn(random.uniform(-3.0, 3.0), free));
+          (all_held ? Eigen::Isometry3d::Identity() : turn(random.uniform(-3.0, 3.0), free));
       const Eigen::Isometry3d contact =
           frame_pose(graph, kFrame + i % 2, robot, q) * open.inverse();
-      graph.add_edge(EdgeContact(kFrame + i % 2, kind, contact, 1.0),
+      graph.add_edge(contact_edge(graph, robot, kFrame + i % 2, held, contact),
                      add_configuration(graph, robot, i, 0.0, q));
     }
     Evaluated evaluated(graph);
     Compared compared;
     for (int k = 0; k < kStates; ++k) compare(evaluated, k, 0, kEverywhere, compared);
-    EXPECT_EQ(compared.rows, kStates * static_cast<int>(held_coordinates(kind).size()));
-    EXPECT_EQ(compared.zero, 0) << contact_name(kind);
+    EXPECT_EQ(compared.rows, kStates * held.rows);
+    EXPECT_EQ(compared.zero, 0) << held.name;
   }
 }
 
@@ -101,14 +100,15 @@ TEST_P(ContactsAndTasks, ComIsTheMeanOfTheLinksByMass) {
 }
 
 /// Error of a contact of this kind when its frame is at `open` in the contact.
-Eigen::VectorXd opened(const RobotCase& robot, ContactKind kind, const Eigen::Isometry3d& open) {
+Eigen::VectorXd opened(const RobotCase& robot, const HeldKind& held,
+                       const Eigen::Isometry3d& open) {
   Random random(74);
   Graph graph = graph_of(robot);
   add_frames(graph, robot, random);
   const Eigen::VectorXd q = random.configuration(robot.model(), 2.0, 0.0);
-  graph.add_edge(
-      EdgeContact(kFrame, kind, frame_pose(graph, kFrame, robot, q) * open.inverse(), 1.0),
-      add_configuration(graph, robot, 0, 0.0, q));
+  graph.add_edge(contact_edge(graph, robot, kFrame, held,
+                              frame_pose(graph, kFrame, robot, q) * open.inverse()),
+                 add_configuration(graph, robot, 0, 0.0, q));
   Evaluated evaluated(graph);
   EXPECT_TRUE(evaluated.jacobian(0, 0, false).allFinite());
   return evaluated.error(0);
@@ -124,47 +124,46 @@ TEST_P(ContactsAndTasks, ContactHoldsTheCoordinatesOfItsKind) {
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(),
                         z = Eigen::Vector3d::UnitZ();
   const Eigen::Translation3d off(0.1, -0.2, 0.3);
-  expect_rows(opened(robot, ContactKind::kSurface, off * turn(-0.4, z)),
-              {0.1, -0.2, 0.3, 0.0, 0.0, -0.4});
-  expect_rows(opened(robot, ContactKind::kSurface, off * turn(0.5, Eigen::Vector3d(0.6, 0.0, 0.8))),
+  const auto& [surface, free_yaw, point, rung] = kHeldKinds;
+  expect_rows(opened(robot, surface, off * turn(-0.4, z)), {0.1, -0.2, 0.3, 0.0, 0.0, -0.4});
+  expect_rows(opened(robot, surface, off * turn(0.5, Eigen::Vector3d(0.6, 0.0, 0.8))),
               {0.1, -0.2, 0.3, 0.3, 0.0, 0.4});
-  expect_rows(opened(robot, ContactKind::kSurfaceFreeYaw, off * turn(0.3, x) * turn(2.9, z)),
-              {0.1, -0.2, 0.3, 0.3, 0.0});
-  expect_rows(opened(robot, ContactKind::kSurfaceFreeYaw, off * turn(-2.5, y) * turn(-1.9, z)),
-              {0.1, -0.2, 0.3, 0.0, -2.5});
-  expect_rows(opened(robot, ContactKind::kPoint, off * turn(3.1, x) * turn(-1.9, z)),
-              {0.1, -0.2, 0.3});
-  expect_rows(opened(robot, ContactKind::kRung, off * turn(0.3, x) * turn(3.0, y)),
-              {0.1, -0.2, 0.3, 0.3, 0.0});
-  expect_rows(opened(robot, ContactKind::kSlidingRung, off * turn(0.6, z) * turn(-3.1, y)),
-              {0.1, 0.3, 0.0, 0.6});
+  // Its axes x and y are any in the surface.
+  for (const auto& [tilt, about] : {std::pair(0.3, x), std::pair(-2.5, y)}) {
+    const Eigen::VectorXd e = opened(robot, free_yaw, off * turn(tilt, about) * turn(2.9, z));
+    ASSERT_EQ(e.size(), 5);
+    EXPECT_NEAR(e.head<2>().norm(), std::hypot(0.1, 0.2), 1e-12);
+    EXPECT_NEAR(e[2], 0.3, 1e-12);
+    EXPECT_NEAR(e.tail<2>().norm(), std::abs(tilt), 1e-12);
+    const double across = e.head<2>().dot(e.tail<2>()) / std::abs(tilt);
+    EXPECT_NEAR(across, (about == x ? 0.1 : 0.2), 1e-12);
+  }
+  expect_rows(opened(robot, point, off * turn(3.1, x) * turn(-1.9, z)), {0.1, -0.2, 0.3});
+  expect_rows(opened(robot, rung, off * turn(0.3, x) * turn(3.0, y)), {0.1, -0.2, 0.3, 0.3, 0.0});
+  expect_rows(opened(robot, rung, off * turn(0.6, z) * turn(-3.1, y)), {0.1, -0.2, 0.3, 0.0, 0.6});
 }
 
 TEST_P(ContactsAndTasks, ContactIsClosedWhereItsFreeCoordinatesAreAnything) {
   Random random(75);
-  for (const ContactKind kind : kContactKinds) {
+  for (const HeldKind& held : kHeldKinds) {
     for (int i = 0; i < 20; ++i) {
       const double angle = random.uniform(-3.1, 3.1);
       Eigen::Isometry3d open = Eigen::Isometry3d::Identity();
-      if (kind == ContactKind::kSurfaceFreeYaw) open = turn(angle, Eigen::Vector3d::UnitZ());
-      if (kind == ContactKind::kPoint) open = turn(angle, random.direction());
-      if (kind == ContactKind::kRung) open = turn(angle, Eigen::Vector3d::UnitY());
-      if (kind == ContactKind::kSlidingRung) {
-        open = Eigen::Translation3d(0.0, random.uniform(-1.0, 1.0), 0.0) *
-               turn(angle, Eigen::Vector3d::UnitY());
-      }
-      EXPECT_LT(opened(robot, kind, open).norm(), 1e-12) << contact_name(kind);
+      if (held.free_yaw) open = turn(angle, Eigen::Vector3d::UnitZ());
+      if (held.kind == ContactKind::kPoint) open = turn(angle, random.direction());
+      if (held.kind == ContactKind::kRung) open = turn(angle, Eigen::Vector3d::UnitY());
+      EXPECT_LT(opened(robot, held, open).norm(), 1e-12) << held.name;
     }
   }
 }
 
 TEST_P(ContactsAndTasks, ContactUpsideDownIsHalfATurnOpen) {
-  for (const ContactKind kind :
-       {ContactKind::kSurface, ContactKind::kSurfaceFreeYaw, ContactKind::kRung}) {
+  for (const HeldKind& held : kHeldKinds) {
+    if (held.kind == ContactKind::kPoint) continue;
     for (const double nearly : {0.0, 1e-12, 1e-8}) {
       const Eigen::VectorXd e =
-          opened(robot, kind, turn(EIGEN_PI - nearly, Eigen::Vector3d::UnitX()));
-      EXPECT_NEAR(e.norm(), EIGEN_PI, 1e-7) << contact_name(kind);
+          opened(robot, held, turn(EIGEN_PI - nearly, Eigen::Vector3d::UnitX()));
+      EXPECT_NEAR(e.norm(), EIGEN_PI, 1e-7) << held.name;
     }
   }
 }
@@ -189,11 +188,12 @@ TEST_P(ContactsAndTasksTogether, AreMetByAFewGaussNewtonSteps) {
   ConfigurationState state(robot.robot);
   state.update(q.data());
   const auto id = add_configuration(graph, robot, 0, 0.0, q);
-  graph.add_edge(EdgeContact(kFrame, ContactKind::kPoint, frame_pose(graph, kFrame, robot, q), 1e4),
-                 id);
-  graph.add_edge(EdgeContact(kFrame + 1, ContactKind::kSlidingRung,
-                             frame_pose(graph, kFrame + 1, robot, q), 1e4),
-                 id);
+  for (const int i : {0, 1}) {
+    EdgeContact closed = contact_edge(graph, robot, kFrame + i, kHeldKinds[2 + i],
+                                      frame_pose(graph, kFrame + i, robot, q));
+    closed.weights.setConstant(1e4);
+    graph.add_edge(closed, id);
+  }
   graph.add_edge(EdgeCom(state.kinematics.center_of_mass() + Eigen::Vector3d(0.01, -0.01, 0.0),
                          Eigen::Vector3d(1e3, 1e3, 0.0)),
                  id);
@@ -246,9 +246,9 @@ Graph contacts_and_tasks(const RobotCase& robot, bool kernels) {
     return edge;
   };
   for (std::size_t i = 0; i < ids.size(); ++i) {
-    graph.add_edge(
-        dress(EdgeContact(kFrame + i % 2, kContactKinds[i % 5], random_pose(random, 1.0), 1.0)),
-        ids[i]);
+    graph.add_edge(dress(contact_edge(graph, robot, kFrame + static_cast<int>(i % 2),
+                                      kHeldKinds[i % 4], random_pose(random, 1.0))),
+                   ids[i]);
     graph.add_edge(dress(EdgeFramePose(kFrame + i % 2, random_pose(random, 1.0),
                                        Eigen::Matrix<double, 6, 1>::Ones())),
                    ids[i]);

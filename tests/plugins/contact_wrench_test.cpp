@@ -10,11 +10,12 @@ namespace locograph::test::balance {
 namespace {
 
 /// Error of the limits on one contact's wrench.
-Eigen::VectorXd limits_of(const ContactDescription& contact, const Eigen::VectorXd& components) {
+Eigen::VectorXd limits_of(const Contact& contact, const Eigen::VectorXd& components,
+                          const FrictionModel& cone = {}) {
   const RobotCase robot = robot_case("ComanPlus");
   Graph graph = graph_of(robot);
-  const auto w =
-      graph.add_vertex(0, wrenches_at(graph, add_contacts(graph, robot, {contact}), components));
+  const auto w = graph.add_vertex(
+      0, wrenches_at(graph, add_contacts(graph, robot, {contact}, {cone}), components));
   graph.add_edge(EdgeContactWrench(*graph.vertex(w).contacts, 1.0), w);
   return Evaluated(graph).error(0);
 }
@@ -23,9 +24,8 @@ TEST(ContactWrenchCone, IsThatOfForcesAtTheCornersFacetByFacet) {
   // Caron's cone: with four sides its sixteen rows are the facets of the cone that the sixteen
   // extreme corner forces span. Each must satisfy all rows, and each row must be tight for forces
   // that span a plane of five dimensions.
-  ContactDescription contact = sole();
-  contact.cone = FrictionCone::kOuter;
-  contact.facets = 4;
+  const Contact contact = sole();
+  const FrictionModel cone = {FrictionCone::kOuter, 4};
   std::vector<Eigen::VectorXd> rays;
   for (const double x : {-0.08, 0.08}) {
     for (const double y : {-0.035, 0.035}) {
@@ -42,10 +42,10 @@ TEST(ContactWrenchCone, IsThatOfForcesAtTheCornersFacetByFacet) {
   const Eigen::VectorXd down = -Eigen::VectorXd::Unit(6, 2);
   Eigen::MatrixXd values(18, 16);
   for (int r = 0; r < 16; ++r) {
-    EXPECT_LT(limits_of(contact, rays[std::size_t(r)]).maxCoeff(), 1e-14);
+    EXPECT_LT(limits_of(contact, rays[std::size_t(r)], cone).maxCoeff(), 1e-14);
     // All rows are linear here, so that the hinge can be undone.
-    values.col(r) =
-        limits_of(contact, rays[std::size_t(r)] + 1e3 * down) - limits_of(contact, 1e3 * down);
+    values.col(r) = limits_of(contact, rays[std::size_t(r)] + 1e3 * down, cone) -
+                    limits_of(contact, 1e3 * down, cone);
   }
   int facets = 0;
   for (int row = 0; row < 18; ++row) {
@@ -67,7 +67,7 @@ TEST(ContactWrenchCone, IsThatOfForcesAtTheCornersFacetByFacet) {
 }
 
 TEST(ContactWrenchCone, OfTheCircleBearsTheYawOfAnInnerPyramidOnly) {
-  const ContactDescription contact = sole();
+  const Contact contact = sole();
   Eigen::VectorXd wrench(6);
   const double most = 0.6 / std::sqrt(2.0) * (0.08 + 0.035) * 100.0;
   wrench << 0, 0, 100, 0, 0, most - 1e-9;
@@ -77,26 +77,26 @@ TEST(ContactWrenchCone, OfTheCircleBearsTheYawOfAnInnerPyramidOnly) {
 }
 
 TEST(ContactWrenchCone, HasACircleOrAPyramidInsideOrAroundIt) {
-  ContactDescription contact = sole();
-  contact.kind = WrenchKind::kPoint;
+  Contact contact = sole();
+  contact.effector.kind = ContactKind::kPoint;
+  FrictionModel cone;
   const auto violation = [&](double angle, double ratio) {
     return limits_of(contact,
-                     100.0 * Eigen::Vector3d(ratio * std::cos(angle), ratio * std::sin(angle), 1.0))
+                     100.0 * Eigen::Vector3d(ratio * std::cos(angle), ratio * std::sin(angle), 1.0),
+                     cone)
         .maxCoeff();
   };
   for (const double angle : {0.0, 0.3, 0.25 * double(EIGEN_PI), 2.0}) {
     EXPECT_EQ(violation(angle, 0.6 - 1e-9), 0.0);
     EXPECT_NEAR(violation(angle, 0.7), 10.0, 1e-12);
   }
-  contact.cone = FrictionCone::kInner;
-  contact.facets = 16;
+  cone = {FrictionCone::kInner, 16};
   for (int i = 0; i < 64; ++i) {
     const double angle = 2.0 * EIGEN_PI * i / 64.0;
     EXPECT_EQ(violation(angle, 0.98 * 0.6), 0.0) << "at least 0.98 mu in every direction";
     EXPECT_GT(violation(angle, 0.6 + 1e-9), 0.0) << "never more than mu";
   }
-  contact.cone = FrictionCone::kOuter;
-  contact.facets = 4;
+  cone = {FrictionCone::kOuter, 4};
   EXPECT_EQ(violation(EIGEN_PI / 4.0, 0.6 * std::sqrt(2.0) - 1e-9), 0.0);
   EXPECT_NEAR(violation(0.0, 0.7), 10.0, 1e-12);
 }
@@ -105,9 +105,10 @@ TEST(ContactLimits, HaveAGradientJustBeyondThem) {
   constexpr double kBeyond = 1e-9;
   const RobotCase robot = robot_case("ComanPlus");
   Graph graph = graph_of(robot);
-  ContactDescription rung = sole();
-  rung.kind = WrenchKind::kRung;
-  rung.max_moment_Nm = 5.0;
+  Contact rung = sole();
+  rung.effector.link = "TCP_R";
+  rung.effector.kind = ContactKind::kRung;
+  rung.effector.max_moment_Nm = 5.0;
   const std::vector<int> numbers = add_contacts(graph, robot, {sole(), rung});
   std::vector<Eigen::VectorXd> states(4, Eigen::VectorXd::Zero(11));
   states[0].head<6>() << 0, 0, -kBeyond, 0, 0, 0;                // pulls
@@ -133,49 +134,83 @@ TEST(ContactLimits, HaveAGradientJustBeyondThem) {
 
 constexpr const char* kGood =
     "PARAMS_ROBOT 0 cart.urdf cart.srdf floating 0\n"
-    "PARAMS_CONTACT 1 0 arm 0 0 0 link 0 0 1 1 0 0 surface .1 .1 .5 100\n"
-    "PARAMS_CONTACT 2 0 lift 0 0 0 world 0 0 1 1 0 0 point .5 100 inner 8\n"
-    "PARAMS_CONTACT 3 0 wheel 0 0 0 link 0 0 1 1 0 0 rung 100 0\n"
-    "VERTEX_CONFIGURATION 0 0 0 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
+    "PARAMS_PLAN 5 2\n"
+    "PARAMS_CONTACT 1 0 \"\" arm surface .1 .1 .5 100 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0\n"
+    "PARAMS_CONTACT 2 0 \"\" lift point 0 .5 100 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0 inner 8\n"
+    "PARAMS_CONTACT 3 0 \"\" wheel rung 100 0 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0\n"
+    "PARAMS_CONTACT 4 0 \"\" arm point 0 .5 1 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free unloaded\n"
+    "VERTEX_CONFIGURATION 0 0 0 - 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
     "VERTEX_WRENCHES 1 2 1 2 1 2 3 4 5 6 7 8 9\n";
 
 const BadLine kBadLines[] = {
-    {"ContactOfAnUnknownRobot", "PARAMS_CONTACT 9 7 arm 0 0 0 link 0 0 1 1 0 0 point .5 1",
+    {"ContactOfAnUnknownRobot",
+     "PARAMS_CONTACT 9 7 \"\" arm point 0 .5 1 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0",
      "unknown parameter 7"},
-    {"ContactOnAnUnknownLink", "PARAMS_CONTACT 9 0 leg 0 0 0 link 0 0 1 1 0 0 point .5 1", "leg"},
-    {"ContactWithAZeroNormal", "PARAMS_CONTACT 9 0 arm 0 0 0 link 0 0 0 1 0 0 point .5 1",
+    {"ContactOnAnUnknownLink",
+     "PARAMS_CONTACT 9 0 \"\" leg point 0 .5 1 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0", "leg"},
+    {"ContactWithAZeroNormal",
+     "PARAMS_CONTACT 9 0 \"\" arm surface 1 1 .5 1 0 0 0 0 0 0 1 0 0 at 0 0 0 0 0 1 1 0 0",
      "normal of length zero"},
-    {"ContactWithAZeroForward", "PARAMS_CONTACT 9 0 arm 0 0 0 link 0 0 1 0 0 0 point .5 1",
+    {"ContactWithAZeroForward",
+     "PARAMS_CONTACT 9 0 \"\" arm surface 1 1 .5 1 0 0 0 0 0 1 0 0 0 at 0 0 0 0 0 1 1 0 0",
      "forward direction"},
     {"ContactWithAForwardAlongItsNormal",
-     "PARAMS_CONTACT 9 0 arm 0 0 0 link 0 0 1 0 0 -2 point .5 1", "forward direction"},
-    {"ContactWithAxesNowhere", "PARAMS_CONTACT 9 0 arm 0 0 0 moon 0 0 1 1 0 0 point .5 1",
-     "'link' or 'world'"},
-    {"ContactOfAnUnknownKind", "PARAMS_CONTACT 9 0 arm 0 0 0 link 0 0 1 1 0 0 line .5 1",
+     "PARAMS_CONTACT 9 0 \"\" arm surface 1 1 .5 1 0 0 0 0 0 1 0 0 -2 at 0 0 0 0 0 1 1 0 0",
+     "forward direction"},
+    {"ContactWithoutAPlace",
+     "PARAMS_CONTACT 9 0 \"\" arm point 0 .5 1 0 0 0 0 0 1 1 0 0 on 0 0 0 0 0 1 1 0 0",
+     "'on', expected 'at'"},
+    {"ContactWithAZeroNormalInTheWorld",
+     "PARAMS_CONTACT 9 0 \"\" arm point 0 .5 1 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 0 1 0 0",
+     "normal of length zero"},
+    {"ContactLockedThatIsNoWheel",
+     "PARAMS_CONTACT 9 0 \"\" arm point 0 .5 1 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free locked",
+     "is locked, expected wheels only"},
+    {"ContactUnloadedTwice",
+     "PARAMS_CONTACT 9 0 \"\" arm point 0 .5 1 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free "
+     "unloaded unloaded",
+     "'unloaded', expected"},
+    {"RungWithoutForward",
+     "PARAMS_CONTACT 9 0 \"\" arm rung 1 1 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free",
+     "rung without forward"},
+    {"BallOfNegativeRadius",
+     "PARAMS_CONTACT 9 0 \"\" arm point -.1 .5 1 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free",
+     "radius of -0.1"},
+    {"ContactOfAnUnknownKind",
+     "PARAMS_CONTACT 9 0 \"\" arm line .5 1 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0",
      "contact kind 'line'"},
-    {"ContactWithoutFriction", "PARAMS_CONTACT 9 0 arm 0 0 0 link 0 0 1 1 0 0 point 0 1",
+    {"ContactWithoutFriction",
+     "PARAMS_CONTACT 9 0 \"\" arm point 0 0 1 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0",
      "friction coefficient"},
     {"ContactWithNegativeFriction",
-     "PARAMS_CONTACT 9 0 arm 0 0 0 link 0 0 1 1 0 0 surface 1 1 -.5 1", "friction coefficient"},
-    {"ContactWithoutForce", "PARAMS_CONTACT 9 0 arm 0 0 0 link 0 0 1 1 0 0 point .5 0",
+     "PARAMS_CONTACT 9 0 \"\" arm surface 1 1 -.5 1 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0",
+     "friction coefficient"},
+    {"ContactWithoutForce",
+     "PARAMS_CONTACT 9 0 \"\" arm point 0 .5 0 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0",
      "force limit"},
-    {"ContactWithoutLength", "PARAMS_CONTACT 9 0 arm 0 0 0 link 0 0 1 1 0 0 surface 0 1 .5 1",
+    {"ContactWithoutLength",
+     "PARAMS_CONTACT 9 0 \"\" arm surface 0 1 .5 1 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0",
      "half size x"},
-    {"ContactWithNegativeWidth", "PARAMS_CONTACT 9 0 arm 0 0 0 link 0 0 1 1 0 0 surface 1 -1 .5 1",
+    {"ContactWithNegativeWidth",
+     "PARAMS_CONTACT 9 0 \"\" arm surface 1 -1 .5 1 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0",
      "half size y"},
-    {"RungWithANegativeMoment", "PARAMS_CONTACT 9 0 arm 0 0 0 link 0 0 1 1 0 0 rung 1 -1",
+    {"RungWithANegativeMoment",
+     "PARAMS_CONTACT 9 0 \"\" arm rung 1 -1 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0",
      "moment limit"},
-    {"RungWithACone", "PARAMS_CONTACT 9 0 arm 0 0 0 link 0 0 1 1 0 0 rung 1 1 inner 8",
+    {"RungWithACone",
+     "PARAMS_CONTACT 9 0 \"\" arm rung 1 1 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0 inner 8",
      "rung with a friction cone"},
-    {"PyramidOfTwoSides", "PARAMS_CONTACT 9 0 arm 0 0 0 link 0 0 1 1 0 0 point .5 1 inner 2",
+    {"PyramidOfTwoSides",
+     "PARAMS_CONTACT 9 0 \"\" arm point 0 .5 1 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0 inner 2",
      "2 sides"},
-    {"PyramidOfUnknownKind", "PARAMS_CONTACT 9 0 arm 0 0 0 link 0 0 1 1 0 0 point .5 1 upper 4",
+    {"PyramidOfUnknownKind",
+     "PARAMS_CONTACT 9 0 \"\" arm point 0 .5 1 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0 upper 4",
      "'inner', 'outer' or the end"},
-    {"ContactWithTooFewFields", "PARAMS_CONTACT 9 0 arm 0 0 0 link 0 0 1 1 0 0 point .5",
-     "too few fields"},
+    {"ContactWithTooFewFields", "PARAMS_CONTACT 9 0 \"\" arm point 0 .5", "too few fields"},
     {"WrenchesAtNoContact", "VERTEX_WRENCHES 9 0", "number of contacts 0"},
     {"WrenchesAtAnUnknownContact", "VERTEX_WRENCHES 9 1 8 0 0 0", "unknown parameter 8"},
     {"WrenchesAtARobot", "VERTEX_WRENCHES 9 1 0 0 0 0", "parameter 0 is a PARAMS_ROBOT"},
+    {"WrenchesAtAnUnloadedContact", "VERTEX_WRENCHES 9 1 4 0 0 0", "contact 4, which is unloaded"},
     {"WrenchesTwiceAtAContact", "VERTEX_WRENCHES 9 2 2 2 0 0 0 0 0 0", "contact 2 twice"},
     {"WrenchesWithTooFewComponents", "VERTEX_WRENCHES 9 2 1 2 0 0 0", "too few fields"},
     {"WrenchesWithTooManyComponents", "VERTEX_WRENCHES 9 1 3 1 2 3 4 5 6", "too many fields"},
@@ -227,7 +262,7 @@ TEST(BadBalance, IsAnErrorWhereTheVerticesShowIt) {
   EXPECT_NE(evaluation_error("EDGE_WRENCH_NORM 1 8 scalar 1\n").find("n = 8"), std::string::npos);
   EXPECT_NE(evaluation_error("EDGE_BALANCE 0 1 scalar 1\n").find("mass"), std::string::npos);
   EXPECT_NE(evaluation_error("PARAMS_ROBOT 8 cart.urdf - floating 0\n"
-                             "VERTEX_CONFIGURATION 9 8 0 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
+                             "VERTEX_CONFIGURATION 9 8 0 - 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
                              "EDGE_BALANCE 9 1 scalar 1\n")
                 .find("different robots"),
             std::string::npos);
@@ -243,7 +278,7 @@ TEST(BadBalance, IsAnErrorOnAJointWithoutEffort) {
       replaced(kCartUrdf, "velocity=\"8\" effort=\"1\"", "velocity=\"8\" effort=\"0\"");
   ASSERT_NE(weak, kCartUrdf);
   const std::string message = evaluation_error("EDGE_TORQUE_LIMITS 0 1 3 1 scalar 1\n", weak);
-  EXPECT_NE(message.find("plan.g2o:7:"), std::string::npos) << message;
+  EXPECT_NE(message.find("plan.g2o:9:"), std::string::npos) << message;
   EXPECT_NE(message.find("wheel_joint has an effort limit of 0"), std::string::npos) << message;
 }
 

@@ -17,9 +17,17 @@ namespace locograph::test {
 
 inline constexpr int kFrame = 10;
 
-inline constexpr ContactKind kContactKinds[] = {ContactKind::kSurface, ContactKind::kSurfaceFreeYaw,
-                                                ContactKind::kPoint, ContactKind::kRung,
-                                                ContactKind::kSlidingRung};
+/// A kind of contact that holds a frame.
+struct HeldKind {
+  const char* name;
+  ContactKind kind;
+  bool free_yaw;
+  int rows;
+};
+inline constexpr HeldKind kHeldKinds[] = {{"surface", ContactKind::kSurface, false, 6},
+                                          {"surface with free yaw", ContactKind::kSurface, true, 5},
+                                          {"point", ContactKind::kPoint, false, 3},
+                                          {"rung", ContactKind::kRung, false, 5}};
 
 inline Eigen::Isometry3d random_pose(Random& random, double reach) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -49,6 +57,29 @@ inline Eigen::Isometry3d frame_pose(const Graph& graph, int number, const RobotC
   ConfigurationState state(robot.robot);
   state.update(q.data());
   return graph.parameters().get<FrameParameter>(number)->world_from_frame(state.kinematics);
+}
+
+/// The contact that holds a frame there, as a new parameter of the graph.
+inline EdgeContact contact_edge(Graph& graph, const RobotCase& robot, int frame,
+                                const HeldKind& held, const Eigen::Isometry3d& world_from_contact) {
+  const auto on_link = graph.parameters().get<FrameParameter>(frame);
+  const Eigen::Isometry3d pose = on_link->link_from_frame.isometry();
+  Contact contact;
+  contact.effector.link = on_link->link_name;
+  contact.effector.kind = held.kind;
+  contact.effector.point = pose.translation();
+  contact.effector.normal = pose.linear().col(2);
+  contact.effector.forward = pose.linear().col(0);
+  contact.effector.half_x_m = contact.effector.half_y_m = 0.05;
+  contact.effector.friction = 0.5;
+  contact.effector.max_force_N = 100.0;
+  contact.position = world_from_contact.translation();
+  contact.normal = world_from_contact.linear().col(2);
+  if (!held.free_yaw) contact.forward = world_from_contact.linear().col(0);
+  const int number = 1000 + static_cast<int>(graph.parameters().all().size());
+  const auto parameter = std::make_shared<const ContactParameter>(robot.robot, kRobot, contact);
+  graph.parameters().set(number, parameter);
+  return EdgeContact(*parameter, number, 1.0);
 }
 
 }  // namespace locograph::test

@@ -125,16 +125,18 @@ TEST_F(ObstacleDistance, IsTheNearerOneOfMapAndObstacles) {
   EXPECT_GT(obstacle_error.maxCoeff(), 0.0);
 }
 
-TEST_F(ObstacleDistance, DoesNotTakeTheFloorOfAMapForAnObstacle) {
+TEST_F(ObstacleDistance, DoesNotTakeTheGroundThatTheWorldNamesForAnObstacle) {
   const TemporaryFolder folder;
   save_octree(*some_map(true), folder.file("floor.bt"));
   save_octree(*some_map(false), folder.file("no_floor.bt"));
-  world = std::make_shared<WorldParameter>(folder.file("floor.bt"), std::filesystem::path());
+  world = std::make_shared<WorldParameter>(folder.file("floor.bt"), std::filesystem::path(), 0.0);
   const Eigen::VectorXd with_floor = at(0.3, 0.1);
-  world = std::make_shared<WorldParameter>(folder.file("no_floor.bt"), std::filesystem::path());
+  world = std::make_shared<WorldParameter>(folder.file("no_floor.bt"), std::filesystem::path(), 0.0);
   const Eigen::VectorXd without_floor = at(0.3, 0.1);
   EXPECT_GT(without_floor.maxCoeff(), 0.0);
   EXPECT_TRUE(with_floor == without_floor);
+  world = std::make_shared<WorldParameter>(folder.file("floor.bt"), std::filesystem::path());
+  EXPECT_GT(at(0.3, 0.1).sum(), with_floor.sum()) << "a floor that is not named is in the way";
 }
 
 TEST_F(ObstacleDistance, FollowsAWorldThatIsReplacedWhileThePlanRuns) {

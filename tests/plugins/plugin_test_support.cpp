@@ -17,18 +17,23 @@ std::filesystem::path centauro_folder() {
   return std::filesystem::path(LOCOGRAPH_SOURCE_DIR) / "robots/models/centauro";
 }
 
+Contact wheel_on_ground(const std::string& link, double radius_m) {
+  Contact wheel;
+  wheel.effector.name = wheel.effector.link = link;
+  wheel.effector.kind = ContactKind::kWheel;
+  wheel.effector.radius_m = radius_m;
+  wheel.effector.friction = 0.8;
+  wheel.effector.max_force_N = 3000.0;
+  return wheel;
+}
+
 RobotCase centauro(const std::string& name, const RobotOptions& options) {
   RobotCase result{
-      name,
-      std::make_shared<const RobotParameter>(centauro_folder() / "centauro.urdf",
-                                             centauro_folder() / "centauro.srdf", options),
-      nullptr};
-  std::vector<Wheel> wheels(4);
+      name, std::make_shared<const RobotParameter>(centauro_folder() / "centauro.urdf",
+                                                   centauro_folder() / "centauro.srdf", options)};
   for (int i = 0; i < 4; ++i) {
-    wheels[i].link_name = "wheel_" + std::to_string(i + 1);
-    wheels[i].radius_m = 0.078;
+    result.wheels.push_back(wheel_on_ground("wheel_" + std::to_string(i + 1), 0.078));
   }
-  result.wheels = std::make_shared<const WheelsParameter>(result.model(), kRobot, wheels);
   return result;
 }
 
@@ -46,16 +51,14 @@ RobotCase go2(const std::string& name, bool floating_base) {
   std::filesystem::path srdf = go2_urdf();
   srdf.replace_extension(".srdf");
   const RobotOptions options{.floating_base = floating_base, .lenient_srdf = true};
-  return {name, std::make_shared<const RobotParameter>(go2_urdf(), srdf, options), nullptr};
+  return {name, std::make_shared<const RobotParameter>(go2_urdf(), srdf, options)};
 }
 
 RobotCase coman_plus(const std::string& name) {
   const std::filesystem::path folder =
       std::filesystem::path(LOCOGRAPH_SOURCE_DIR) / "robots/models/coman_plus";
-  return {name,
-          std::make_shared<const RobotParameter>(folder / "coman_plus.urdf",
-                                                 folder / "coman_plus.srdf", RobotOptions()),
-          nullptr};
+  return {name, std::make_shared<const RobotParameter>(folder / "coman_plus.urdf",
+                                                       folder / "coman_plus.srdf", RobotOptions())};
 }
 
 RobotCase load_robot_case(const std::string& name) {
@@ -118,9 +121,24 @@ Eigen::VectorXd home(const RobotCase& robot, double x, double y) {
 Graph graph_of(const RobotCase& robot) {
   Graph graph;
   graph.parameters().set(kRobot, robot.robot);
-  if (robot.wheels) graph.parameters().set(kWheels, robot.wheels);
+  if (robot.wheels.empty()) return graph;
+  std::vector<int> numbers;
+  for (const Contact& wheel : robot.wheels) {
+    numbers.push_back(kWheel + static_cast<int>(numbers.size()));
+    graph.parameters().set(numbers.back(),
+                           std::make_shared<const ContactParameter>(robot.robot, kRobot, wheel));
+  }
+  graph.parameters().set(kStance,
+                         std::make_shared<const StanceParameter>(graph.parameters(), numbers));
   return graph;
 }
+
+EdgeContact wheel_contact(const Graph& graph, int wheel) {
+  return EdgeContact(*stance_of(graph)->contacts[static_cast<std::size_t>(wheel)], kWheel + wheel,
+                     1.0);
+}
+
+EdgeRolling rolling_of(const Graph& graph) { return EdgeRolling(*stance_of(graph), kStance, 1.0); }
 
 VertexId<VertexConfiguration> add_configuration(Graph& graph, const RobotCase& robot, int id,
                                                 double time_s, const Eigen::VectorXd& q) {

@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/core/workspace.h>
+#include <locograph/plugins/configuration/plan_parameters.h>
+#include <locograph/plugins/contact/edge_contact.h>
 #include <locograph/plugins/joint_limits/edge_joint_limits.h>
 #include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
@@ -20,7 +22,6 @@
 #include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
-#include <locograph/plugins/wheel_contact/edge_wheel_contact.h>
 #include <locograph/world/octree.h>
 
 #include <random>
@@ -30,14 +31,15 @@
 
 namespace locograph::test {
 
-inline constexpr int kRobot = 0, kWheels = 1, kWorld = 2;
+/// Parameters; a stance comes after its contacts.
+inline constexpr int kRobot = 0, kPlan = 1, kWorld = 2, kWheel = 100, kStance = 120;
 
 TypeRegistry robot_types();
 
 struct RobotCase {
   std::string name;
   std::shared_ptr<const RobotParameter> robot;
-  std::shared_ptr<const WheelsParameter> wheels;  ///< null: it has none
+  std::vector<Contact> wheels = {};  ///< on the ground; empty: it has none
 
   const Robot& model() const { return *robot->robot; }
   int base() const { return model().base_configuration_size(); }
@@ -100,8 +102,19 @@ class Random {
   std::mt19937 engine_;
 };
 
-/// An empty graph that knows the robot and its wheels.
+/// An empty graph that knows the robot and the stance on its wheels: contacts kWheel and on, stance
+/// kStance.
 Graph graph_of(const RobotCase& robot);
+inline std::shared_ptr<const StanceParameter> stance_of(const Graph& graph) {
+  return graph.parameters().get<StanceParameter>(kStance);
+}
+/// Of one of the wheels.
+EdgeContact wheel_contact(const Graph& graph, int wheel);
+/// Rolling on all of them.
+EdgeRolling rolling_of(const Graph& graph);
+
+/// A wheel on the ground.
+Contact wheel_on_ground(const std::string& link, double radius_m);
 
 VertexId<VertexConfiguration> add_configuration(Graph& graph, const RobotCase& robot, int id,
                                                 double time_s, const Eigen::VectorXd& q);

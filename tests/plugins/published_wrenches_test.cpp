@@ -13,12 +13,19 @@ TEST(Wrenches, AreEliminatedWithoutChangingTheSolution) {
   const ComanPosture posture = coman_postures()[1];
   const auto solve = [&](const char* solver, bool eliminate, Eigen::MatrixXd& result) {
     Graph graph = graph_of(robot);
-    std::vector<ContactDescription> contacts;
+    RobotState state(robot.model());
+    state.update(posture.configuration().data());
+    std::vector<Contact> contacts;
     for (const ComanContact& at : posture.contacts) {
-      ContactDescription contact = sole();
-      contact.link = at.frame;
-      contact.axes_in_world = true;
-      contact.kind = at.frame.ends_with("sole") ? WrenchKind::kSurface : WrenchKind::kPoint;
+      // All of them level, whichever way the link lies there.
+      Contact contact = sole();
+      contact.effector.link = at.frame;
+      const Eigen::Matrix3d link_from_world =
+          state.world_from_link(robot.model().link_index(at.frame)).linear().transpose();
+      contact.effector.normal = link_from_world * contact.normal;
+      contact.effector.forward = link_from_world * *contact.forward;
+      contact.effector.kind =
+          at.frame.ends_with("sole") ? ContactKind::kSurface : ContactKind::kPoint;
       contacts.push_back(contact);
     }
     const std::vector<int> numbers = add_contacts(graph, robot, contacts);
@@ -70,21 +77,22 @@ TEST(Wrenches, AreEliminatedWithoutChangingTheSolution) {
 
 /// The friction of the publication: pyramids of four sides around the cone, centres of pressure in
 /// a square, no yaw row, and no moment of the feet about the world's z. Hands are points.
-ContactDescription published(const ComanContact& at, double hand_mu, const RobotState& state) {
-  ContactDescription contact;
-  contact.link = at.frame;
+Contact published(const ComanContact& at, double hand_mu, const RobotState& state) {
+  Contact contact;
+  EndEffector& end = contact.effector;
+  end.link = at.frame;
   const bool foot = at.frame.ends_with("sole");
   const Eigen::Matrix3d link_from_world =
       state.world_from_link(state.robot().link_index(at.frame)).linear().transpose();
   const bool floor = at.normal.z() > 0.5;
-  contact.normal = link_from_world * at.normal;
-  contact.forward = link_from_world * (floor ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitZ());
-  contact.kind = foot ? WrenchKind::kSurface : WrenchKind::kPoint;
-  contact.half_x_m = contact.half_y_m = 0.08;
-  contact.mu = foot ? 0.81 / std::sqrt(2.0) : hand_mu;
-  contact.max_force_N = 1000.0;
-  contact.cone = FrictionCone::kOuter;
-  contact.facets = 4;
+  contact.normal = at.normal;
+  contact.forward = floor ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitZ();
+  end.normal = link_from_world * contact.normal;
+  end.forward = link_from_world * *contact.forward;
+  end.kind = foot ? ContactKind::kSurface : ContactKind::kPoint;
+  end.half_x_m = end.half_y_m = 0.08;
+  end.friction = foot ? 0.81 / std::sqrt(2.0) : hand_mu;
+  end.max_force_N = 1000.0;
   return contact;
 }
 
@@ -99,11 +107,12 @@ TEST_P(PublishedPosture, HasThePublishedWrenchesOfLeastNorm) {
   state.update(posture.configuration().data());
 
   Graph graph = graph_of(robot);
-  std::vector<ContactDescription> contacts;
+  std::vector<Contact> contacts;
   for (const ComanContact& at : posture.contacts) {
     contacts.push_back(published(at, posture.name[0] == 'A' ? 0.5 : 0.8, state));
   }
-  const std::vector<int> numbers = add_contacts(graph, robot, contacts);
+  const std::vector<FrictionModel> cones(contacts.size(), {FrictionCone::kOuter, 4});
+  const std::vector<int> numbers = add_contacts(graph, robot, contacts, cones);
   const auto q = add_configuration(graph, robot, 0, 0.0, posture.configuration());
   graph.set_fixed(q, true);
   const auto w = graph.add_vertex(1, VertexWrenches(graph.parameters(), numbers));
@@ -111,7 +120,7 @@ TEST_P(PublishedPosture, HasThePublishedWrenchesOfLeastNorm) {
   EdgeWrenchNorm norm(graph.vertex(w), 1.0);
   for (int i = 0, row = 0, component = 0; i < 4; ++i) {
     const ContactParameter& contact = *(*graph.vertex(w).contacts)[std::size_t(i)];
-    if (contact.given.kind == WrenchKind::kSurface) {
+    if (contact.kind() == ContactKind::kSurface) {
       limits.weights.segment(row + contact.limit_rows() - 8, 8).setZero();
       const bool floor = posture.contacts[std::size_t(i)].normal.z() > 0.5;
       norm.weights[component + (floor ? 5 : 3)] = 1e10;
@@ -135,10 +144,11 @@ TEST_P(PublishedPosture, HasThePublishedWrenchesOfLeastNorm) {
   for (std::size_t i = 0; i < posture.contacts.size(); ++i) {
     const ComanContact& expected = posture.contacts[i];
     const ContactParameter& contact = *(*graph.vertex(w).contacts)[i];
-    const Eigen::Matrix3d axes = state.world_from_link(contact.link).linear() * contact.axes;
+    Eigen::Matrix3d axes = contact.axes;
+    if (!contact.axes_in_world) axes = state.world_from_link(contact.link).linear() * axes;
     const Eigen::Vector3d force = axes * Eigen::Map<const Eigen::Vector3d>(component);
     Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-    if (contact.given.kind == WrenchKind::kSurface) {
+    if (contact.kind() == ContactKind::kSurface) {
       moment = axes * Eigen::Map<const Eigen::Vector3d>(component + 3);
     }
     component += contact.components().size();

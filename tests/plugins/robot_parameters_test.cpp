@@ -45,8 +45,9 @@ TEST_F(RobotParameters, KeepHowTheSrdfWasReadAndWhereFrozenJointsStand) {
 TEST_F(RobotParameters, LeaveAFrozenWheelItsPlaceButNoJoint) {
   const Graph graph = read(
       "PARAMS_ROBOT 0 cart.urdf - floating 1 arm_joint\n"
-      "PARAMS_WHEELS 1 0 1 wheel 0.1\n");
-  EXPECT_EQ(graph.parameters().get<WheelsParameter>(1)->wheels[0].joint, -1);
+      "PARAMS_CONTACT 1 0 wheel wheel wheel 0.1 0.8 9 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free\n"
+      "PARAMS_STANCE 2 1 1\n");
+  EXPECT_EQ(graph.parameters().get<StanceParameter>(2)->wheels[0].wheel.joint, -1);
 }
 
 TEST_F(RobotParameters, KnowTheAxleAndTheCarrierOfEveryWheel) {
@@ -54,7 +55,8 @@ TEST_F(RobotParameters, KnowTheAxleAndTheCarrierOfEveryWheel) {
   const Robot& robot = centauro.model();
   RobotState state(robot);
   state.update(home(centauro).data());
-  for (const Wheel& wheel : centauro.wheels->wheels) {
+  for (const Contact& contact : centauro.wheels) {
+    const Wheel wheel = wheel_of(robot, contact.effector);
     const Eigen::Isometry3d& carrier = state.world_from_link(wheel.carrier);
     EXPECT_TRUE((carrier.linear() * wheel.axle_in_carrier).isApprox(state.joint_axis(wheel.joint)));
     EXPECT_TRUE((carrier * wheel.centre_in_carrier)
@@ -85,11 +87,16 @@ TEST_F(RobotParameters, GiveEveryConfigurationItsKinematicsSpheresAndTime) {
 TEST_F(RobotParameters, AreAllRegisteredUnderTheirTags) {
   const std::vector<std::string> tags = robot_types().tags();
   for (const char* tag :
-       {"PARAMS_ROBOT", "PARAMS_WHEELS", "PARAMS_WORLD", "PARAMS_SCENARIO", "VERTEX_CONFIGURATION",
-        "PARAMS_FRAME", "EDGE_ACCELERATION_LIMITS", "EDGE_COM", "EDGE_CONTACT", "EDGE_FRAME_POSE",
-        "EDGE_JOINT_LIMITS", "EDGE_VELOCITY_LIMITS", "EDGE_OBSTACLE_DISTANCE", "EDGE_WHEEL_CONTACT",
-        "EDGE_ROLLING", "EDGE_PLAN_TRACKING", "EDGE_VELOCITY_TRACKING"}) {
+       {"PARAMS_ROBOT", "PARAMS_WORLD", "PARAMS_PLAN", "PARAMS_SCENARIO", "PARAMS_CONTACTS",
+        "PARAMS_CONTACT", "PARAMS_STANCE", "VERTEX_CONFIGURATION", "PARAMS_FRAME",
+        "EDGE_ACCELERATION_LIMITS", "EDGE_COM", "EDGE_CONTACT", "EDGE_FRAME_POSE",
+        "EDGE_JOINT_LIMITS", "EDGE_VELOCITY_LIMITS", "EDGE_OBSTACLE_DISTANCE", "EDGE_ROLLING",
+        "EDGE_PLAN_TRACKING", "EDGE_VELOCITY_TRACKING"}) {
     EXPECT_NE(std::find(tags.begin(), tags.end(), tag), tags.end()) << tag;
+  }
+  for (const char* tag : {"PARAMS_WHEELS", "EDGE_WHEEL_CONTACT"}) {
+    EXPECT_EQ(std::find(tags.begin(), tags.end(), tag), tags.end()) << tag;
+    EXPECT_NE(robot_types().retired(tag), nullptr) << tag;
   }
 }
 

@@ -18,7 +18,7 @@ class RoundTrip : public testing::TestWithParam<std::string> {
     const RobotCase original = robot_case(GetParam());
     robot.name = original.name;
     fs::path urdf, srdf;
-    if (original.wheels) {
+    if (!original.wheels.empty()) {
       urdf = root / "robots/robot.urdf";
       srdf = root / "robots/robot one.srdf";  // a blank, which must be quoted
       fs::copy(original.robot->urdf, urdf);
@@ -28,13 +28,15 @@ class RoundTrip : public testing::TestWithParam<std::string> {
       srdf = original.robot->srdf;
     }
     robot.robot = std::make_shared<const RobotParameter>(urdf, srdf, original.robot->options);
-    if (original.wheels) {
-      std::vector<Wheel> wheels(4);
-      for (int i = 0; i < 4; ++i) {
-        wheels[i].link_name = "wheel_" + std::to_string(i + 1);
-        wheels[i].radius_m = 0.078 + 1e-17 * i + 0.001 * i;
-      }
-      robot.wheels = std::make_shared<const WheelsParameter>(robot.model(), kRobot, wheels);
+    robot.wheels = original.wheels;
+    for (std::size_t i = 0; i < robot.wheels.size(); ++i) {
+      Contact& wheel = robot.wheels[i];
+      wheel.effector.radius_m += 1e-17 * double(i) + 0.001 / 3.0 * double(i);
+      wheel.position = {1.0 / 3.0, 0.1 * double(i), 1e-17};
+      wheel.normal = {0.1, 1.0 / 7.0, 3.0};
+      wheel.locked = i == 1;
+      wheel.bears_load = i != 2;
+      if (i == 3) wheel.forward = Eigen::Vector3d(1.0 / 9.0, 0.0, 0.0);
     }
     save_octree(*some_map(true), root / "maps/map.bt");
     save_obstacles(some_obstacles(), root / "maps/obstacles.xml");
@@ -45,16 +47,24 @@ class RoundTrip : public testing::TestWithParam<std::string> {
     Random random(41);
     const Robot& model = robot.model();
     Graph graph = graph_of(robot);
-    graph.parameters().set(kWorld, std::make_shared<const WorldParameter>(
-                                       root / "maps/map.bt", root / "maps/obstacles.xml"));
+    graph.parameters().set(
+        kWorld, std::make_shared<const WorldParameter>(root / "maps/map.bt",
+                                                       root / "maps/obstacles.xml", 0.1 / 3.0));
     auto scenario = std::make_shared<ScenarioParameter>();
     scenario->scenario = "a drive, \"quoted\"";
     graph.parameters().set(3, scenario);
+    const auto plan = std::make_shared<PlanParameter>();
+    plan->stances_only = true;
+    graph.parameters().set(kPlan, plan);
+    const auto contacts = std::make_shared<ContactsParameter>();
+    contacts->file = root / "maps/obstacles.xml";
+    graph.parameters().set(8, contacts);
     graph.parameters().set(7, std::make_shared<const WorldParameter>(fs::path(), fs::path()));
     std::vector<VertexId<VertexConfiguration>> ids;
     for (int i = 0; i < 5; ++i) {
       ids.push_back(add_configuration(graph, robot, 10 * i, 0.1 * i + 1.0 / 3.0,
                                       random.configuration(model, 100.0, 0.0)));
+      if (!robot.wheels.empty() && i != 2) graph.vertex(ids.back()).stance_number = kStance;
     }
     graph.set_fixed(ids[1], true);
     for (int i = 0; i < 5; ++i) {
@@ -65,8 +75,8 @@ class RoundTrip : public testing::TestWithParam<std::string> {
           EdgePlanTracking(random.configuration(model, 3.0, 0.0),
                            random.weights(model.tangent_size())),
           ids[i]);
-      if (robot.wheels) {
-        add(graph, random, i, EdgeWheelContact(*robot.wheels, kWheels, 1.0), ids[i]);
+      if (!robot.wheels.empty()) {
+        add(graph, random, i, wheel_contact(graph, i % 4), ids[i]);
       }
       if (i == 0) continue;
       add(graph, random, i, EdgeSweptObstacleDistance(*robot.robot, kWorld, 0.2 / 3.0, 1 + i, 1.0),
@@ -77,8 +87,8 @@ class RoundTrip : public testing::TestWithParam<std::string> {
           EdgeVelocityTracking(random.vector(model.tangent_size(), 1.0),
                                random.weights(model.tangent_size())),
           ids[i - 1], ids[i]);
-      if (robot.wheels) {
-        add(graph, random, i, EdgeRolling(*robot.wheels, kWheels, 1.0), ids[i - 1], ids[i]);
+      if (!robot.wheels.empty()) {
+        add(graph, random, i, rolling_of(graph), ids[i - 1], ids[i]);
       }
     }
     return graph;
@@ -117,6 +127,7 @@ class RoundTrip : public testing::TestWithParam<std::string> {
       expect_same_bits(one.state, other.state);
       EXPECT_EQ(one.time_s, other.time_s);
       EXPECT_EQ(one.robot_number, other.robot_number);
+      EXPECT_EQ(one.stance_number, other.stance_number);
     }
     for (int slot = 0; slot < a.vertex_slots(); ++slot) {
       EXPECT_EQ(a.vertex_record(slot).id, b.vertex_record(slot).id);
@@ -136,10 +147,10 @@ class RoundTrip : public testing::TestWithParam<std::string> {
       expect_same_bits(x.reference, y.reference);
       return true;
     });
-    expect_same_edges<EdgeWheelContact>(
-        a, b, [](const auto& x, const auto& y) { return x.wheels_number == y.wheels_number; });
+    expect_same_edges<EdgeContact>(
+        a, b, [](const auto& x, const auto& y) { return x.contact_number == y.contact_number; });
     expect_same_edges<EdgeRolling>(
-        a, b, [](const auto& x, const auto& y) { return x.wheels_number == y.wheels_number; });
+        a, b, [](const auto& x, const auto& y) { return x.stance_number == y.stance_number; });
     expect_same_edges<EdgeVelocityLimits>(a, b, [](const auto& x, const auto& y) {
       return x.fraction == y.fraction && x.base_linear_m_s == y.base_linear_m_s &&
              x.base_angular_rad_s == y.base_angular_rad_s;
@@ -158,12 +169,17 @@ class RoundTrip : public testing::TestWithParam<std::string> {
     EXPECT_EQ(robot_a->spheres.size(), robot_b->spheres.size());
     const auto world_a = a.parameters().get<WorldParameter>(kWorld);
     const auto world_b = b.parameters().get<WorldParameter>(kWorld);
+    EXPECT_EQ(world_a->ground_z_m, world_b->ground_z_m);
     EXPECT_EQ(world_a->now.obstacles.size(), world_b->now.obstacles.size());
     ASSERT_TRUE(world_a->now.map && world_b->now.map);
     EXPECT_TRUE(std::ranges::equal(world_a->now.map->values(), world_b->now.map->values()));
     EXPECT_EQ(a.parameters().get<ScenarioParameter>(3)->scenario,
               b.parameters().get<ScenarioParameter>(3)->scenario);
     EXPECT_TRUE(b.parameters().get<WorldParameter>(7)->map.empty());
+    EXPECT_TRUE(b.parameters().get<PlanParameter>(kPlan)->stances_only);
+    // Relative to folders that may have moved meanwhile.
+    EXPECT_EQ(a.parameters().get<ContactsParameter>(8)->file.filename(),
+              b.parameters().get<ContactsParameter>(8)->file.filename());
   }
   static double chi2(Graph& graph) {
     Problem problem;
@@ -207,6 +223,27 @@ TEST_P(RoundTrip, FindsRobotAndMapFromWhateverFolderTheGraphIsWrittenTo) {
     EXPECT_EQ(read_file(root / name).find(root.string()), std::string::npos)
         << name << " holds an absolute path";
   }
+}
+
+TEST(ScenarioInAFile, IsANameOrAPathRelativeToTheFile) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "plans");
+  const auto written = [&](const std::string& scenario) {
+    Graph graph;
+    const auto parameter = std::make_shared<ScenarioParameter>();
+    parameter->scenario = scenario;
+    graph.parameters().set(3, parameter);
+    const std::string text = write_graph_text(graph, folder.path() / "plans");
+    const Graph again = read_graph_text(text, "plan.g2o", folder.path() / "plans", robot_types());
+    return std::pair(text, again.parameters().get<ScenarioParameter>(3)->scenario);
+  };
+  EXPECT_EQ(written("centauro_drive"), std::pair(std::string("PARAMS_SCENARIO 3 centauro_drive\n"),
+                                                 std::string("centauro_drive")));
+  const std::string beside = folder.path() / "plans/hall.xml", above = folder.path() / "hall.xml";
+  EXPECT_EQ(written(beside).first, "PARAMS_SCENARIO 3 ./hall.xml\n");
+  EXPECT_EQ(fs::path(written(beside).second).lexically_normal(), beside);
+  EXPECT_EQ(written(above).first, "PARAMS_SCENARIO 3 ../hall.xml\n");
+  EXPECT_EQ(fs::path(written(above).second).lexically_normal(), above);
 }
 
 /// Robots whose files are in the project.

@@ -12,16 +12,22 @@ namespace {
 
 constexpr const char* kPlan =
     "PARAMS_ROBOT 0 cart.urdf cart.srdf floating 0\n"
-    "PARAMS_WHEELS 1 0 1 wheel 0.1\n"
+    "PARAMS_PLAN 1 2\n"
     "PARAMS_WORLD 2 - -\n"
     "PARAMS_FRAME 3 0 arm 0 0 0.1 0 0 0 1\n"
-    "PARAMS_CONTACT 4 0 arm 0 0 0 link 0 0 1 1 0 0 surface 0.1 0.1 0.5 100\n"
-    "PARAMS_CONTACT 5 0 lift 0 0 0 link 0 0 1 1 0 0 point 0.5 100 inner 4\n"
-    "PARAMS_CONTACT 6 0 wheel 0 0 0 link 0 0 1 1 0 0 rung 100 5\n"
+    "PARAMS_CONTACT 4 0 \"\" arm surface 0.1 0.1 0.5 100 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0\n"
+    "PARAMS_CONTACT 5 0 lift lift point 0 0.5 100 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free inner 4\n"
+    "PARAMS_CONTACT 6 0 grip wheel rung 100 5 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0\n"
+    "PARAMS_CONTACT 7 0 wheel wheel wheel 0.1 0.8 100 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free\n"
+    "PARAMS_CONTACT 8 0 sole arm surface 0.1 0.1 0.5 100 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free\n"
+    "PARAMS_CONTACT 9 0 wheel wheel wheel 0.1 0.8 100 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free "
+    "locked\n"
+    "PARAMS_STANCE 10 1 7\n"
+    "PARAMS_STANCE 11 1 9\n"
     // The arm 0.25 rad beyond its upper limit, the lift 0.125 m below its lower one.
-    "VERTEX_CONFIGURATION 0 0 0 0 0 0 0 0 0 1 2.25 -0.125 0.3\n"
-    "VERTEX_CONFIGURATION 1 0 1 0 0 0 0 0 0 1 0.1 0.3 0.3\n"
-    "VERTEX_CONFIGURATION 2 0 3 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
+    "VERTEX_CONFIGURATION 0 0 0 - 0 0 0 0 0 0 1 2.25 -0.125 0.3\n"
+    "VERTEX_CONFIGURATION 1 0 1 - 0 0 0 0 0 0 1 0.1 0.3 0.3\n"
+    "VERTEX_CONFIGURATION 2 0 3 - 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
     "VERTEX_TIME_STEP 10 0.5\n"
     "VERTEX_TIME_STEP 11 0.25\n"
     "VERTEX_WRENCHES 20 3 4 5 6  1 2 3 4 5 6  1 2 3  1 2 3 4 5\n";
@@ -101,18 +107,22 @@ TEST_F(RowLabels, OfDistancesNameLinks) {
 }
 
 TEST_F(RowLabels, OfContactsAndTasksNameFramesWheelsAndCoordinates) {
-  EXPECT_EQ(labels("EDGE_CONTACT 0 6 3 surface 0 0 0 0 0 0 1 scalar 1"),
+  EXPECT_EQ(labels("EDGE_CONTACT 0 6 4 scalar 1"),
             Labels({"arm x [m]", "arm y [m]", "arm z [m]", "arm about x [rad]", "arm about y [rad]",
                     "arm about z [rad]"}));
-  EXPECT_EQ(labels("EDGE_CONTACT 0 4 3 sliding_rung 0 0 0 0 0 0 1 scalar 1"),
-            Labels({"arm x [m]", "arm z [m]", "arm about x [rad]", "arm about z [rad]"}));
+  EXPECT_EQ(labels("EDGE_CONTACT 0 5 8 scalar 1")[4], "sole about y [rad]");
+  EXPECT_EQ(labels("EDGE_CONTACT 0 5 6 scalar 1"),
+            Labels({"grip x [m]", "grip y [m]", "grip z [m]", "grip about x [rad]",
+                    "grip about z [rad]"}));
   EXPECT_EQ(labels("EDGE_FRAME_POSE 0 3 0 0 0 0 0 0 1 scalar 1")[5], "arm about z [rad]");
   EXPECT_EQ(EdgeCom().row_label(2).name, "z");
   EXPECT_EQ(EdgeCom().row_label(2).unit, "m");
-  EXPECT_EQ(labels("EDGE_WHEEL_CONTACT 0 2 1 scalar 1"),
+  EXPECT_EQ(labels("EDGE_CONTACT 0 2 7 scalar 1"),
             Labels({"wheel height [m]", "wheel axle tilt []"}));
-  EXPECT_EQ(labels("EDGE_ROLLING 0 1 2 1 scalar 1"),
+  EXPECT_EQ(labels("EDGE_ROLLING 0 1 2 10 scalar 1"),
             Labels({"wheel lateral [m]", "wheel longitudinal [m]"}));
+  EXPECT_EQ(labels("EDGE_ROLLING 0 1 3 11 scalar 1"),
+            Labels({"wheel lateral [m]", "wheel longitudinal [m]", "wheel turned [m]"}));
   const Labels tangent = {"base x [m]",         "base y [m]",         "base z [m]",
                           "base about x [rad]", "base about y [rad]", "base about z [rad]",
                           "arm_joint [rad]",    "lift_joint [m]",     "wheel_joint [rad]"};
@@ -128,8 +138,8 @@ TEST_F(RowLabels, OfWrenchesTellForcesFromMoments) {
   EXPECT_EQ(norm[0], "arm wrench x [N]");
   EXPECT_EQ(norm[5], "arm wrench about z [N m]");
   EXPECT_EQ(norm[8], "lift wrench z [N]");
-  EXPECT_EQ(norm[12], "wheel wrench about x [N m]");
-  EXPECT_EQ(norm[13], "wheel wrench about z [N m]") << "a rung bears no moment about y";
+  EXPECT_EQ(norm[12], "grip wrench about x [N m]");
+  EXPECT_EQ(norm[13], "grip wrench about z [N m]") << "a rung bears no moment about y";
   const Labels limits = labels("EDGE_CONTACT_WRENCH 20 26 scalar 1");
   ASSERT_EQ(limits.size(), 26u);
   EXPECT_EQ(limits[0], "arm pull [N]");
@@ -140,8 +150,8 @@ TEST_F(RowLabels, OfWrenchesTellForcesFromMoments) {
   EXPECT_EQ(limits[15], "lift pull [N]");
   EXPECT_EQ(limits[16], "lift normal force [N]");
   for (int row = 17; row < 21; ++row) EXPECT_EQ(limits[row], "lift friction [N]");
-  for (int row = 21; row < 24; ++row) EXPECT_EQ(limits[row], "wheel force [N]");
-  for (int row = 24; row < 26; ++row) EXPECT_EQ(limits[row], "wheel moment [N m]");
+  for (int row = 21; row < 24; ++row) EXPECT_EQ(limits[row], "grip force [N]");
+  for (int row = 24; row < 26; ++row) EXPECT_EQ(limits[row], "grip moment [N m]");
 }
 
 TEST_F(RowLabels, TellWhichLimitIsViolatedByHowMuch) {

@@ -12,35 +12,43 @@ namespace locograph::test::balance {
 namespace {
 
 /// A contact of each kind, with axes in the link and in the world, far out on different limbs.
-std::vector<ContactDescription> some_contacts(const RobotCase& robot, Random& random) {
+std::vector<Contact> some_contacts(const RobotCase& robot, Random& random) {
   const std::vector<std::string> links =
       robot.name == "ComanPlus"
           ? std::vector<std::string>{"l_sole", "TCP_R", "l_ball_tip_d", "r_sole", "TCP_L"}
-      : robot.wheels
+      : !robot.wheels.empty()
           ? std::vector<std::string>{"wheel_1", "wheel_2", "ankle2_3", "wheel_4", "wheel_3"}
           : std::vector<std::string>{"FL_foot", "FR_foot", "RL_calf", "RR_foot", "base"};
-  std::vector<ContactDescription> contacts(5);
+  std::vector<Contact> contacts(5);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    ContactDescription& contact = contacts[i];
-    contact.link = links[i];
-    contact.point = random.vector(3, 0.1);
+    Contact& contact = contacts[i];
+    contact.effector.link = links[i];
+    contact.effector.point = random.vector(3, 0.1);
+    contact.effector.normal = random.vector(3, 2.0);
+    contact.effector.forward = random.vector(3, 2.0);
+    contact.effector.friction = 0.2 + 0.1 * static_cast<double>(i);
+    contact.effector.max_force_N = 150.0;
+    contact.effector.half_x_m = 0.08;
+    contact.effector.half_y_m = 0.035;
     contact.normal = random.vector(3, 2.0);
     contact.forward = random.vector(3, 2.0);
-    contact.axes_in_world = i == 1 || i == 3;
-    contact.mu = 0.2 + 0.1 * static_cast<double>(i);
-    contact.max_force_N = 150.0;
-    contact.half_x_m = 0.08;
-    contact.half_y_m = 0.035;
   }
-  contacts[1].kind = WrenchKind::kPoint;
-  contacts[2].kind = WrenchKind::kRung;
-  contacts[2].max_moment_Nm = 20.0;
-  contacts[3].cone = FrictionCone::kInner;
-  contacts[3].facets = 8;
-  contacts[4].kind = WrenchKind::kPoint;
-  contacts[4].cone = FrictionCone::kOuter;
-  contacts[4].facets = 4;
+  contacts[1].effector.kind = ContactKind::kPoint;
+  contacts[1].effector.radius_m = 0.03;
+  contacts[2].effector.kind = ContactKind::kRung;
+  contacts[2].effector.max_moment_Nm = 20.0;
+  contacts[4].effector.kind = ContactKind::kPoint;
+  if (!robot.wheels.empty()) {
+    contacts[4].effector.kind = ContactKind::kWheel;
+    contacts[4].effector.radius_m = 0.078;
+    contacts[4].effector.point.setZero();
+  }
   return contacts;
+}
+
+/// Of the fourth a pyramid inside the cone, of the last one around it.
+std::vector<FrictionModel> some_cones() {
+  return {{}, {}, {}, {FrictionCone::kInner, 8}, {FrictionCone::kOuter, 4}};
 }
 
 /// Random configurations with random wrenches: ids 2i and 2i + 1.
@@ -48,7 +56,8 @@ struct Standing {
   explicit Standing(const RobotCase& robot_, unsigned seed, int count) : robot(robot_) {
     Random random(seed);
     graph = graph_of(robot);
-    const std::vector<int> numbers = add_contacts(graph, robot, some_contacts(robot, random));
+    const std::vector<int> numbers =
+        add_contacts(graph, robot, some_contacts(robot, random), some_cones());
     for (int i = 0; i < count; ++i) {
       // At both limits of every joint, or anywhere between.
       Eigen::VectorXd configuration = random.configuration(robot.model(), 2.0, 0.0);
@@ -82,11 +91,16 @@ Eigen::VectorXd torques_by_statics(const Standing& standing, std::size_t i) {
   const double* component = standing.graph.vertex(standing.w[i]).state.data();
   for (const auto& contact : standing.contacts()) {
     Eigen::Matrix3d axes = contact->axes;
-    if (!contact->given.axes_in_world) axes = state.world_from_link(contact->link).linear() * axes;
+    if (!contact->axes_in_world) axes = state.world_from_link(contact->link).linear() * axes;
     Eigen::Matrix<double, 6, 1> full = Eigen::Matrix<double, 6, 1>::Zero();
     for (const int c : contact->components()) full[c] = *component++;
-    wrenches.push_back(
-        {contact->link, contact->given.point, axes * full.head<3>(), axes * full.tail<3>()});
+    // A ball and a wheel are pressed where they touch, a radius below their centre.
+    const Eigen::Isometry3d& pose = state.world_from_link(contact->link);
+    const EndEffector& effector = contact->contact.effector;
+    Eigen::Vector3d touching = pose * effector.point;
+    touching -= effector.radius_m * contact->contact.normal.normalized();
+    touching = pose.inverse() * touching;
+    wrenches.push_back({contact->link, touching, axes * full.head<3>(), axes * full.tail<3>()});
   }
   Eigen::VectorXd torques(robot.tangent_size());
   static_torques(state, standard_gravity(), wrenches, torques);

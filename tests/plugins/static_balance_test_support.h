@@ -17,12 +17,15 @@ namespace locograph::test::balance {
 inline constexpr int kContact = 10;  // number of the first contact
 
 inline std::vector<int> add_contacts(Graph& graph, const RobotCase& robot,
-                                     const std::vector<ContactDescription>& contacts) {
+                                     const std::vector<Contact>& contacts,
+                                     const std::vector<FrictionModel>& cones = {}) {
   std::vector<int> numbers;
-  for (const ContactDescription& contact : contacts) {
-    numbers.push_back(kContact + static_cast<int>(numbers.size()));
-    graph.parameters().set(numbers.back(),
-                           std::make_shared<const ContactParameter>(robot.robot, kRobot, contact));
+  for (const Contact& contact : contacts) {
+    const std::size_t i = numbers.size();
+    numbers.push_back(kContact + static_cast<int>(i));
+    graph.parameters().set(numbers.back(), std::make_shared<const ContactParameter>(
+                                               robot.robot, kRobot, contact,
+                                               i < cones.size() ? cones[i] : FrictionModel()));
   }
   return numbers;
 }
@@ -34,13 +37,15 @@ inline VertexWrenches wrenches_at(const Graph& graph, const std::vector<int>& nu
   return vertex;
 }
 
-inline ContactDescription sole() {
-  ContactDescription contact;
-  contact.link = "l_sole";
-  contact.half_x_m = 0.08;
-  contact.half_y_m = 0.035;
-  contact.mu = 0.6;
-  contact.max_force_N = 1000.0;
+/// On the ground somewhere: balance does not ask where.
+inline Contact sole() {
+  Contact contact;
+  contact.effector.link = "l_sole";
+  contact.effector.half_x_m = 0.08;
+  contact.effector.half_y_m = 0.035;
+  contact.effector.friction = 0.6;
+  contact.effector.max_force_N = 1000.0;
+  contact.forward = Eigen::Vector3d::UnitX();
   return contact;
 }
 

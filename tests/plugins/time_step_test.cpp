@@ -391,9 +391,9 @@ TEST(TimeStep, CostsItsWeightForEachSecondHoweverItIsDivided) {
 // Two configurations of a cart, one of another, and steps; the bad line is behind them.
 constexpr const char* kTimedPlan =
     "PARAMS_ROBOT 0 cart.urdf - floating 0\n"
-    "VERTEX_CONFIGURATION 0 0 0 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
-    "VERTEX_CONFIGURATION 1 0 1 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
-    "VERTEX_CONFIGURATION 2 0 3 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
+    "VERTEX_CONFIGURATION 0 0 0 - 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
+    "VERTEX_CONFIGURATION 1 0 1 - 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
+    "VERTEX_CONFIGURATION 2 0 3 - 0 0 0 0 0 0 1 0.1 0.2 0.3\n"
     "VERTEX_TIME_STEP 10 0.5\n"
     "VERTEX_TIME_STEP 11 0.25\n"
     "EDGE_DURATION 10 2\n"

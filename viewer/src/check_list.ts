@@ -1,4 +1,5 @@
-/** What the checker found: violated constraints on top, red; a click goes there. */
+/** What the judge found: violated constraints on top, red, then what was not judged; a click goes
+ *  there. */
 import { element, quantity } from './dom';
 import { CheckReport, Violation } from './scene_format';
 import { Mark } from './violation_view';
@@ -22,12 +23,15 @@ export class CheckList {
     private readonly jump: (i: number) => void,
   ) {
     const bad = marks.filter(({ violation }) => violation.violated).length;
+    const unjudged = marks.filter(({ violation }) => violation.judged === false).length;
+    const judged = marks.length - unjudged;
     const verdict = element('p', 'verdict', parent);
     const feasible = check.feasible ?? bad === 0;
     verdict.classList.add(feasible ? 'good' : 'bad');
     verdict.textContent = feasible
-      ? `Feasible: all ${marks.length || ''} constraints hold`.replace('  ', ' ')
-      : `Infeasible: ${bad} of ${marks.length} constraints violated`;
+      ? `Feasible: all ${judged || ''} constraints hold`.replace('  ', ' ')
+      : `Infeasible: ${bad} of ${judged} constraints violated`;
+    if (unjudged > 0) verdict.textContent += `, ${unjudged} not judged`;
 
     const figures = element('dl', 'figures', parent);
     for (const [key, name, unit] of FIGURES) {
@@ -39,8 +43,10 @@ export class CheckList {
     const list = element('ul', 'violations', parent);
     list.id = 'violations';
     const order = marks.map((_, i) => i);
-    order.sort((a, b) => Number(marks[b].violation.violated) - Number(marks[a].violation.violated));
+    order.sort((a, b) => urgency(marks[b].violation) - urgency(marks[a].violation));
     for (const i of order) this.addRow(list, marks[i], i);
+    if (!check.trusted?.length) return;
+    element('p', 'trusted', parent).textContent = `On trust: ${check.trusted.join('; ')}`;
   }
 
   select(index: number): void {
@@ -51,11 +57,15 @@ export class CheckList {
   }
 
   private addRow(list: HTMLElement, { violation, time }: Mark, index: number): void {
-    const row = element('button', violation.violated ? 'bad' : 'good', element('li', '', list));
+    const unjudged = violation.judged === false;
+    const state = violation.violated ? 'bad' : unjudged ? 'unjudged' : 'good';
+    const row = element('button', state, element('li', '', list));
     row.type = 'button';
-    row.disabled = time === null;
+    row.disabled = time === null || unjudged;
     element('span', 'name', row).textContent = violation.constraint;
-    element('span', 'worst', row).textContent = quantity(violation.worst, violation.unit);
+    element('span', 'worst', row).textContent = unjudged
+      ? 'not judged'
+      : quantity(violation.worst, violation.unit);
     const detail = element('span', 'detail', row);
     details(violation, time).forEach((part, i) => {
       if (i > 0) detail.append(' · ');
@@ -66,7 +76,13 @@ export class CheckList {
   }
 }
 
+function urgency(violation: Violation): number {
+  if (violation.violated) return 2;
+  return violation.judged === false ? 1 : 0;
+}
+
 function details(violation: Violation, time: number | null): string[] {
+  if (violation.judged === false) return violation.why ? [violation.why] : [];
   const parts: string[] = [];
   if (violation.what) parts.push(violation.what);
   if (typeof violation.limit === 'number') {

@@ -90,6 +90,9 @@ export interface Stance {
 export interface Violation {
   constraint: string;
   violated: boolean;
+  /** False: nobody looked, and `why` says why not; never to be shown as holding. */
+  judged?: boolean;
+  why?: string;
   worst?: number | null;
   unit?: string;
   limit?: number | null;
@@ -104,6 +107,8 @@ export interface Violation {
 export interface CheckReport {
   feasible?: boolean;
   violations?: Violation[];
+  /** What was taken on trust. */
+  trusted?: string[];
   [figure: string]: unknown;
 }
 

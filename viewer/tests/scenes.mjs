@@ -150,6 +150,7 @@ export function planScene({ count = 41, step = 0.5, perLeg = 3, voxels = 300 } =
       feasible: false,
       min_clearance_m: -0.03,
       max_velocity_ratio: 0.5,
+      trusted: ['wheel_1: what it can bear'],
       violations: [
         {
           constraint: 'joint_limits',
@@ -163,6 +164,17 @@ export function planScene({ count = 41, step = 0.5, perLeg = 3, voxels = 300 } =
           time: times[3],
           at_point: [0, 0, 0.5],
           what: 'joint_1_1',
+        },
+        {
+          constraint: 'torque_limits',
+          violated: false,
+          judged: false,
+          worst: null,
+          unit: 'ratio',
+          limit: 1,
+          at_vertex: null,
+          count: 0,
+          why: 'no stance is known',
         },
         {
           constraint: 'obstacle_distance',

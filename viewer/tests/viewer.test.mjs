@@ -113,7 +113,11 @@ describe('viewer', () => {
     shown(planScene(), { hash: '#hide=dots,contacts,forces' }, async ({ page, state }) => {
       const rows = page.locator('#violations button');
       assert.match(await rows.first().textContent(), /^obstacle_distance-0.03 m.*base and pillar/);
-      assert.match(await page.textContent('.verdict'), /Infeasible: 1 of 2/);
+      assert.match(await page.textContent('.verdict'), /Infeasible: 1 of 2.*, 1 not judged/);
+      const unjudged = page.locator('#violations .unjudged');
+      assert.match(await unjudged.textContent(), /^torque_limitsnot judged.*no stance is known/);
+      assert.equal(await unjudged.isDisabled(), true);
+      assert.match(await page.textContent('.trusted'), /On trust: wheel_1: what it can bear/);
       assert.equal(await page.locator('.mark-label:visible').count(), 0);
       await rows.first().click();
       const { time, index, selectedViolation } = await state();

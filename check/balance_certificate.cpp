@@ -1,0 +1,494 @@
+#include <locograph/check/balance_certificate.h>
+#include <locograph/common/error.h>
+#include <locograph/robots/dynamics.h>
+#include <locograph/robots/robot_state.h>
+#include <locograph/robots/statics.h>
+
+#include <ClpSimplex.hpp>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace locograph {
+namespace {
+
+constexpr double kTolerance = 1e-6;    // of the margin and of what is verified, dimensionless
+constexpr double kMomentLength = 1.0;  // m: a moment of weight times this counts as the weight
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+using Wrench = Eigen::Matrix<double, 6, 1>;
+
+/// Where a contact is in the world.
+struct ContactInWorld {
+  const Contact* given;
+  const EndEffector* effector;
+  int link;
+  Eigen::Matrix3d axes;
+  Eigen::Vector3d point;
+};
+
+/// An unknown: what one unit of it does.
+struct Unknown {
+  int contact;
+  Wrench wrench;            // N, N m, along the contact's axes, about the contact point
+  Eigen::VectorXd torques;  // J^T wrench, entries of the tangent
+  double lower = 0.0;       // 0, or -infinity
+};
+
+/// What the margin takes away from one friction cone: a force along the normal.
+struct Reserve {
+  Unknown force;  // for a margin of 1
+  int corner;     // -1: a point
+  Eigen::Vector2d at;
+};
+
+/// A wheel's disc in its link: its centre, and the axis of the joint above.
+Eigen::Vector3d lowest_of_disc(const RobotState& state, const Contact& contact, int link) {
+  const Robot& robot = state.robot();
+  const Joint& joint = robot.joints()[std::size_t(robot.links()[std::size_t(link)].parent_joint)];
+  const Eigen::Isometry3d& pose = state.world_from_link(link);
+  const Eigen::Vector3d axle = pose.linear() * joint.axis;
+  const Eigen::Vector3d normal = contact.normal.stableNormalized();
+  const Eigen::Vector3d up = normal - axle * axle.dot(normal);
+  const Eigen::Vector3d centre = pose * contact.effector.point;
+  // A disc that lies flat touches anywhere: its centre is no worse a guess than another.
+  if (up.norm() < 1e-9) return centre;
+  return centre - up.normalized() * contact.effector.radius_m;
+}
+
+class Programme {
+ public:
+  Programme(const Robot& robot, const Eigen::VectorXd& configuration,
+            std::span<const Contact> contacts, const BalanceOptions& options)
+      : robot_(robot), options_(options), state_(robot), base_(robot.base_tangent_size()) {
+    if (options.facets < 3 || options.facets > 64) {
+      throw Error("friction pyramids of " + std::to_string(options.facets) + " sides", "3 to 64");
+    }
+    place_robot(configuration);
+    gravity_.resize(robot.tangent_size());
+    take_motion();
+    weight_ = robot.total_mass() * standard_gravity().norm();
+    moving_joint_.assign(std::size_t(robot.active_joint_count()), false);
+    if (!options.areas.empty() && options.areas.size() != contacts.size()) {
+      throw Error(std::to_string(options.areas.size()) + " areas for " +
+                      std::to_string(contacts.size()) + " contacts",
+                  "one each, or none");
+    }
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      add_contact(contacts[i], options.areas.empty() ? none_ : options.areas[i]);
+    }
+    limit_torques();
+  }
+
+  BalanceCertificate solve() {
+    if (solve(Mode::kMargin) || solve(Mode::kViolation)) {
+      BalanceCertificate result = certificate();
+      if (options_.least_torques && solve(Mode::kTorques)) result.max_torque_ratio = solution_[0];
+      return result;
+    }
+    BalanceCertificate failed;
+    failed.margin = -kInfinity;
+    failed.max_torque_ratio = kInfinity;
+    failed.wrenches.assign(contacts_.size(), Eigen::VectorXd::Zero(6));
+    failed.limiting = "the linear programme was not solved (a numerical failure)";
+    return failed;
+  }
+
+ private:
+  /// What is sought: the largest margin, the least violation, or, at a margin of zero, the least
+  /// largest ratio of a torque to its limit.
+  enum class Mode { kMargin, kViolation, kTorques };
+
+  void place_robot(const Eigen::VectorXd& configuration) {
+    if (configuration.size() != robot_.configuration_size()) {
+      throw Error("a configuration of " + std::to_string(configuration.size()) + " numbers",
+                  std::to_string(robot_.configuration_size()));
+    }
+    if (!configuration.allFinite()) {
+      throw Error("a configuration that is not finite", "numbers");
+    }
+    Eigen::VectorXd q = configuration;
+    if (robot_.floating_base()) {
+      const double norm = q.segment<4>(3).norm();
+      if (std::abs(norm - 1.0) > 1e-3) {
+        throw Error("a quaternion of norm " + std::to_string(norm), "1");
+      }
+      q.segment<4>(3) /= norm;
+    }
+    state_.update(q.data());
+  }
+
+  /// What equilibrium and torques have to hold: gravity and, in motion, inertia.
+  void take_motion() {
+    if (!options_.motion) {
+      gravity_torques(state_, standard_gravity(), gravity_);
+      return;
+    }
+    const BalanceMotion& motion = *options_.motion;
+    for (const Eigen::VectorXd* part : {&motion.velocity, &motion.acceleration}) {
+      if (part->size() != robot_.tangent_size() || !part->allFinite()) {
+        throw Error("a velocity or acceleration of another size or not finite",
+                    std::to_string(robot_.tangent_size()) + " numbers");
+      }
+    }
+    RobotDynamics dynamics(robot_);
+    dynamics.inverse_dynamics(state_, motion.velocity, motion.acceleration, {}, gravity_);
+  }
+
+  Unknown unknown(const Eigen::Vector3d& at, const Wrench& along, double lower) const {
+    const ContactInWorld& contact = contacts_.back();
+    Unknown result{static_cast<int>(contacts_.size()) - 1, along, {}, lower};
+    result.torques.setZero(robot_.tangent_size());
+    add_wrench_torques(state_,
+                       {.link = contact.link,
+                        .point = state_.world_from_link(contact.link).inverse() *
+                                 (contact.point + contact.axes * at),
+                        .force = contact.axes * along.head<3>(),
+                        .moment = contact.axes * along.tail<3>()},
+                       1.0, result.torques);
+    // As a wrench about the contact point.
+    result.wrench.tail<3>() += at.cross(along.head<3>());
+    return result;
+  }
+
+  void add_contact(const Contact& given, const std::vector<Eigen::Vector2d>& area) {
+    const EndEffector& effector = given.effector;
+    require_sound_effector(robot_, effector);
+    const int link = robot_.link_index(effector.link);
+    const Eigen::Isometry3d& pose = state_.world_from_link(link);
+    const bool fixed_in_link =
+        effector.kind == ContactKind::kSurface || effector.kind == ContactKind::kRung;
+    ContactInWorld contact{&given, &effector, link, {}, pose * effector.point};
+    contact.axes = fixed_in_link ? pose.linear() * axes_in_link(effector) : axes_in_world(given);
+    if (effector.kind == ContactKind::kPoint) {
+      contact.point -= effector.radius_m * contact.axes.col(2);
+    } else if (effector.kind == ContactKind::kWheel) {
+      contact.point = lowest_of_disc(state_, given, link);
+    }
+    contacts_.push_back(contact);
+    if (!given.bears_load) return;
+    for (const int joint : robot_.support(link)) moving_joint_[std::size_t(joint)] = true;
+    switch (effector.kind) {
+      case ContactKind::kRung:
+        for (const int component : {0, 1, 2, 3, 5}) {
+          if (component >= 3 && effector.max_moment_Nm == 0.0) continue;
+          unknowns_.push_back(
+              unknown(Eigen::Vector3d::Zero(), weight_ * Wrench::Unit(component), -kInfinity));
+        }
+        break;
+      case ContactKind::kPoint:
+      case ContactKind::kWheel:
+        add_cone(Eigen::Vector3d::Zero(), 1.0, -1);
+        break;
+      case ContactKind::kSurface:
+        add_area(area);
+        break;
+    }
+  }
+
+  void add_area(const std::vector<Eigen::Vector2d>& area) {
+    const EndEffector& effector = *contacts_.back().effector;
+    std::vector<Eigen::Vector2d> corners = area;
+    for (int corner = 0; area.empty() && corner < 4; ++corner) {
+      corners.emplace_back(corner < 2 ? effector.half_x_m : -effector.half_x_m,
+                           corner % 2 == 0 ? effector.half_y_m : -effector.half_y_m);
+    }
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      add_cone({corners[i].x(), corners[i].y(), 0.0}, 1.0 / double(corners.size()), int(i));
+    }
+  }
+
+  /// The rays of a pyramid whose sides are normal to the angles 2 pi k / facets.
+  void add_cone(const Eigen::Vector3d& at, double share, int corner) {
+    const double mu = contacts_.back().effector->friction,
+                 step = 2.0 * std::numbers::pi / options_.facets;
+    std::array<Unknown, 3> axes;
+    for (int i = 0; i < 3; ++i) axes[std::size_t(i)] = unknown(at, weight_ * Wrench::Unit(i), 0.0);
+    Reserve reserve{axes[2], corner, at.head<2>()};
+    const double height = share / (mu * std::cos(0.5 * step));
+    reserve.force.wrench *= height;
+    reserve.force.torques *= height;
+    reserves_.push_back(std::move(reserve));
+    for (int k = 0; k < options_.facets; ++k) {
+      const double c = mu * std::cos((k + 0.5) * step), s = mu * std::sin((k + 0.5) * step);
+      Unknown ray = axes[2];
+      ray.wrench += c * axes[0].wrench + s * axes[1].wrench;
+      ray.torques += c * axes[0].torques + s * axes[1].torques;
+      unknowns_.push_back(std::move(ray));
+    }
+  }
+
+  /// Joints that no contact loads bound the margin and the ratio, the others get rows.
+  void limit_torques() {
+    if (!options_.enforce_torque_limits && !options_.least_torques) return;
+    for (int i = 0; i < robot_.active_joint_count(); ++i) {
+      const Joint& joint = robot_.active_joint(i);
+      if (!(joint.max_effort > 0.0)) {
+        throw Error("joint " + joint.name + " has an effort limit of " +
+                        std::to_string(joint.max_effort) + ", with which it cannot hold anything",
+                    "a positive effort in the URDF, or none");
+      }
+      if (std::isinf(joint.max_effort)) continue;
+      if (moving_joint_[std::size_t(i)]) {
+        limited_.push_back(i);
+        continue;
+      }
+      const double ratio = std::abs(gravity_[base_ + i]) / joint.max_effort;
+      if (ratio <= least_ratio_) continue;
+      least_ratio_ = ratio;
+      least_ratio_joint_ = i;
+    }
+  }
+
+  /// Rows: those of the base, as equations or, in both directions, as inequalities; two for each
+  /// limited joint; those of the contacts. Inequalities read row <= bound.
+  int base_rows() const { return mode_ == Mode::kViolation ? 2 * base_ : base_; }
+  bool torques_limited() const { return options_.enforce_torque_limits || mode_ == Mode::kTorques; }
+  int torque_rows() const { return torques_limited() ? 2 * static_cast<int>(limited_.size()) : 0; }
+  static int rows_of(const EndEffector& effector) {
+    if (effector.kind != ContactKind::kRung) return 1;
+    return effector.max_moment_Nm > 0.0 ? 10 : 6;
+  }
+
+  double base_scale(int i) const { return i < 3 ? weight_ : weight_ * kMomentLength; }
+
+  /// What one unit of an unknown adds to each row.
+  void fill(const Unknown& unknown, Eigen::Ref<Eigen::VectorXd> column) const {
+    column.setZero();
+    for (int i = 0; i < base_; ++i) {
+      column[i] = unknown.torques[i] / base_scale(i);
+      if (mode_ == Mode::kViolation) column[base_ + i] = -column[i];
+    }
+    for (int i = 0; i < torque_rows() / 2; ++i) {
+      const int joint = limited_[std::size_t(i)], row = base_rows() + 2 * i;
+      column[row] = -unknown.torques[base_ + joint] / robot_.active_joint(joint).max_effort;
+      column[row + 1] = -column[row];
+    }
+    int row = base_rows() + torque_rows();
+    for (int i = 0; i < unknown.contact; ++i) row += rows_of(*contacts_[std::size_t(i)].effector);
+    const EndEffector& given = *contacts_[std::size_t(unknown.contact)].effector;
+    if (given.kind != ContactKind::kRung) {
+      column[row] = unknown.wrench[2] / given.max_force_N;
+      return;
+    }
+    for (const int component : {0, 1, 2, 3, 5}) {
+      const double limit = component < 3 ? given.max_force_N : given.max_moment_Nm;
+      if (limit == 0.0) break;
+      column[row] = unknown.wrench[component] / limit;
+      column[row + 1] = -column[row];
+      row += 2;
+    }
+  }
+
+  bool solve(Mode mode) {
+    mode_ = mode;
+    const int columns = static_cast<int>(unknowns_.size()) + 1;
+    int rows = base_rows() + torque_rows();
+    for (const ContactInWorld& contact : contacts_) rows += rows_of(*contact.effector);
+
+    Eigen::MatrixXd matrix(rows, columns);
+    for (int c = 1; c < columns; ++c) fill(unknowns_[std::size_t(c - 1)], matrix.col(c));
+    Eigen::VectorXd lower = Eigen::VectorXd::Constant(rows, -COIN_DBL_MAX);
+    Eigen::VectorXd upper = Eigen::VectorXd::Ones(rows);
+    if (mode == Mode::kTorques) {
+      // Column 0: the ratio.
+      matrix.col(0).setZero();
+      matrix.col(0).segment(base_rows(), torque_rows()).setConstant(-1.0);
+      upper.segment(base_rows(), torque_rows()).setZero();
+    } else {
+      // Column 0: the margin, which tightens every inequality and shifts every cone.
+      reserve_columns_.resize(rows, static_cast<Eigen::Index>(reserves_.size()));
+      for (std::size_t i = 0; i < reserves_.size(); ++i) {
+        fill(reserves_[i].force, reserve_columns_.col(Eigen::Index(i)));
+      }
+      matrix.col(0) = reserve_columns_.rowwise().sum();
+      matrix.col(0).tail(rows - (mode == Mode::kMargin ? base_ : 0)).array() += 1.0;
+    }
+    for (int i = 0; i < base_; ++i) {
+      upper[i] = gravity_[i] / base_scale(i);
+      if (mode == Mode::kViolation) {
+        upper[base_ + i] = -upper[i];
+      } else {
+        lower[i] = upper[i];
+      }
+    }
+    for (int i = 0; i < torque_rows() / 2; ++i) {
+      const int joint = limited_[std::size_t(i)], row = base_rows() + 2 * i;
+      const double ratio = gravity_[base_ + joint] / robot_.active_joint(joint).max_effort;
+      upper[row] -= ratio;
+      upper[row + 1] += ratio;
+    }
+    Eigen::VectorXd least = Eigen::VectorXd::Zero(columns);
+    Eigen::VectorXd most = Eigen::VectorXd::Constant(columns, COIN_DBL_MAX);
+    for (int c = 1; c < columns; ++c) {
+      if (unknowns_[std::size_t(c - 1)].lower < 0.0) least[c] = -COIN_DBL_MAX;
+    }
+    switch (mode) {
+      case Mode::kMargin:
+        most[0] = largest_margin();
+        if (most[0] < 0.0) return false;
+        break;
+      case Mode::kViolation:
+        least[0] = -COIN_DBL_MAX;
+        most[0] = std::min(0.0, largest_margin());
+        break;
+      case Mode::kTorques:
+        least[0] = least_ratio_;
+        break;
+    }
+    return run(matrix, least, most, lower, upper);
+  }
+
+  double largest_margin() const {
+    return options_.enforce_torque_limits ? 1.0 - least_ratio_ : 1.0;
+  }
+
+  bool run(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& least, const Eigen::VectorXd& most,
+           const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
+    const int rows = static_cast<int>(matrix.rows()), columns = static_cast<int>(matrix.cols());
+    std::vector<int> starts = {0}, indices;
+    std::vector<double> values;
+    for (int c = 0; c < columns; ++c) {
+      for (int r = 0; r < rows; ++r) {
+        if (matrix(r, c) == 0.0) continue;
+        indices.push_back(r);
+        values.push_back(matrix(r, c));
+      }
+      starts.push_back(static_cast<int>(indices.size()));
+    }
+    Eigen::VectorXd objective = Eigen::VectorXd::Zero(columns);
+    objective[0] = mode_ == Mode::kTorques ? 1.0 : -1.0;
+    ClpSimplex model;
+    model.setLogLevel(0);
+    model.scaling(0);  // all rows and columns are dimensionless and of the order of one
+    model.setPrimalTolerance(1e-9);
+    model.setDualTolerance(1e-9);
+    model.loadProblem(columns, rows, starts.data(), indices.data(), values.data(), least.data(),
+                      most.data(), objective.data(), lower.data(), upper.data());
+    model.dual();
+    if (model.status() > 1) model.primal();
+    if (model.status() != 0) return false;
+    solution_ = Eigen::Map<const Eigen::VectorXd>(model.primalColumnSolution(), columns);
+    prices_ = Eigen::Map<const Eigen::VectorXd>(model.dualRowSolution(), rows);
+    return true;
+  }
+
+  BalanceCertificate certificate() const {
+    BalanceCertificate result;
+    result.margin = solution_[0];
+    std::vector<Wrench> wrenches(contacts_.size(), Wrench::Zero());
+    const auto add = [&](const Unknown& unknown, double amount) {
+      wrenches[std::size_t(unknown.contact)] += amount * unknown.wrench;
+    };
+    for (const Reserve& reserve : reserves_) add(reserve.force, result.margin);
+    for (std::size_t c = 0; c < unknowns_.size(); ++c) {
+      add(unknowns_[c], solution_[Eigen::Index(c) + 1]);
+    }
+    std::vector<PointWrench> applied;
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      const ContactInWorld& contact = contacts_[i];
+      applied.push_back({.link = contact.link,
+                         .point = state_.world_from_link(contact.link).inverse() * contact.point,
+                         .force = contact.axes * wrenches[i].head<3>(),
+                         .moment = contact.axes * wrenches[i].tail<3>()});
+      result.wrenches.emplace_back(wrenches[i]);
+    }
+    Eigen::VectorXd torques(robot_.tangent_size());
+    torques = gravity_;
+    for (const PointWrench& wrench : applied) add_wrench_torques(state_, wrench, -1.0, torques);
+    double left_over = 0.0;
+    for (int i = 0; i < base_; ++i) {
+      left_over = std::max(left_over, std::abs(torques[i]) / base_scale(i));
+    }
+    for (int i = 0; i < robot_.active_joint_count(); ++i) {
+      const double limit = robot_.active_joint(i).max_effort;
+      if (!(limit > 0.0) || std::isinf(limit)) continue;
+      result.max_torque_ratio =
+          std::max(result.max_torque_ratio, std::abs(torques[base_ + i]) / limit);
+    }
+    const bool torques_hold =
+        !options_.enforce_torque_limits || result.max_torque_ratio <= 1.0 + kTolerance;
+    result.balanced = result.margin >= -kTolerance && left_over <= 2.0 * kTolerance && torques_hold;
+    result.limiting = limiting();
+    return result;
+  }
+
+  /// The dual of the linear programme splits the margin among what limits it: each inequality's
+  /// multiplier times what the margin takes from it, all together one.
+  std::string limiting() const {
+    std::string words = "nothing: the margin is at its largest";
+    double most = 1e-9;
+    const auto consider = [&](double share, auto&& text) {
+      if (share <= most) return;
+      most = share;
+      words = text();
+    };
+    if (torques_limited() && least_ratio_joint_ >= 0 && solution_[0] >= largest_margin() - 1e-9) {
+      words =
+          "torque of " + robot_.active_joint(least_ratio_joint_).name + ", which no contact loads";
+    }
+    for (int i = 0; mode_ == Mode::kViolation && i < base_; ++i) {
+      consider(-prices_[i] - prices_[base_ + i], [&] {
+        return std::string(i < 3 ? "a force" : "a moment") + " on the base is left over";
+      });
+    }
+    for (int i = 0; i < torque_rows() / 2; ++i) {
+      const int row = base_rows() + 2 * i;
+      consider(-prices_[row] - prices_[row + 1],
+               [&] { return "torque of " + robot_.active_joint(limited_[std::size_t(i)]).name; });
+    }
+    int row = base_rows() + torque_rows();
+    for (const ContactInWorld& contact : contacts_) {
+      const int rows = rows_of(*contact.effector);
+      for (int k = 0; k < rows; ++k) {
+        consider(-prices_[row + k], [&] {
+          return std::string(k < 6 ? "force" : "moment") + " limit of " + contact.given->name();
+        });
+      }
+      row += rows;
+    }
+    for (std::size_t i = 0; i < reserves_.size(); ++i) {
+      const Reserve& reserve = reserves_[i];
+      consider(-prices_.dot(reserve_columns_.col(Eigen::Index(i))), [&] {
+        std::string text =
+            "friction of " + contacts_[std::size_t(reserve.force.contact)].given->name();
+        if (reserve.corner >= 0) {
+          text += std::string(" at its corner ") + (reserve.at.x() >= 0.0 ? "+x" : "-x") +
+                  (reserve.at.y() >= 0.0 ? " +y" : " -y");
+        }
+        return text;
+      });
+    }
+    return words;
+  }
+
+  const Robot& robot_;
+  const BalanceOptions& options_;
+  RobotState state_;
+  int base_;                 // rows of the base
+  Eigen::VectorXd gravity_;  // and inertia
+  const std::vector<Eigen::Vector2d> none_;
+  double weight_ = 0.0;
+  std::vector<ContactInWorld> contacts_;
+  std::vector<Unknown> unknowns_;
+  std::vector<Reserve> reserves_;
+  std::vector<bool> moving_joint_;  // some contact loads it
+  std::vector<int> limited_;        // joints with rows
+  double least_ratio_ = 0.0;        // of the joints without rows
+  int least_ratio_joint_ = -1;
+
+  Mode mode_ = Mode::kMargin;
+  Eigen::MatrixXd reserve_columns_;
+  Eigen::VectorXd solution_, prices_;
+};
+
+}  // namespace
+
+BalanceCertificate certify_balance(const Robot& robot, const Eigen::VectorXd& configuration,
+                                   std::span<const Contact> contacts,
+                                   const BalanceOptions& options) {
+  return Programme(robot, configuration, contacts, options).solve();
+}
+
+}  // namespace locograph

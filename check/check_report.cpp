@@ -1,0 +1,78 @@
+#include <locograph/check/check_report.h>
+#include <locograph/common/error.h>
+
+#include <cmath>
+#include <cstdio>
+
+namespace locograph {
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+/// By how much it is violated; how much of a unit counts as one.
+double excess(const Violation& v) {
+  const double scale = v.unit == "m" ? 0.01 : v.unit == "count" ? 1e-3 : 0.1;
+  const double amount = std::abs(v.worst - v.limit) / scale;
+  return std::isnan(amount) ? HUGE_VAL : amount;
+}
+
+void require(bool good, const char* name, double value, const char* expected) {
+  if (!good)
+    throw Error(std::string("check option ") + name + " is " + std::to_string(value), expected);
+}
+
+}  // namespace
+
+void CheckOptions::validate() const {
+  const auto positive = [](double value, const char* name) {
+    require(value > 0.0 && std::isfinite(value), name, value, "a positive number");
+  };
+  const auto not_negative = [](double value, const char* name) {
+    require(value >= 0.0 && std::isfinite(value), name, value, "a number that is not negative");
+  };
+  const auto limit = [](double value, const char* name) {
+    require(value >= 0.0, name, value, "a limit, or 0 for none");
+  };
+  limit(base_linear_m_s, "base_linear_m_s");
+  limit(base_angular_rad_s, "base_angular_rad_s");
+  limit(joint_acceleration_rad_s2, "joint_acceleration_rad_s2");
+  if (until_s) require(std::isfinite(*until_s), "until_s", *until_s, "a time");
+  not_negative(min_clearance_m, "min_clearance_m");
+  not_negative(min_self_clearance_m, "min_self_clearance_m");
+  require(min_balance_margin < 1.0 && std::isfinite(min_balance_margin), "min_balance_margin",
+          min_balance_margin, "a number below 1");
+  positive(max_step_m, "max_step_m");
+  positive(max_step_rad, "max_step_rad");
+  positive(max_samples_per_step, "max_samples_per_step");
+  positive(clearance_resolution_m, "clearance_resolution_m");
+  positive(balance_resolution_m, "balance_resolution_m");
+  not_negative(joint_tolerance_rad, "joint_tolerance_rad");
+  not_negative(velocity_tolerance, "velocity_tolerance");
+  not_negative(quaternion_tolerance, "quaternion_tolerance");
+}
+
+std::string violation_text(const Violation& v) {
+  const std::string name = v.constraint + (v.what.empty() ? "" : " (" + v.what + ")");
+  if (!v.judged) return v.constraint + " is not judged: " + v.why_not;
+  const std::string unit = v.unit == "1" ? "" : " " + v.unit;
+  return name + " is " + number(v.worst) + unit + ", limit " + number(v.limit) + unit;
+}
+
+const Violation& CheckReport::worst() const {
+  const Violation* most = &violations.front();
+  for (const Violation& v : violations)
+    if (v.violated && (!most->violated || excess(v) > excess(*most))) most = &v;
+  return *most;
+}
+
+const Violation& CheckReport::constraint(const std::string& name) const {
+  for (const Violation& violation : violations)
+    if (violation.constraint == name) return violation;
+  throw Error("no constraint \"" + name + "\" in the report", "one that judge.h lists");
+}
+
+}  // namespace locograph

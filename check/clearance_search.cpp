@@ -1,0 +1,182 @@
+#include <locograph/check/clearance_search.h>
+
+#include <algorithm>
+
+namespace locograph {
+namespace {
+
+/// How much further than the cutoff is looked between vertices: what is beyond both may come near
+/// by as much before an interval has to be halved.
+constexpr double kFurther_m = 0.25;
+
+/// The motion, and the robot standing on at its end while obstacles still move.
+std::optional<Motion> with_standing(const CheckContext& context) {
+  const std::optional<double>& until = context.options.until_s;
+  if (!until || !context.usable.vertices.back() || context.motion.stances_only ||
+      context.shapes == nullptr || !(*until > context.motion.time_s.back()))
+    return std::nullopt;
+  Motion motion;
+  motion.time_s = context.motion.time_s;
+  motion.configurations = context.motion.configurations;
+  motion.time_s.push_back(*until);
+  motion.configurations.push_back(motion.configurations.back());
+  return motion;
+}
+
+}  // namespace
+
+ClearanceSearch::ClearanceSearch(CheckContext& context)
+    : context_(context),
+      standing_(with_standing(context)),
+      own_sampler_(standing_ ? std::make_unique<MotionSampler>(context.robot, *standing_)
+                             : nullptr),
+      sampler_(standing_ ? *own_sampler_ : context.sampler),
+      obstacle_path_(context.world.obstacles),
+      further_m_(context.moves() || standing_ ? kFurther_m : 0.0) {}
+
+void ClearanceSearch::add(std::size_t channel, CollisionWorld::Closest closest, int vertex,
+                          double time_s) {
+  if (closest.distance_m >= context_.cutoff_m) {
+    closest = {};
+    closest.distance_m = context_.cutoff_m;
+  }
+  const double sign = channels_[channel].sign;
+  channels_[channel].tally->add(
+      sign > 0.0 ? closest.distance_m : std::max(0.0, -closest.distance_m), vertex, time_s,
+      closest.point, [&] {
+        if (closest.link < 0)
+          return sign > 0.0 ? std::string("nothing within reach of the distance query")
+                            : std::string("nothing");
+        return context_.robot.links()[std::size_t(closest.link)].name + " and " + closest.what;
+      });
+}
+
+ClearanceSearch::Sample ClearanceSearch::sample(int vertex, double fraction,
+                                                const JudgedStance* stance) {
+  Sample sample;
+  sample.fraction = fraction;
+  sampler_.link_poses(vertex, fraction, sample.world_from_link);
+  const double time_s = sampler_.time_s(vertex, fraction);
+  ++samples_;
+  if (self_) {
+    CollisionWorld::Closest closest =
+        context_.exact.self_distance(sample.world_from_link, context_.cutoff_m + further_m_);
+    sample.distances[0] = closest.distance_m;
+    add(0, std::move(closest), vertex, time_s);
+    return sample;
+  }
+  const std::vector<CollisionWorld::Touch> touches = stance == nullptr
+                                                         ? std::vector<CollisionWorld::Touch>{}
+                                                         : stance->touches(sample.world_from_link);
+  const CollisionWorld::Surroundings around =
+      context_.exact.surroundings({.world_from_link = sample.world_from_link,
+                                   .time_s = time_s,
+                                   .touches = touches,
+                                   .cutoff_m = context_.cutoff_m + further_m_});
+  sample.distances = {around.obstacle.distance_m, around.surface.distance_m,
+                      around.touched.distance_m};
+  add(0, around.obstacle, vertex, time_s);
+  if (!context_.world.surfaces.empty()) add(1, around.surface, vertex, time_s);
+  if (stance != nullptr) add(2, around.touched, vertex, time_s);
+  return sample;
+}
+
+double ClearanceSearch::path_bound(int step, const Sample& from, const Sample& to,
+                                   const Channel& channel) const {
+  const double fraction = to.fraction - from.fraction;
+  MovingShapes& shapes = *context_.shapes;
+  if (self_) return shapes.relative_path_bound(from.world_from_link, to.world_from_link, fraction);
+  const double robot =
+      shapes.path_bound(from.world_from_link, to.world_from_link, fraction, channel.links);
+  if (&channel != &channels_[0]) return robot;  // surfaces do not move, nor what may be touched
+  return robot + obstacle_path_.bound(sampler_.time_s(step, from.fraction),
+                                      sampler_.time_s(step, to.fraction));
+}
+
+void ClearanceSearch::refine(int step, const JudgedStance* stance, const Sample& from,
+                             const Sample& to) {
+  const double resolution = context_.options.clearance_resolution_m;
+  bool matters = false;
+  for (std::size_t c = 0; c < channels_.size() && !matters; ++c) {
+    const Channel& channel = channels_[c];
+    if (!channel.exists || channel.tally->empty()) continue;
+    const double limit = channel.sign * channel.tally->limit();
+    const double worst = channel.sign * channel.tally->worst();
+    const double ends = from.distances[c] + to.distances[c];
+    const double bound = 0.5 * (ends - path_bound(step, from, to, channel));
+    const bool new_minimum = channel.seeks_minimum && bound < worst - resolution;
+    const bool new_violation = !channel.tally->violated_at(step) && bound < limit - resolution;
+    matters = new_minimum || new_violation;
+  }
+  if (!matters) return;
+  const double middle = 0.5 * (from.fraction + to.fraction);
+  if (middle <= from.fraction || middle >= to.fraction) return;
+  const Sample between = sample(step, middle, stance);
+  refine(step, stance, from, between);
+  refine(step, stance, between, to);
+}
+
+void ClearanceSearch::run_step(int step, const JudgedStance* stance, const Sample& from,
+                               const Sample& to) {
+  const std::vector<Eigen::VectorXd>& configurations =
+      standing_ ? standing_->configurations : context_.motion.configurations;
+  context_.shapes->set_step(configuration_step(context_.robot, configurations[std::size_t(step)],
+                                               configurations[std::size_t(step) + 1]));
+  if (!self_) channels_[2].links = stance == nullptr ? nullptr : &stance->touching;
+  Sample begin = from, end = to;
+  begin.fraction = 0.0;
+  end.fraction = 1.0;
+  refine(step, stance, begin, end);
+}
+
+void ClearanceSearch::run_around(ViolationTally& obstacle, ViolationTally& surface,
+                                 ViolationTally& touching) {
+  self_ = false;
+  const World& world = context_.world;
+  channels_ = {{&obstacle, 1.0, true}, {&surface, -1.0, false}, {&touching, -1.0, false}};
+  channels_[0].exists = world.map != nullptr || !world.obstacles.empty();
+  const std::size_t vertices = context_.vertices();
+  const JudgedStance* stance = nullptr;
+  Sample here;
+  bool sampled = false;  // `here` is this vertex with `stance`
+  for (std::size_t i = 0; i < vertices; ++i) {
+    const int vertex = int(i);
+    if (!context_.usable.vertices[i]) {
+      sampled = false;
+      continue;
+    }
+    const JudgedStance* next = context_.stance_from(vertex);
+    if (!sampled || next != stance) here = sample(vertex, 0.0, next);
+    stance = next;
+    if (i + 1 == vertices) break;
+    if (!context_.usable.vertices[i + 1]) continue;
+    // The next vertex as the end of this step; there it is looked at with this step's stance.
+    Sample there = sample(vertex + 1, 0.0, stance);
+    if (context_.usable.steps[i]) run_step(vertex, stance, here, there);
+    here = std::move(there);
+    sampled = true;
+  }
+  if (standing_) {
+    const int last = int(vertices) - 1;
+    run_step(last, stance, here, sample(last, 1.0, stance));
+  }
+}
+
+void ClearanceSearch::run_self(ViolationTally& tally) {
+  self_ = true;
+  channels_ = {{&tally, 1.0, true}};
+  Sample here;
+  bool sampled = false;
+  for (std::size_t i = 0; i < context_.vertices(); ++i) {
+    if (!context_.usable.vertices[i]) {
+      sampled = false;
+      continue;
+    }
+    Sample there = sample(int(i), 0.0, nullptr);
+    if (sampled && context_.usable.steps[i - 1]) run_step(int(i) - 1, nullptr, here, there);
+    here = std::move(there);
+    sampled = true;
+  }
+}
+
+}  // namespace locograph

@@ -1,0 +1,63 @@
+#pragma once
+/// Judges contacts along a motion: closed, kept, on their surfaces, and wheels rolling.
+///
+///     ContactCheck check(context);
+///     check.run();
+///     check.report(report.violations);
+///
+/// A contact is followed over all steps in a row whose stances hold one on the same body: by
+/// whatever name and with whatever point of it, how far it gets is summed up, so that neither finer
+/// steps nor new labels buy anything. Wheels are followed alike.
+
+#include <locograph/check/check_context.h>
+#include <locograph/check/extent.h>
+#include <locograph/check/violation_tally.h>
+#include <locograph/check/wheel_rolling.h>
+
+#include <optional>
+#include <vector>
+
+namespace locograph {
+
+class ContactCheck {
+ public:
+  explicit ContactCheck(CheckContext& context);
+
+  void run();
+  void report(std::vector<Violation>& violations) const;
+  std::optional<double> max_contact_error_m() const;
+
+ private:
+  /// A contact of the present stance, and what it has done since it began.
+  struct Track {
+    const JudgedContact* contact = nullptr;
+    // What of the way was covered with other points of the body, and where it all has led.
+    Eigen::Vector3d offset = Eigen::Vector3d::Zero(), last = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d first = Eigen::Matrix3d::Identity();  // orientation of its link
+    Extent place, turn;
+    WheelSlip slip;
+  };
+  struct Sample {
+    int vertex = 0;
+    double time_s = 0.0;
+    const LinkPoses& poses;
+    const Eigen::VectorXd& configuration;
+  };
+
+  void check_vertex(const Sample& sample);
+  void check_between(const Sample& sample);
+  void check_surface(const JudgedContact& contact, const Sample& sample);
+  void check_relabelled(int vertex);
+  void begin(const JudgedStance* stance, const Sample& sample);
+  void keep(const Sample& sample, const LinkPoses* before);
+  void keep_place(Track& track, const Sample& sample);
+
+  CheckContext& context_;
+  const JudgedStance* stance_ = nullptr;  // that is followed
+  std::vector<Track> tracks_;
+  bool on_surfaces_ = false;
+  ViolationTally position_, orientation_, between_, motion_, turn_, relabelled_, surface_, lateral_,
+      longitudinal_;
+};
+
+}  // namespace locograph

@@ -1,0 +1,268 @@
+#include <locograph/check/judged_stance.h>
+#include <locograph/check/limits.h>
+#include <locograph/robots/kinematic_tree.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace locograph {
+namespace {
+
+using Polygon = std::vector<Eigen::Vector2d>;
+
+std::string amounts(const char* what, double claimed, double known) {
+  char text[96];
+  std::snprintf(text, sizeof text, " has %s %.4g, known: %.4g", what, claimed, known);
+  return text;
+}
+
+constexpr double kRounding = 1e-9;
+
+/// What a contact is other than is known; nothing if all is well.
+std::string other_claim(const EndEffector& claimed, const EndEffector& known) {
+  if (claimed.kind != known.kind)
+    return " is a " + contact_kind_name(claimed.kind) + ", known: a " +
+           contact_kind_name(known.kind);
+  if (claimed.link != known.link) return " is on " + claimed.link + ", known: on " + known.link;
+  const double apart = (claimed.point - known.point).norm();
+  if (!(apart <= kRounding)) return amounts("a place that is off by (m)", apart, 0.0);
+  if (known.kind == ContactKind::kSurface || known.kind == ContactKind::kRung) {
+    const double turned = Eigen::Matrix3d(axes_in_link(claimed) - axes_in_link(known)).norm();
+    if (!(turned <= kRounding)) return amounts("axes that are off by", turned, 0.0);
+  }
+  if (!(std::abs(claimed.radius_m - known.radius_m) <= kRounding))
+    return amounts("radius", claimed.radius_m, known.radius_m);
+  return "";
+}
+
+/// What a contact claims beyond what is known; nothing if all is well.
+std::string excess_claim(const EndEffector& claimed, const EndEffector& known) {
+  const auto more = [](double a, double b) { return !(a <= b * (1.0 + kRounding)); };
+  if (known.kind == ContactKind::kSurface) {
+    if (more(claimed.half_x_m, known.half_x_m))
+      return amounts("half_x", claimed.half_x_m, known.half_x_m);
+    if (more(claimed.half_y_m, known.half_y_m))
+      return amounts("half_y", claimed.half_y_m, known.half_y_m);
+  }
+  if (known.kind != ContactKind::kRung && more(claimed.friction, known.friction))
+    return amounts("friction", claimed.friction, known.friction);
+  if (more(claimed.max_force_N, known.max_force_N))
+    return amounts("max_force", claimed.max_force_N, known.max_force_N);
+  if (known.kind == ContactKind::kRung && more(claimed.max_moment_Nm, known.max_moment_Nm))
+    return amounts("max_moment", claimed.max_moment_Nm, known.max_moment_Nm);
+  return "";
+}
+
+/// The part of a convex polygon where n . x <= d. Sutherland and Hodgman, Reentrant polygon
+/// clipping, 1974.
+Polygon clip(const Polygon& polygon, const Eigen::Vector2d& n, double d) {
+  Polygon inside;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
+    const double here = n.dot(from) - d, there = n.dot(to) - d;
+    if (here <= 0.0) inside.push_back(from);
+    if ((here < 0.0 && there > 0.0) || (here > 0.0 && there < 0.0))
+      inside.push_back(from + (to - from) * (here / (here - there)));
+  }
+  return inside;
+}
+
+double area_of(const Polygon& polygon) {
+  double twice = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    twice += a.x() * b.y() - a.y() * b.x();
+  }
+  return 0.5 * std::abs(twice);
+}
+
+const std::string& name_of(const EndEffector& effector) {
+  return effector.name.empty() ? effector.link : effector.name;
+}
+
+double outside_border(const Surface& surface, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d local = surface.world_from_surface.inverse() * point;
+  return std::hypot(std::max(0.0, std::abs(local.x()) - surface.half_x_m),
+                    std::max(0.0, std::abs(local.y()) - surface.half_y_m));
+}
+
+/// The part of the sole on a surface, in the sole's axes.
+Polygon sole_on(const Surface& surface, const EndEffector& sole, const Eigen::Isometry3d& pose) {
+  Polygon area = {{sole.half_x_m, sole.half_y_m},
+                  {-sole.half_x_m, sole.half_y_m},
+                  {-sole.half_x_m, -sole.half_y_m},
+                  {sole.half_x_m, -sole.half_y_m}};
+  const Eigen::Matrix3d axes = pose.linear() * axes_in_link(sole);
+  const Eigen::Vector3d centre =
+      surface.world_from_surface.inverse() * Eigen::Vector3d(pose * sole.point);
+  const double half[] = {surface.half_x_m, surface.half_y_m};
+  for (int axis = 0; axis < 2; ++axis) {
+    if (std::isinf(half[axis])) continue;
+    const Eigen::Vector3d out = surface.world_from_surface.linear().col(axis);
+    const Eigen::Vector2d across(out.dot(axes.col(0)), out.dot(axes.col(1)));
+    area = clip(area, across, half[axis] - centre[axis]);
+    area = clip(area, -across, half[axis] + centre[axis]);
+  }
+  return area;
+}
+
+void place_on_surfaces(const World& world, JudgedContact& judged) {
+  judged.off_surface_m = world.surfaces.empty() ? 0.0 : std::numeric_limits<double>::infinity();
+  for (std::size_t s = 0; s < world.surfaces.size(); ++s) {
+    const Eigen::Isometry3d& pose = world.surfaces[s].world_from_surface;
+    if (angle_between(judged.normal, pose.linear().col(2)) > limits::kClosed_rad) continue;
+    const double off = std::abs(
+        (judged.contact.position - pose.translation()).dot(Eigen::Vector3d(pose.linear().col(2))));
+    judged.off_surface_m = std::min(judged.off_surface_m, off);
+    if (off <= limits::kClosed_m) judged.surfaces.push_back(int(s));
+  }
+}
+
+}  // namespace
+
+JudgedStance::JudgedStance(const Robot& robot, const World& world, const Stance& stance,
+                           std::span<const EndEffector> known) {
+  require_sound_stance(robot, stance);
+  const std::vector<int>& body_of = robot.tree().body_of_link;
+  const auto body = [&](const std::string& link) {
+    return body_of[std::size_t(robot.link_index(link))];
+  };
+  Stance taken = stance;
+  for (Contact& contact : taken.contacts) {
+    const auto found = std::find_if(known.begin(), known.end(), [&](const EndEffector& effector) {
+      return name_of(effector) == contact.name();
+    });
+    if (found != known.end()) {
+      const std::string is_other = other_claim(contact.effector, *found);
+      const std::string more = is_other.empty() ? excess_claim(contact.effector, *found) : "";
+      if (!is_other.empty()) other.push_back(contact.name() + is_other);
+      if (!more.empty()) larger.push_back(contact.name() + more);
+      if (is_other.empty()) contact.effector = *found;
+      continue;
+    }
+    // A known end effector does not become another one by another name.
+    const auto alias = std::find_if(known.begin(), known.end(), [&](const EndEffector& effector) {
+      return body(effector.link) == body(contact.effector.link);
+    });
+    if (alias != known.end())
+      other.push_back(contact.name() + " is on the body that is known as " + name_of(*alias));
+    else
+      unknown.push_back(contact.name());
+  }
+  touching = touching_links(robot, taken.contacts);
+  for (const Contact& contact : taken.contacts) {
+    JudgedContact judged;
+    judged.contact = contact;
+    judged.link = robot.link_index(contact.effector.link);
+    judged.body = robot.tree().body_of_link[std::size_t(judged.link)];
+    judged.normal = contact.normal.stableNormalized();
+    const std::vector<bool> links = touching_links(robot, {&contact, 1});
+    for (std::size_t link = 0; link < links.size(); ++link)
+      if (links[link]) judged.links.push_back(int(link));
+    if (judged.is_wheel()) {
+      const int above = robot.links()[std::size_t(judged.link)].parent_joint;
+      const Joint& joint = robot.joints()[std::size_t(above)];
+      judged.axle = joint.axis;
+      judged.wheel_joint = joint.index;
+    }
+    place_on_surfaces(world, judged);
+    contacts.push_back(std::move(judged));
+  }
+}
+
+std::vector<CollisionWorld::Touch> JudgedStance::touches(
+    std::span<const Eigen::Isometry3d> poses) const {
+  std::vector<CollisionWorld::Touch> touches;
+  for (const JudgedContact& contact : contacts) {
+    touches.push_back(
+        {.position = contact.is_wheel() ? touching_point(contact, poses) : contact.contact.position,
+         .normal = contact.normal,
+         .surfaces = contact.surfaces,
+         .links = contact.links});
+    // A wheel touches its plane, wherever its own height is.
+    if (contact.is_wheel())
+      touches.back().position -=
+          contact.normal * contact.normal.dot(touches.back().position - contact.contact.position);
+  }
+  return touches;
+}
+
+Eigen::Vector3d touching_point(const JudgedContact& contact,
+                               std::span<const Eigen::Isometry3d> world_from_link) {
+  const Eigen::Isometry3d& pose = world_from_link[std::size_t(contact.link)];
+  const EndEffector& effector = contact.contact.effector;
+  const Eigen::Vector3d point = pose * effector.point;
+  if (effector.kind == ContactKind::kPoint) return point - effector.radius_m * contact.normal;
+  if (!contact.is_wheel()) return point;
+  const Eigen::Vector3d axle = pose.linear() * contact.axle;
+  const Eigen::Vector3d up = contact.normal - axle * axle.dot(contact.normal);
+  const double length = up.norm();
+  if (length < 1e-12) return point;
+  return point - up * (effector.radius_m / length);
+}
+
+ContactError closure_error(const JudgedContact& judged,
+                           std::span<const Eigen::Isometry3d> world_from_link) {
+  const Contact& contact = judged.contact;
+  const EndEffector& effector = contact.effector;
+  const Eigen::Isometry3d& pose = world_from_link[std::size_t(judged.link)];
+  const Eigen::Vector3d touching = touching_point(judged, world_from_link);
+  if (judged.is_wheel()) {
+    const double along = (pose.linear() * judged.axle).dot(judged.normal);
+    return {std::abs((touching - contact.position).dot(judged.normal)),
+            std::asin(std::min(1.0, std::abs(along)))};
+  }
+  ContactError error{(touching - contact.position).norm(), 0.0};
+  const Eigen::Vector3d normal = pose.linear() * effector.normal;
+  const Eigen::Vector3d forward = pose.linear() * effector.forward;
+  switch (effector.kind) {
+    case ContactKind::kSurface:
+      error.angle_rad = angle_between(normal, contact.normal);
+      if (!contact.forward) break;
+      [[fallthrough]];
+    case ContactKind::kRung:
+      error.angle_rad =
+          std::max(error.angle_rad,
+                   angle_between(normal.cross(forward), contact.normal.cross(*contact.forward)));
+      break;
+    default:
+      error.holds_direction = false;
+  }
+  return error;
+}
+
+Support support_of(const JudgedContact& judged, const World& world,
+                   std::span<const Eigen::Isometry3d> world_from_link) {
+  const EndEffector& effector = judged.contact.effector;
+  Support support;
+  support.known = !judged.surfaces.empty();
+  support.friction = effector.friction;
+  if (!support.known) return support;
+  support.outside_m = std::numeric_limits<double>::infinity();
+  double friction = std::numeric_limits<double>::infinity();
+  const Eigen::Vector3d point = touching_point(judged, world_from_link);
+  for (const int s : judged.surfaces) {
+    const Surface& surface = world.surfaces[std::size_t(s)];
+    double outside = outside_border(surface, point);
+    if (effector.kind == ContactKind::kSurface) {
+      const Polygon area = sole_on(surface, effector, world_from_link[std::size_t(judged.link)]);
+      constexpr double kNoArea_m2 = 1e-8;
+      if (area_of(area) > kNoArea_m2) {
+        outside = 0.0;
+        support.area.insert(support.area.end(), area.begin(), area.end());
+      } else {
+        outside = std::max(outside, limits::kHeld_m);
+      }
+    }
+    support.outside_m = std::min(support.outside_m, outside);
+    // A border is as exact as a contact is closed.
+    if (outside > limits::kClosed_m) continue;
+    friction = std::min(friction, surface.friction > 0.0 ? surface.friction : effector.friction);
+  }
+  if (std::isfinite(friction)) support.friction = friction;
+  return support;
+}
+
+}  // namespace locograph

@@ -1,0 +1,83 @@
+#pragma once
+/// A stance as the judge takes it: with what is known of its end effectors, the surfaces that its
+/// contacts lie on, and the links that touch there.
+///
+///     JudgedStance stance(robot, world, motion.stances[0], options.known);
+///     ContactError error = closure_error(stance.contacts[0], world_from_link);
+///     Support support = support_of(stance.contacts[0], world, world_from_link);
+///
+/// Closure (robots/contact.h) is worked out here anew, from the poses of links: nothing is shared
+/// with the rows that solvers close contacts with.
+
+#include <locograph/robots/contact.h>
+#include <locograph/robots/robot.h>
+#include <locograph/world/collision_world.h>
+#include <locograph/world/world.h>
+
+#include <Eigen/Geometry>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace locograph {
+
+struct JudgedContact {
+  Contact contact;  ///< its end effector is the known one, if there is one of its name
+  int link = -1, body = -1;
+  Eigen::Vector3d normal;  ///< of the contact in the world, of length 1
+  std::vector<int> links;  ///< that touch
+  /// Of World::surfaces: those in the plane of the contact.
+  std::vector<int> surfaces;
+  double off_surface_m = 0.0;  ///< to the nearest plane that has its normal; 0 without surfaces
+  Eigen::Vector3d axle = Eigen::Vector3d::Zero();  ///< wheel: of its joint, link frame
+  int wheel_joint = -1;                            ///< active joint that turns it; -1: none
+
+  bool is_wheel() const { return contact.effector.kind == ContactKind::kWheel; }
+  /// Stays where it is: no wheel, or a locked one.
+  bool is_held() const { return !is_wheel() || contact.locked; }
+  const std::string& name() const { return contact.name(); }
+};
+
+struct JudgedStance {
+  std::vector<JudgedContact> contacts;
+  std::vector<bool> touching;  ///< links, all contacts together
+  /// Contacts that claim more than is known; contacts that are something else than is known, so
+  /// that they are judged as what they claim to be.
+  std::vector<std::string> larger, other;
+  std::vector<std::string> unknown;  ///< names that nothing is known of
+
+  /// Throws Error for a stance that is not sound.
+  JudgedStance(const Robot& robot, const World& world, const Stance& stance,
+               std::span<const EndEffector> known);
+
+  /// Where links touch in a configuration.
+  std::vector<CollisionWorld::Touch> touches(std::span<const Eigen::Isometry3d> poses) const;
+};
+
+struct ContactError {
+  double position_m = 0.0, angle_rad = 0.0;
+  bool holds_direction = true;
+};
+
+ContactError closure_error(const JudgedContact& contact,
+                           std::span<const Eigen::Isometry3d> world_from_link);
+
+/// The lowest point of a wheel's disc along its contact's normal, the centre of a disc that lies
+/// flat; of other kinds, the point that is to be at the contact's position.
+Eigen::Vector3d touching_point(const JudgedContact& contact,
+                               std::span<const Eigen::Isometry3d> world_from_link);
+
+/// What of a contact lies on the surfaces of the world.
+struct Support {
+  bool known = false;      ///< some surface of the world is in its plane
+  double outside_m = 0.0;  ///< beyond the border of the nearest one; 0: some of it lies on one
+  double friction = 0.0;   ///< the least of the surfaces it lies on, else the end effector's
+  /// Corners of the area that bears, about the point in the end effector's axes; of a surface
+  /// contact only.
+  std::vector<Eigen::Vector2d> area;
+};
+
+Support support_of(const JudgedContact& contact, const World& world,
+                   std::span<const Eigen::Isometry3d> world_from_link);
+
+}  // namespace locograph

@@ -1,0 +1,20 @@
+#pragma once
+/// What the judge asks, in one place and not to be widened by anybody who calls it.
+
+#include <numbers>
+
+namespace locograph::limits {
+
+// A contact at a vertex: position, and the directions that its kind holds.
+inline constexpr double kClosed_m = 1e-4, kClosed_rad = 1e-3;
+// A contact between vertices, and how far a held contact gets in total while it lasts.
+inline constexpr double kHeld_m = 1e-3, kHeld_rad = 0.5 * std::numbers::pi / 180.0;
+// A wheel, along and across its heading: within any stretch of its way, and in total.
+inline constexpr double kSlip_m = 5e-3, kSlipStretch_m = 0.1, kSlipShare = 0.02;
+// How deep a link may reach into the surface that it touches: round feet and hands are modelled by
+// spheres, and forks by capsules, that reach past the point they touch with.
+inline constexpr double kTouchingDepth_m = 0.012;
+// For rounding: of a depth, and of what linear programmes balance.
+inline constexpr double kDepthRounding_m = 1e-6, kBalanceRounding = 1e-6;
+
+}  // namespace locograph::limits

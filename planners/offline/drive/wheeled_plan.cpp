@@ -1,0 +1,110 @@
+#include <locograph/planners/offline/drive/wheeled_plan.h>
+#include <locograph/planners/plan/plan.h>
+#include <locograph/plugins/contact/edge_contact.h>
+#include <locograph/plugins/joint_limits/edge_joint_limits.h>
+#include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
+#include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
+#include <locograph/plugins/rolling/edge_rolling.h>
+#include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
+#include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
+
+#include <algorithm>
+
+namespace locograph {
+namespace {
+
+using Stances = std::vector<std::shared_ptr<const StanceParameter>>;
+
+/// Steering: the joint above a wheel's carrier.
+bool steers(const Robot& robot, const StanceParameter& stance, int active) {
+  return std::any_of(stance.wheels.begin(), stance.wheels.end(), [&](const auto& standing) {
+    const int above = robot.links()[static_cast<std::size_t>(standing.wheel.carrier)].parent_joint;
+    return above >= 0 && robot.joints()[static_cast<std::size_t>(above)].index == active;
+  });
+}
+
+bool turns_wheel(const StanceParameter& stance, int active) {
+  return std::any_of(stance.wheels.begin(), stance.wheels.end(),
+                     [active](const auto& standing) { return standing.wheel.joint == active; });
+}
+
+template <class Predicate>
+bool in_any(const Stances& stances, Predicate&& predicate) {
+  return std::any_of(stances.begin(), stances.end(),
+                     [&](const auto& stance) { return predicate(*stance); });
+}
+
+/// Of the step before and of the step after: what a configuration has to close.
+std::vector<int> contacts_at(const Stances& from, std::size_t i) {
+  std::vector<int> numbers = from[i]->contact_numbers;
+  if (i == 0 || from[i - 1] == from[i]) return numbers;
+  for (const int number : from[i - 1]->contact_numbers) {
+    if (std::find(numbers.begin(), numbers.end(), number) == numbers.end()) {
+      numbers.push_back(number);
+    }
+  }
+  return numbers;
+}
+
+}  // namespace
+
+void add_wheeled_plan(Graph& graph, const Motion& motion, const PlanEdgeOptions& options) {
+  const auto robot = graph.parameters().get<RobotParameter>(kRobotNumber);
+  const Robot& model = *robot->robot;
+  const std::vector<int> numbers = add_stances(graph, robot, motion.stances);
+  std::vector<int> number_from;
+  Stances from;
+  for (const int stance : motion.stance_from) {
+    if (stance < 0) throw Error("a step whose stance is not known", "a stance for each step");
+    number_from.push_back(numbers.at(static_cast<std::size_t>(stance)));
+    from.push_back(graph.parameters().get<StanceParameter>(number_from.back()));
+  }
+
+  const int base = model.base_tangent_size();
+  Eigen::VectorXd track = Eigen::VectorXd::Constant(model.tangent_size(), options.track_joint);
+  Eigen::VectorXd steps = Eigen::VectorXd::Constant(model.tangent_size(), options.step_joint);
+  track.head<6>() << options.track_forward, options.track_lateral, options.track_height,
+      options.track_tilt, options.track_tilt, options.track_yaw;
+  steps.head<6>().setConstant(options.step_base);
+  for (int i = 0; i < model.active_joint_count(); ++i) {
+    if (in_any(from, [&](const auto& stance) { return steers(model, stance, i); })) {
+      track[base + i] = 0.0;
+      steps[base + i] = options.step_steering;
+    } else if (in_any(from, [&](const auto& stance) { return turns_wheel(stance, i); })) {
+      track[base + i] = 0.0;
+      steps[base + i] = 0.0;
+    }
+  }
+
+  const std::vector<Eigen::VectorXd>& configurations = motion.configurations;
+  std::vector<VertexId<VertexConfiguration>> ids;
+  for (std::size_t i = 0; i < configurations.size(); ++i) {
+    ids.push_back(graph.add_vertex(static_cast<int>(i),
+                                   VertexConfiguration(kRobotNumber, robot, motion.time_s[i],
+                                                       configurations[i], number_from[i])));
+  }
+  graph.set_fixed(ids.front(), true);
+  Eigen::VectorXd step(model.tangent_size());
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    graph.add_edge(EdgePlanTracking(configurations[i], track), ids[i]);
+    graph.add_edge(EdgeJointLimits(model, options.joint_margin_rad, options.limit_weight), ids[i]);
+    graph.add_edge(
+        EdgeObstacleDistance(*robot, kWorldNumber, options.obstacle_margin_m, options.limit_weight),
+        ids[i]);
+    for (const int number : contacts_at(from, i)) {
+      const auto contact = graph.parameters().get<ContactParameter>(number);
+      graph.add_edge(EdgeContact(*contact, number, options.constraint_weight), ids[i]);
+    }
+    if (i == 0) continue;
+    model.difference(configurations[i - 1].data(), configurations[i].data(), step.data());
+    graph.add_edge(EdgeVelocityTracking(step, steps), ids[i - 1], ids[i]);
+    graph.add_edge(EdgeVelocityLimits(model, options.velocity_fraction, options.base_linear_m_s,
+                                      options.base_angular_rad_s, options.limit_weight),
+                   ids[i - 1], ids[i]);
+    if (from[i - 1]->wheels.empty()) continue;
+    graph.add_edge(EdgeRolling(*from[i - 1], number_from[i - 1], options.constraint_weight),
+                   ids[i - 1], ids[i]);
+  }
+}
+
+}  // namespace locograph

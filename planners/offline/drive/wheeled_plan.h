@@ -1,0 +1,39 @@
+#pragma once
+/// The edges of a plan on wheels, made from its stances.
+///
+///     graph.parameters().set(kRobotNumber, robot);
+///     graph.parameters().set(kWorldNumber, world);
+///     add_wheeled_plan(graph, motion);
+
+#include <locograph/check/motion.h>
+#include <locograph/core/graph.h>
+
+namespace locograph {
+
+/// How strongly the edges of a new plan hold. Weights are on squared errors in m and rad; those of
+/// constraints are large against those of tracking, so that what tracking wants bends constraints
+/// by micrometres only.
+struct PlanEdgeOptions {
+  double constraint_weight = 1e5;  ///< contacts, rolling
+  double limit_weight = 1e4;       ///< joints, velocities, obstacles
+  double obstacle_margin_m = 0.05;
+  double joint_margin_rad = 0.01;
+  double velocity_fraction = 0.95;
+  double base_linear_m_s = 0.5;
+  double base_angular_rad_s = 0.5;
+
+  // Tracking, of the plan and of its steps. Falling behind weighs more than passing to the side:
+  // a robot that stops in front of an obstacle is safe, but gets nowhere.
+  double track_forward = 20.0, track_lateral = 0.5, track_height = 20.0;
+  double track_tilt = 50.0, track_yaw = 5.0, track_joint = 1.0;
+  double step_base = 50.0, step_joint = 5.0, step_steering = 0.5;
+};
+
+/// Adds the stances, the configurations, the first one fixed, and all edges: every contact of a
+/// stance at the configurations at both ends of its steps, rolling on the steps. Parameters
+/// kRobotNumber and kWorldNumber (plan.h) must be set. Joints that steer (a carrier of a wheel
+/// turns about them) and wheels are not tracked: rolling decides them. Throws Error for a motion
+/// whose stances are not known everywhere.
+void add_wheeled_plan(Graph& graph, const Motion& motion, const PlanEdgeOptions& options = {});
+
+}  // namespace locograph

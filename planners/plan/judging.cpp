@@ -1,0 +1,97 @@
+#include <locograph/check/judge.h>
+#include <locograph/planners/plan/judging.h>
+#include <locograph/planners/posture/contacts_file.h>
+#include <locograph/planners/scenario/scenario.h>
+#include <locograph/plugins/configuration/plan_parameters.h>
+#include <locograph/world/octree.h>
+
+#include <fstream>
+#include <iterator>
+
+namespace locograph {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool same_file(const fs::path& a, const fs::path& b) {
+  std::error_code unknown;
+  return !a.empty() && !b.empty() && fs::equivalent(a, b, unknown);
+}
+
+std::string content_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return std::string((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+}
+
+/// A stronger or lighter robot than the scenario's would keep other limits.
+void require_robot_of(const Scenario& scenario, const Robot& robot) {
+  if (same_file(robot.urdf_file(), scenario.urdf)) return;
+  if (content_of(robot.urdf_file()) == content_of(scenario.urdf)) return;
+  throw Error("the plan's robot, " + robot.urdf_file().string() +
+                  ", is not the one of the scenario " + scenario.source,
+              scenario.urdf.string());
+}
+
+void take_word_of(const Scenario& scenario, CheckOptions& options) {
+  options.known = scenario.end_effectors;
+  options.base_linear_m_s = scenario.limits.base_linear_m_s;
+  options.base_angular_rad_s = scenario.limits.base_angular_rad_s;
+  options.joint_acceleration_rad_s2 = scenario.limits.joint_acceleration_rad_s2;
+  options.enforce_torque_limits = scenario.enforce_torque_limits;
+}
+
+/// What PARAMS_WORLD names and the scenario does not.
+void add_plan_world(const WorldParameter& seen, const Scenario* scenario, World& world) {
+  const bool same_map = scenario != nullptr && same_file(seen.map, scenario->map);
+  const bool same_obstacles = scenario != nullptr && same_file(seen.obstacles, scenario->obstacles);
+  const World more =
+      load_world(same_map ? fs::path() : seen.map, same_obstacles ? fs::path() : seen.obstacles);
+  if (more.map) world.map = world.map ? joined(*world.map, *more.map) : more.map;
+  world.obstacles.insert(world.obstacles.end(), more.obstacles.begin(), more.obstacles.end());
+}
+
+}  // namespace
+
+Judging judging_of(const Graph& graph, const Plan& plan, const JudgingRequest& request) {
+  const auto origin = graph.parameters().find<ScenarioParameter>();
+  const auto contacts = graph.parameters().find<ContactsParameter>();
+  if (origin && contacts) {
+    throw Error("a plan with both a PARAMS_SCENARIO and a PARAMS_CONTACTS", "one of them");
+  }
+  Judging judging;
+  std::optional<Scenario> scenario;
+  const bool other = !request.scenario.empty();
+  if (other || origin) {
+    scenario = load_scenario(other ? request.scenario : origin->scenario, request.data_folder);
+    require_robot_of(*scenario, *plan.robot->robot);
+    take_word_of(*scenario, judging.options);
+    judging.options.compare_claims = !other;
+    judging.world = world_of(*scenario);
+  } else {
+    judging.world.surfaces.push_back(ground());
+    judging.options.surfaces_known = false;
+  }
+  if (contacts && !other) {
+    const Stance stance = load_contacts(contacts->file, *plan.robot->robot);
+    for (const Contact& contact : stance.contacts)
+      judging.options.known.push_back(contact.effector);
+  }
+  if (!request.map.empty() || !request.obstacles.empty()) {
+    World instead = load_world(request.map, request.obstacles);
+    judging.world.map = std::move(instead.map);
+    judging.world.obstacles = std::move(instead.obstacles);
+  } else if (plan.world && !other) {
+    add_plan_world(*plan.world, scenario ? &*scenario : nullptr, judging.world);
+  }
+  return judging;
+}
+
+CheckReport judged(const Graph& graph, const Plan& plan, const Judging& judging) {
+  const Judge judge(plan.robot->robot, judging.world);
+  const Motion motion = motion_of(graph, plan);
+  const bool posture = motion.configurations.size() == 1 && motion.stance_from.front() >= 0;
+  if (!posture) return judge.check(motion, judging.options);
+  return judge.check(motion.configurations.front(), motion.stances.front(), judging.options);
+}
+
+}  // namespace locograph

@@ -1,0 +1,46 @@
+#pragma once
+/// By whose word a plan is judged: in which world, with what its end effectors can bear, and within
+/// which limits.
+///
+///     JudgingRequest request{.data_folder = data_folder};
+///     const Judging judging = judging_of(graph, plan, request);
+///     const CheckReport report = judged(graph, plan, judging);
+///
+/// A plan does not vouch for itself. What is in the way and what may be touched is its scenario's
+/// own environment, and what its PARAMS_WORLD adds; what end effectors can bear is the word of the
+/// scenario or of the contacts file. A plan that names neither stands on the plane z = 0 among what
+/// its PARAMS_WORLD names, and what it says of its contacts is taken on trust, which the report
+/// tells. A contacts file says nothing of surfaces: contacts may be anywhere, the ground is z = 0.
+
+#include <locograph/check/check_report.h>
+#include <locograph/planners/plan/plan.h>
+#include <locograph/world/world.h>
+
+#include <filesystem>
+#include <string>
+
+namespace locograph {
+
+struct JudgingRequest {
+  /// A scenario to judge in instead of the plan's own: its world, its friction, its limits. Claims
+  /// of the plan are then not compared with it.
+  std::string scenario = {};
+  /// Instead of what is in the way, surfaces aside; both empty: as it is.
+  std::filesystem::path map = {}, obstacles = {};
+  /// See load_scenario().
+  std::filesystem::path data_folder;
+};
+
+struct Judging {
+  World world;
+  CheckOptions options;
+};
+
+/// Throws Error for files that cannot be used, for a plan that names both a scenario and a contacts
+/// file, and for a plan of another robot than the scenario's.
+Judging judging_of(const Graph& graph, const Plan& plan, const JudgingRequest& request);
+
+/// A posture, one configuration that stands, is judged as PostureSolver does; others as motions.
+CheckReport judged(const Graph& graph, const Plan& plan, const Judging& judging);
+
+}  // namespace locograph

@@ -1,0 +1,64 @@
+#include <locograph/planners/scenario/effector_element.h>
+
+namespace locograph {
+namespace {
+
+bool has_axes(ContactKind kind) {
+  return kind == ContactKind::kSurface || kind == ContactKind::kRung;
+}
+
+}  // namespace
+
+ContactKind read_contact_kind(const XmlFile& xml, const XmlFile::Element& element) {
+  const std::string word = xml.attribute(element, "kind");
+  const std::optional<ContactKind> kind = contact_kind_of(word);
+  if (!kind) {
+    throw xml.error(element, "unknown kind of contact '" + word + "'",
+                    "surface, point, rung or wheel");
+  }
+  return *kind;
+}
+
+std::set<std::string> effector_attributes(ContactKind kind) {
+  std::set<std::string> names = {"link", "point", "max_force"};
+  if (has_axes(kind)) names.insert({"link_normal", "link_forward"});
+  if (kind == ContactKind::kSurface) names.insert({"half_x", "half_y"});
+  if (kind == ContactKind::kPoint || kind == ContactKind::kWheel) names.insert("radius");
+  if (kind == ContactKind::kRung) names.insert("max_moment");
+  return names;
+}
+
+EndEffector read_effector(const XmlFile& xml, const XmlFile::Element& element, ContactKind kind) {
+  const auto vector = [&](const char* name, Eigen::Vector3d& out) {
+    if (element.Attribute(name) != nullptr) out = read_vector(xml, element, name);
+  };
+  EndEffector effector;
+  effector.kind = kind;
+  effector.link = xml.attribute(element, "link");
+  vector("point", effector.point);
+  vector("link_normal", effector.normal);
+  vector("link_forward", effector.forward);
+  effector.max_force_N = xml.positive(element, "max_force");
+  if (kind == ContactKind::kSurface) {
+    effector.half_x_m = xml.positive(element, "half_x");
+    effector.half_y_m = xml.positive(element, "half_y");
+  }
+  if (kind == ContactKind::kWheel || element.Attribute("radius") != nullptr) {
+    effector.radius_m = xml.positive(element, "radius");
+  }
+  if (kind == ContactKind::kRung) {
+    effector.max_moment_Nm = xml.number(element, "max_moment");
+    if (effector.max_moment_Nm < 0.0) {
+      throw xml.error(element, "max_moment is " + std::to_string(effector.max_moment_Nm),
+                      "zero or more");
+    }
+  }
+  return effector;
+}
+
+Eigen::Vector3d read_vector(const XmlFile& xml, const XmlFile::Element& element, const char* name) {
+  const std::vector<double> numbers = xml.numbers(element, name, 3);
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+}  // namespace locograph

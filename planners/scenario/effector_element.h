@@ -1,0 +1,41 @@
+#pragma once
+/// What an XML element says of an end effector: the attributes that scenarios and contacts files
+/// share.
+///
+///     const ContactKind kind = read_contact_kind(xml, element);
+///     xml.allow(element, joined({"kind", "position"}, effector_attributes(kind)), {});
+///     EndEffector foot = read_effector(xml, element, kind);
+///     foot.friction = xml.positive(element, "mu");
+
+#include <locograph/robots/contact.h>
+#include <locograph/robots/xml_file.h>
+
+#include <set>
+#include <string>
+
+namespace locograph {
+
+/// `kind`: surface, point, rung or wheel.
+ContactKind read_contact_kind(const XmlFile& xml, const XmlFile::Element& element);
+
+/// link, point, max_force and, by kind, link_normal, link_forward, half_x, half_y, radius,
+/// max_moment. Friction has other names in other files.
+std::set<std::string> effector_attributes(ContactKind kind);
+
+/// These attributes. Throws Error with the line for one that is missing or out of range; the link
+/// is not looked for.
+EndEffector read_effector(const XmlFile& xml, const XmlFile::Element& element, ContactKind kind);
+
+Eigen::Vector3d read_vector(const XmlFile& xml, const XmlFile::Element& element, const char* name);
+
+/// Runs f; what it throws is the element's mistake.
+template <class F>
+void blame(const XmlFile& xml, const XmlFile::Element& element, F&& f) {
+  try {
+    f();
+  } catch (const Error& error) {
+    throw xml.error(element, error.what(), "");
+  }
+}
+
+}  // namespace locograph

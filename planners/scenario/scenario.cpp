@@ -1,0 +1,224 @@
+#include <locograph/planners/scenario/effector_element.h>
+#include <locograph/planners/scenario/scenario.h>
+#include <locograph/robots/xml_file.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace locograph {
+namespace {
+
+using Element = XmlFile::Element;
+
+class ScenarioReader {
+ public:
+  ScenarioReader(const std::filesystem::path& file, const std::filesystem::path& data_folder)
+      : file_(file), data_folder_(data_folder), xml_(file, "scenario") {}
+
+  Scenario read() {
+    const Element& root = xml_.root();
+    xml_.allow(root, {"version", "name"},
+               {"robot", "wheels", "end_effectors", "limits", "environment", "drive", "planner"});
+    if (const std::string version = xml_.attribute(root, "version"); version != "1") {
+      throw xml_.error(root, "scenario version '" + version + "'", "version=\"1\"");
+    }
+    scenario_.name = xml_.attribute(root, "name");
+    read_robot(only(root, "robot", true));
+    read_environment(only(root, "environment", false));
+    read_wheels(only(root, "wheels", false));
+    read_end_effectors(only(root, "end_effectors", false));
+    read_limits(only(root, "limits", false));
+    read_drive(only(root, "drive", false));
+    read_planner(only(root, "planner", false));
+    if (!scenario_.drive) {
+      throw xml_.error(root, "the scenario has no task", "a <drive> element");
+    }
+    if (std::none_of(scenario_.end_effectors.begin(), scenario_.end_effectors.end(),
+                     [](const EndEffector& one) { return one.kind == ContactKind::kWheel; })) {
+      throw xml_.error(root, "a drive without wheels", "a <wheels> element");
+    }
+    return std::move(scenario_);
+  }
+
+ private:
+  const Element* only(const Element& parent, const char* name, bool required) const {
+    const auto all = xml_.children(parent, name);
+    if (all.size() > 1) {
+      throw xml_.error(all[1], "a second <" + std::string(name) + ">", "one");
+    }
+    if (all.empty() && required) {
+      throw xml_.error(parent, "no <" + std::string(name) + ">", "one");
+    }
+    return all.empty() ? nullptr : &all.front().get();
+  }
+
+  std::filesystem::path beside_file(const std::string& path) const {
+    return std::filesystem::path(path).is_absolute() ? std::filesystem::path(path)
+                                                     : file_.parent_path() / path;
+  }
+
+  void read_robot(const Element* robot) {
+    xml_.allow(*robot, {"model", "urdf", "srdf", "active", "state"}, {});
+    const bool by_model = robot->Attribute("model") != nullptr;
+    if (by_model == (robot->Attribute("urdf") != nullptr)) {
+      throw xml_.error(*robot, "the robot is not named", "either model=\"…\" or urdf=\"…\"");
+    }
+    if (by_model) {
+      const std::string model = xml_.attribute(*robot, "model");
+      const std::filesystem::path folder = data_folder_ / "robots/models" / model;
+      if (!std::filesystem::exists(folder / (model + ".urdf"))) {
+        throw xml_.error(*robot, "unknown robot model '" + model + "'",
+                         "one that `locograph list robots` names");
+      }
+      scenario_.urdf = std::filesystem::canonical(folder) / (model + ".urdf");
+      scenario_.srdf = std::filesystem::canonical(folder) / (model + ".srdf");
+    } else {
+      scenario_.urdf = beside_file(xml_.attribute(*robot, "urdf"));
+      if (robot->Attribute("srdf")) scenario_.srdf = beside_file(xml_.attribute(*robot, "srdf"));
+    }
+    if (robot->Attribute("active")) {
+      scenario_.robot.active_joints = {xml_.attribute(*robot, "active")};
+    }
+    if (robot->Attribute("state")) scenario_.start_state = xml_.attribute(*robot, "state");
+    scenario_.robot.frozen_state = scenario_.start_state;
+  }
+
+  void read_wheels(const Element* wheels) {
+    if (wheels == nullptr) return;
+    xml_.allow(*wheels, {}, {"wheel"});
+    for (const Element& wheel : xml_.children(*wheels, "wheel")) {
+      xml_.allow(wheel, {"link", "radius", "friction", "max_force"}, {});
+      EndEffector effector;
+      effector.name = effector.link = xml_.attribute(wheel, "link");
+      effector.kind = ContactKind::kWheel;
+      effector.radius_m = xml_.positive(wheel, "radius");
+      effector.friction = positive_or(wheel, "friction", friction_.value_or(kWheelFriction));
+      effector.max_force_N = positive_or(wheel, "max_force", kWheelForce_N);
+      add(wheel, std::move(effector));
+    }
+  }
+
+  void read_end_effectors(const Element* all) {
+    if (all == nullptr) return;
+    xml_.allow(*all, {}, {"end_effector"});
+    for (const Element& element : xml_.children(*all, "end_effector")) {
+      const ContactKind kind = read_contact_kind(xml_, element);
+      std::set<std::string> allowed = effector_attributes(kind);
+      allowed.insert({"name", "kind"});
+      xml_.allow(element, allowed, {});
+      EndEffector effector = read_effector(xml_, element, kind);
+      effector.name = xml_.attribute(element, "name");
+      if (kind != ContactKind::kRung) {
+        if (!friction_) {
+          throw xml_.error(element, "the friction of " + effector.name + " is not known",
+                           "<environment friction=\"…\">");
+        }
+        effector.friction = *friction_;
+      }
+      add(element, std::move(effector));
+    }
+  }
+
+  void add(const Element& element, EndEffector effector) {
+    for (const EndEffector& other : scenario_.end_effectors) {
+      if (other.name == effector.name) {
+        throw xml_.error(element, "a second end effector " + effector.name, "each once");
+      }
+    }
+    scenario_.end_effectors.push_back(std::move(effector));
+  }
+
+  double positive_or(const Element& element, const char* name, double otherwise) const {
+    return element.Attribute(name) == nullptr ? otherwise : xml_.positive(element, name);
+  }
+
+  void read_limits(const Element* limits) {
+    if (limits == nullptr) return;
+    xml_.allow(*limits, {"base_linear", "base_angular", "joint_acceleration"}, {});
+    scenario_.limits.base_linear_m_s = positive_or(*limits, "base_linear", 0.0);
+    scenario_.limits.base_angular_rad_s = positive_or(*limits, "base_angular", 0.0);
+    scenario_.limits.joint_acceleration_rad_s2 = positive_or(*limits, "joint_acceleration", 0.0);
+  }
+
+  void read_planner(const Element* planner) {
+    if (planner == nullptr) return;
+    xml_.allow(*planner, {"torque_limits"}, {});
+    if (planner->Attribute("torque_limits") == nullptr) return;
+    const std::string torques = xml_.attribute(*planner, "torque_limits");
+    if (torques != "enforce" && torques != "report") {
+      throw xml_.error(*planner, "torque_limits is '" + torques + "'", "enforce or report");
+    }
+    scenario_.enforce_torque_limits = torques == "enforce";
+  }
+
+  void read_environment(const Element* environment) {
+    if (environment == nullptr) return;
+    xml_.allow(*environment, {"map", "obstacles", "friction"}, {});
+    if (environment->Attribute("friction")) friction_ = xml_.positive(*environment, "friction");
+    if (environment->Attribute("map")) {
+      scenario_.map = beside_file(xml_.attribute(*environment, "map"));
+    }
+    if (environment->Attribute("obstacles")) {
+      scenario_.obstacles = beside_file(xml_.attribute(*environment, "obstacles"));
+    }
+  }
+
+  void read_drive(const Element* drive) {
+    if (drive == nullptr) return;
+    xml_.allow(*drive, {"distance", "curvature", "speed", "configurations"}, {});
+    DriveTask task;
+    task.line = drive->GetLineNum();
+    task.distance_m = xml_.positive(*drive, "distance");
+    task.speed_m_s = xml_.positive(*drive, "speed");
+    if (drive->Attribute("curvature")) task.curvature_1_m = xml_.number(*drive, "curvature");
+    const double count = xml_.number(*drive, "configurations");
+    if (!(count >= 2.0 && count <= 1e6) || count != std::floor(count)) {
+      throw xml_.error(*drive, "configurations is " + std::to_string(count),
+                       "a whole number from 2 to 1000000");
+    }
+    task.configurations = static_cast<int>(count);
+    scenario_.drive = task;
+  }
+
+  std::filesystem::path file_, data_folder_;
+  XmlFile xml_;
+  Scenario scenario_;
+  std::optional<double> friction_;  ///< of the environment
+};
+
+}  // namespace
+
+Scenario load_scenario(const std::string& name_or_file, const std::filesystem::path& data_folder) {
+  const std::filesystem::path own = data_folder / "scenarios" / (name_or_file + ".xml");
+  const bool by_name = name_or_file.find('/') == std::string::npos && std::filesystem::exists(own);
+  const std::filesystem::path file = by_name ? own : std::filesystem::path(name_or_file);
+  if (!by_name && !std::filesystem::exists(file)) {
+    std::string names;
+    for (const std::string& name : scenario_names(data_folder)) {
+      names += (names.empty() ? "" : ", ") + name;
+    }
+    throw Error(name_or_file, 0, "no such scenario", "a file, or one of " + names);
+  }
+  Scenario scenario = ScenarioReader(file, data_folder).read();
+  scenario.source = by_name ? name_or_file : std::filesystem::absolute(file).string();
+  return scenario;
+}
+
+World world_of(const Scenario& scenario) {
+  World world = load_world(scenario.map, scenario.obstacles);
+  if (scenario.drive) world.surfaces.push_back(ground());
+  return world;
+}
+
+std::vector<std::string> scenario_names(const std::filesystem::path& data_folder) {
+  std::vector<std::string> names;
+  const std::filesystem::path folder = data_folder / "scenarios";
+  if (!std::filesystem::is_directory(folder)) return names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".xml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace locograph

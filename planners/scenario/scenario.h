@@ -1,0 +1,65 @@
+#pragma once
+/// A scenario: the robot, what it may touch with, the world around it, and what it is to do.
+///
+///     Scenario scenario = load_scenario("centauro_drive", data_folder);   // comes with locograph
+///     Scenario other = load_scenario("hall.xml", data_folder);            // a file
+///     World world = world_of(other);
+///
+/// The format is described in doc/scenarios.md. Every mistake is an Error with file and line.
+
+#include <locograph/robots/contact.h>
+#include <locograph/robots/robot.h>
+#include <locograph/world/world.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace locograph {
+
+/// A drive on wheels along a line or an arc.
+struct DriveTask {
+  double distance_m = 4.0;
+  double curvature_1_m = 0.0;  ///< > 0 turns left
+  double speed_m_s = 0.1;
+  int configurations = 50;
+  int line = 0;
+};
+
+/// Of the whole motion; 0: none.
+struct MotionLimits {
+  double base_linear_m_s = 0.0;
+  double base_angular_rad_s = 0.0;
+  double joint_acceleration_rad_s2 = 0.0;
+};
+
+/// What wheels bear that a scenario says nothing of.
+inline constexpr double kWheelFriction = 0.8, kWheelForce_N = 5000.0;
+
+struct Scenario {
+  std::string name;    ///< as given in the file
+  std::string source;  ///< the name of one that comes with locograph, or the file's absolute path
+  std::filesystem::path urdf, srdf;
+  RobotOptions robot;
+  std::string start_state = "home";
+  std::vector<EndEffector> end_effectors;  ///< each with its friction; the links are not looked for
+  MotionLimits limits;
+  std::filesystem::path map;        ///< empty: none
+  std::filesystem::path obstacles;  ///< empty: none
+  bool enforce_torque_limits = true;
+  std::optional<DriveTask> drive;
+};
+
+/// name_or_file: the name of a scenario that comes with locograph, or a path. data_folder: holds
+/// scenarios/NAME.xml, and robots/models/NAME/NAME.urdf and .srdf for `<robot model="NAME">`.
+Scenario load_scenario(const std::string& name_or_file, const std::filesystem::path& data_folder);
+
+/// Its map and obstacles, and what may be touched: for a drive the ground, the plane z = 0 without
+/// an end. Throws Error for files that cannot be used.
+World world_of(const Scenario& scenario);
+
+/// Names of the scenarios that come with locograph, sorted.
+std::vector<std::string> scenario_names(const std::filesystem::path& data_folder);
+
+}  // namespace locograph

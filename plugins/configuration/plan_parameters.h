@@ -1,0 +1,52 @@
+#pragma once
+/// What a plan file says about itself: its format, and whose word it goes by.
+///
+///     PARAMS_PLAN 1 2                          (format version 2)
+///     PARAMS_PLAN 1 2 stances_only             (transitions: nothing moves between configurations)
+///     PARAMS_SCENARIO 3 centauro_drive         (made for this scenario: a name, or a file)
+///     PARAMS_CONTACTS 4 ../standing.xml        (a posture for this contacts file)
+///
+/// A plan of format version 2 says where it stands: PARAMS_CONTACT, PARAMS_STANCE and a stance in
+/// every VERTEX_CONFIGURATION. Plans of version 1, which had PARAMS_WHEELS instead, are refused.
+
+#include <locograph/core/parameters.h>
+
+#include <filesystem>
+#include <string>
+
+namespace locograph {
+
+inline constexpr int kPlanFormat = 2;
+
+struct PlanParameter final : Parameter {
+  /// The configurations are transitions of a plan of stances, in order; their times mean nothing.
+  bool stances_only = false;
+
+  std::string_view tag() const override { return "PARAMS_PLAN"; }
+  void read(FieldReader& in) override;
+  void write(FieldWriter& out) const override;
+};
+
+/// The scenario a plan was made for.
+struct ScenarioParameter final : Parameter {
+  /// A name that comes with locograph, or a path, which has a `/`; in a file it is relative to it.
+  std::string scenario;
+
+  std::string_view tag() const override { return "PARAMS_SCENARIO"; }
+  void read(FieldReader& in) override;
+  void write(FieldWriter& out) const override;
+};
+
+/// The contacts file that a posture was found for.
+struct ContactsParameter final : Parameter {
+  std::filesystem::path file;
+
+  std::string_view tag() const override { return "PARAMS_CONTACTS"; }
+  void read(FieldReader& in) override;
+  void write(FieldWriter& out) const override;
+};
+
+/// Fails at the line: it is one of a plan of format version 1.
+[[noreturn]] void refuse_older_plan(const FieldReader& in, std::string_view tag);
+
+}  // namespace locograph

@@ -1,0 +1,163 @@
+#include <locograph/plugins/configuration/plan_parameters.h>
+#include <locograph/plugins/contact/contact_parameter.h>
+
+#include <cmath>
+
+namespace locograph {
+namespace {
+
+constexpr int kMostFacets = 64;
+
+Eigen::Vector3d read_vector(FieldReader& in) {
+  Eigen::Vector3d v;
+  read_field(in, v);
+  return v;
+}
+
+/// The kind with its sizes and limits.
+void read_kind(FieldReader& in, EndEffector& effector) {
+  const std::string word = in.word();
+  const std::optional<ContactKind> kind = contact_kind_of(word);
+  if (!kind) in.fail("contact kind '" + word + "'", "'surface', 'point', 'rung' or 'wheel'");
+  effector.kind = *kind;
+  if (*kind == ContactKind::kSurface) {
+    effector.half_x_m = in.number();
+    effector.half_y_m = in.number();
+  }
+  if (*kind == ContactKind::kPoint || *kind == ContactKind::kWheel) effector.radius_m = in.number();
+  if (*kind != ContactKind::kRung) effector.friction = in.number();
+  effector.max_force_N = in.number();
+  if (*kind == ContactKind::kRung) effector.max_moment_Nm = in.number();
+}
+
+void write_kind(FieldWriter& out, const EndEffector& effector) {
+  out.word(contact_kind_name(effector.kind));
+  if (effector.kind == ContactKind::kSurface) {
+    out.number(effector.half_x_m);
+    out.number(effector.half_y_m);
+  }
+  if (effector.kind == ContactKind::kPoint || effector.kind == ContactKind::kWheel) {
+    out.number(effector.radius_m);
+  }
+  if (effector.kind != ContactKind::kRung) out.number(effector.friction);
+  out.number(effector.max_force_N);
+  if (effector.kind == ContactKind::kRung) out.number(effector.max_moment_Nm);
+}
+
+void read_place(FieldReader& in, Contact& contact) {
+  if (const std::string at = in.word(); at != "at") {
+    in.fail("'" + at + "'", "'at' and the contact's place in the world");
+  }
+  contact.position = read_vector(in);
+  contact.normal = read_vector(in);
+  if (in.peek() == "free") {
+    in.word();
+  } else {
+    contact.forward = read_vector(in);
+  }
+}
+
+}  // namespace
+
+ContactParameter::ContactParameter(std::shared_ptr<const RobotParameter> parameter, int number,
+                                   Contact placed, const FrictionModel& model)
+    : robot_number(number),
+      contact(std::move(placed)),
+      friction(model),
+      robot(std::move(parameter)) {
+  const EndEffector& effector = contact.effector;
+  closure = ContactClosure(*robot->robot, contact);
+  link = robot->robot->link_index(effector.link);
+  axes_in_world = kind() == ContactKind::kPoint || kind() == ContactKind::kWheel;
+  axes = axes_in_world ? locograph::axes_in_world(contact) : axes_in_link(effector);
+  if (axes_in_world) touching_offset = -effector.radius_m * axes.col(2);
+
+  const std::string name = "contact of " + contact.name();
+  if (kind() == ContactKind::kRung) {
+    if (friction.cone == FrictionCone::kCircle) return;
+    throw Error(name + " is a rung with a friction cone", "none: it is held by a grasp");
+  }
+  const bool outer = friction.cone == FrictionCone::kOuter;
+  yaw_mu = outer ? effector.friction : effector.friction / std::sqrt(2.0);
+  facet_mu = effector.friction;
+  if (friction.cone == FrictionCone::kCircle) return;
+  if (friction.facets < 3 || friction.facets > kMostFacets) {
+    throw Error(name + " has a friction pyramid of " + std::to_string(friction.facets) + " sides",
+                "3 to " + std::to_string(kMostFacets));
+  }
+  if (!outer) facet_mu *= std::cos(EIGEN_PI / friction.facets);
+  const auto exact = [](double value) { return std::abs(value) < 1e-15 ? 0.0 : value; };
+  for (int i = 0; i < friction.facets; ++i) {
+    const double angle = 2.0 * EIGEN_PI * i / friction.facets;
+    facets.emplace_back(exact(std::cos(angle)), exact(std::sin(angle)));
+  }
+}
+
+std::span<const int> ContactParameter::components() const {
+  static constexpr int kSurface[] = {0, 1, 2, 3, 4, 5}, kRung[] = {0, 1, 2, 3, 5};
+  if (kind() == ContactKind::kRung) return kRung;
+  return std::span<const int>(kSurface).first(kind() == ContactKind::kSurface ? 6 : 3);
+}
+
+int ContactParameter::limit_rows() const {
+  if (kind() == ContactKind::kRung) return 5;
+  const int force = 2 + (friction.cone == FrictionCone::kCircle ? 1 : friction.facets);
+  return kind() == ContactKind::kSurface ? force + 12 : force;
+}
+
+void ContactParameter::read(FieldReader& in) {
+  const int number = in.integer();
+  const auto of = in.parameters()->get<RobotParameter>(number);
+  Contact read;
+  read.effector.name = in.word();
+  // Where a link is named now, a plan of version 1 had the first number of its point.
+  if (std::string_view("+-.0123456789").find(in.peek().substr(0, 1)) != std::string_view::npos) {
+    refuse_older_plan(in, tag());
+  }
+  read.effector.link = in.word();
+  read_kind(in, read.effector);
+  read.effector.point = read_vector(in);
+  read.effector.normal = read_vector(in);
+  read.effector.forward = read_vector(in);
+  read_place(in, read);
+  FrictionModel model;
+  while (!in.at_end()) {
+    const std::string word = in.word();
+    if (word == "unloaded" && read.bears_load) {
+      read.bears_load = false;
+    } else if (word == "locked" && !read.locked) {
+      read.locked = true;
+    } else if ((word == "inner" || word == "outer") && model.cone == FrictionCone::kCircle) {
+      model.cone = word == "inner" ? FrictionCone::kInner : FrictionCone::kOuter;
+      model.facets = in.integer();
+    } else {
+      in.fail("'" + word + "'", "'unloaded', 'locked', 'inner', 'outer' or the end of the line");
+    }
+  }
+  *this = ContactParameter(of, number, std::move(read), model);
+}
+
+void ContactParameter::write(FieldWriter& out) const {
+  out.integer(robot_number);
+  out.word(contact.effector.name);
+  out.word(contact.effector.link);
+  write_kind(out, contact.effector);
+  write_field(out, contact.effector.point);
+  write_field(out, contact.effector.normal);
+  write_field(out, contact.effector.forward);
+  out.word("at");
+  write_field(out, contact.position);
+  write_field(out, contact.normal);
+  if (contact.forward) {
+    write_field(out, *contact.forward);
+  } else {
+    out.word("free");
+  }
+  if (!contact.bears_load) out.word("unloaded");
+  if (contact.locked) out.word("locked");
+  if (friction.cone == FrictionCone::kCircle) return;
+  out.word(friction.cone == FrictionCone::kInner ? "inner" : "outer");
+  out.integer(friction.facets);
+}
+
+}  // namespace locograph

@@ -1,0 +1,84 @@
+#pragma once
+/// PARAMS_CONTACT: an end effector of a robot at its place in the world, and what it can bear
+/// there.
+///
+///     PARAMS_CONTACT n robot NAME link KIND  x y z  nx ny nz  tx ty tz
+///                    at x y z  nx ny nz  tx ty tz|free  [unloaded] [locked] [inner K|outer K]
+///     PARAMS_CONTACT 4 0 left_foot l_sole surface 0.08 0.035 0.5 1000  0 0 0  0 0 1  1 0 0
+///                    at 0 0.1 0  0 0 1  1 0 0                                       (one line)
+///     PARAMS_CONTACT 5 0 hand TCP_L point 0 0.5 400  0 0 0  0 0 1  1 0 0  at 0.5 0 1  -1 0 0  free
+///
+/// All of a Contact (robots/contact.h): name of the end effector ("" for none), link, kind, and on
+/// the link its point [m], normal and forward; `at`: position [m], normal and forward in the world,
+/// `free` where it has no forward. KIND, with the components of its wrench:
+///
+///     surface half_x half_y friction f_max   fx fy fz mx my mz   a rectangle about the point [m]
+///     point radius friction f_max            fx fy fz            a ball, or a bare point: radius 0
+///     rung f_max m_max                       fx fy fz mx mz      a bar along y, held by a grasp
+///     wheel radius friction f_max            fx fy fz
+///
+/// f_max [N] bounds fz, for a rung each |component| of the force; m_max [N m] each |moment| of a
+/// rung. Friction is a circular cone; `inner K` makes it the pyramid of K sides inside that cone,
+/// `outer K` the one around it, for edges; the judge does not look at it.
+///
+/// Wrenches act on the robot, about the touching point, along the contact's axes. Those of surfaces
+/// and rungs are fixed in the link, a sole's and a grasp's. Those of points and wheels are fixed in
+/// the world, since these may turn on their contact: their force acts a radius below the ball's or
+/// the wheel's centre, against the normal.
+
+#include <locograph/plugins/configuration/robot_parameters.h>
+#include <locograph/robots/contact_closure.h>
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace locograph {
+
+enum class FrictionCone { kCircle, kInner, kOuter };
+
+/// How the edges see Coulomb's cone.
+struct FrictionModel {
+  FrictionCone cone = FrictionCone::kCircle;
+  int facets = 0;  ///< of a cone that is no circle
+};
+
+struct ContactParameter final : Parameter {
+  int robot_number = 0;
+  Contact contact;
+  FrictionModel friction;
+  std::shared_ptr<const RobotParameter> robot;
+  int link = -1;
+  ContactClosure closure;
+  bool axes_in_world = false;
+  Eigen::Matrix3d axes;  ///< columns x, y, z: in the link frame or, axes_in_world, in the world
+  /// From the effector's point to where its force acts, fixed in the world; zero where the axes
+  /// are fixed in the link.
+  Eigen::Vector3d touching_offset = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector2d> facets;  ///< outward unit normals of the pyramid's sides
+  double facet_mu = 0.0;                ///< facet · (fx, fy) <= facet_mu fz
+  /// Friction coefficient in the yaw rows of the contact wrench cone, which hold for corner forces
+  /// in a pyramid of four sides: mu / √2 makes it an inner one.
+  double yaw_mu = 0.0;
+
+  ContactParameter() = default;
+  /// Throws Error for a contact that is not sound (robots/contact.h), and for a pyramid of fewer
+  /// than 3 or more than 64 sides.
+  ContactParameter(std::shared_ptr<const RobotParameter> robot, int robot_number, Contact contact,
+                   const FrictionModel& friction = {});
+
+  ContactKind kind() const { return contact.effector.kind; }
+  /// Components of its wrench: indices into fx fy fz mx my mz.
+  std::span<const int> components() const;
+  /// Rows of the limits on its wrench (edge_contact_wrench.h).
+  int limit_rows() const;
+
+  std::string_view tag() const override { return "PARAMS_CONTACT"; }
+  void read(FieldReader& in) override;
+  void write(FieldWriter& out) const override;
+};
+
+using ContactList = std::vector<std::shared_ptr<const ContactParameter>>;
+
+}  // namespace locograph

@@ -1,0 +1,114 @@
+#pragma once
+/// Where a robot touches the world: end effectors, contacts and stances, as plain values.
+///
+///     EndEffector foot{.name = "left_foot", .link = "l_sole", .kind = ContactKind::kSurface,
+///                      .half_x_m = 0.08, .half_y_m = 0.04, .friction = 0.6, .max_force_N =
+///                      1000.0};
+///     Contact standing{.effector = foot, .position = {0.0, 0.1, 0.0},
+///                      .forward = Eigen::Vector3d::UnitX()};
+///     Stance stance{.contacts = {standing}};
+///     require_sound_stance(robot, stance);
+///
+/// An end effector is a place on the robot, its kind and what it can bear. A contact is an end
+/// effector at its place in the world. A stance is the set of contacts that hold together.
+///
+/// The end effector's axes, fixed in its link: z is `normal`, which points out of the touched
+/// surface into the robot; x is `forward` made normal to it; y completes them. Those of the contact
+/// are made of its own normal and forward in the world. A contact is closed when:
+///
+///     surface   point, normal and forward of link and world coincide; without `forward`, yaw about
+///               the normal is free
+///     point     `point` is at `position`, or, with a radius (a ball), that far above it along the
+///               normal; the link may turn in any way
+///     rung      `point` is at `position` and the bar, normal × forward, has the world's direction;
+///               turning round the bar is free
+///     wheel     the disc of `radius_m` about `point`, normal to the axis of the joint above the
+///               link, touches the plane through `position` along `normal`, and the axle lies along
+///               that plane; the touching point may be anywhere in it
+///
+/// While a stance is held its surfaces, points and rungs stay where they are. A wheel rolls: its
+/// touching point moves along its heading only, as far as the disc turns. A locked wheel does not
+/// turn about its joint, and its touching point stays.
+
+#include <locograph/robots/robot.h>
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace locograph {
+
+enum class ContactKind { kSurface, kPoint, kRung, kWheel };
+
+/// "surface", "point", "rung", "wheel"
+const std::string& contact_kind_name(ContactKind kind);
+/// Nothing for another word.
+std::optional<ContactKind> contact_kind_of(const std::string& name);
+
+struct EndEffector {
+  std::string name = {};  ///< contacts files may leave it empty
+  std::string link = {};
+  ContactKind kind = ContactKind::kSurface;
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();     ///< m, link frame; a wheel's centre
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();   ///< link frame, any length
+  Eigen::Vector3d forward = Eigen::Vector3d::UnitX();  ///< link frame, any length
+  double half_x_m = 0.0, half_y_m = 0.0;               ///< surface: a rectangle about the point
+  double radius_m = 0.0;       ///< wheel: of the disc; point: of the ball, 0 for a bare point
+  double friction = 0.0;       ///< Coulomb's coefficient; surface, point and wheel
+  double max_force_N = 0.0;    ///< of the pressing force; rung: of each component
+  double max_moment_Nm = 0.0;  ///< rung: of each component
+};
+
+struct Contact {
+  EndEffector effector;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();     ///< m, world
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();      ///< world, out of the surface, any length
+  std::optional<Eigen::Vector3d> forward = std::nullopt;  ///< world; a rung must have one
+  bool bears_load = true;  ///< false: closed, but balance does not count on it
+  bool locked = false;     ///< a wheel that does not turn about its joint
+
+  /// The end effector's name, or its link's.
+  const std::string& name() const { return effector.name.empty() ? effector.link : effector.name; }
+};
+
+struct Stance {
+  std::vector<Contact> contacts = {};
+};
+
+/// Columns x, y, z: `forward` made normal to the normal, across, normal. Lengths do not matter.
+/// Throws Error, in the name of the contact, if one of them is zero or not finite, or if they are
+/// parallel.
+Eigen::Matrix3d contact_axes(const std::string& contact, const Eigen::Vector3d& normal,
+                             const Eigen::Vector3d& forward);
+
+/// The end effector's axes in its link.
+Eigen::Matrix3d axes_in_link(const EndEffector& effector);
+/// The contact's axes in the world. Without `forward`, any direction across the normal is x.
+Eigen::Matrix3d axes_in_world(const Contact& contact);
+
+/// Of two vectors of any length [rad].
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
+/// Throws Error, naming the end effector, for an unknown link, numbers that are not finite, axes
+/// that are none, sizes, friction or limits that are not positive (max_moment_Nm, a ball's radius:
+/// negative), a wheel that no revolute or continuous joint turns, and one whose
+/// centre is not on its axle.
+void require_sound_effector(const Robot& robot, const EndEffector& effector);
+
+/// The same for its end effector, and throws Error for a place that is not finite, a normal that is
+/// zero or along forward, a rung without forward, and a lock on what is no wheel.
+void require_sound_contact(const Robot& robot, const Contact& contact);
+
+/// The same for every contact, and throws Error for a stance without contacts or without one that
+/// bears load, an end effector that touches twice, and contacts that contradict each other: points
+/// fixed to each other in the robot whose places are not as far apart, or whose normals are not at
+/// the same angle.
+void require_sound_stance(const Robot& robot, const Stance& stance);
+
+/// Links that touch something in a stance: those fixed to a contact's link, and those on the next
+/// joint behind.
+std::vector<bool> touching_links(const Robot& robot, std::span<const Contact> contacts);
+
+}  // namespace locograph

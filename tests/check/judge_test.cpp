@@ -1,0 +1,182 @@
+#include <gtest/gtest.h>
+#include <locograph/check/judge.h>
+#include <locograph/common/error.h>
+#include <locograph/world/octree.h>
+
+#include "check/centauro_on_wheels.h"
+
+namespace locograph {
+namespace {
+
+KeyFrame key_frame(double time_s, const Eigen::Vector3d& position) {
+  KeyFrame frame{time_s, Eigen::Isometry3d::Identity()};
+  frame.pose.translation() = position;
+  return frame;
+}
+
+TEST(Judge, AcceptsAStraightDriveOnRollingWheelsAndListsEveryConstraint) {
+  const CheckReport report = check_with({}, centauro().drive(11, 0.08, 0.8));
+  EXPECT_EQ(violated(report), std::set<std::string>{});
+  EXPECT_EQ(report.configurations, 11);
+  EXPECT_GT(report.samples, 80);
+  const std::vector<std::string> names = {
+      "not_finite",          "configuration_size",  "stance",
+      "contact_claims",      "base_orientation",    "time_order",
+      "step_size",           "joint_limits",        "velocity_limits",
+      "base_velocity",       "acceleration_limits", "contact_position",
+      "contact_orientation", "contact_between",     "contact_motion",
+      "contact_turn",        "contact_relabelled",  "contact_on_surface",
+      "lateral_slip",        "longitudinal_slip",   "obstacle_distance",
+      "ground_penetration",  "touching_depth",      "self_collision",
+      "static_balance",      "torque_limits"};
+  ASSERT_EQ(report.violations.size(), names.size());
+  for (std::size_t i = 0; i < names.size(); ++i)
+    EXPECT_EQ(report.violations[i].constraint, names[i]);
+  EXPECT_NEAR(report.min_self_clearance_m.value(), 0.038, 1e-3);
+  EXPECT_DOUBLE_EQ(report.min_clearance_m.value(), 0.5);
+  EXPECT_NEAR(report.max_velocity_ratio.value(), 0.08 / kRadius / 0.8 / 20.0, 1e-9);
+  EXPECT_LT(report.max_contact_error_m.value(), 1e-4);
+  EXPECT_NEAR(report.constraint("touching_depth").worst, 0.0073, 2e-4);
+  EXPECT_LT(report.constraint("lateral_slip").worst, 1e-6);
+  EXPECT_LT(report.constraint("longitudinal_slip").worst, 1e-6);
+  EXPECT_GT(report.min_balance_margin.value(), 0.01);
+  EXPECT_LT(report.max_torque_ratio.value(), 1.0);
+  EXPECT_EQ(report.balance->wrenches.size(), 4u);
+  // What nobody said is taken on trust, and what nothing limits is not judged.
+  EXPECT_EQ(report.trusted,
+            (std::vector<std::string>{"wheel_1: what it can bear", "wheel_2: what it can bear",
+                                      "wheel_3: what it can bear", "wheel_4: what it can bear"}));
+  for (const char* name : {"contact_claims", "base_velocity", "acceleration_limits",
+                           "contact_motion", "contact_turn", "contact_relabelled"})
+    EXPECT_FALSE(report.constraint(name).judged) << name;
+}
+
+TEST(Judge, FindsTheThinWallOnlyOnTheWay) {
+  const std::vector<Obstacle> wall = {box("wall", {1.66, 0.0, 1.0}, {0.002, 4.0, 2.0})};
+  Motion motion = centauro().drive(1, 0.08, 0.8);
+  EXPECT_TRUE(check_with(wall, motion).feasible);
+  motion.configurations[0] = centauro().at(3.24);
+  EXPECT_TRUE(check_with(wall, motion).feasible);
+}
+
+TEST(Judge, TakesBothSignsOfAQuaternionForTheSameOrientation) {
+  Motion motion = centauro().drive(4, 0.08, 0.8);
+  motion.configurations[2].segment<4>(3) *= -1.0;
+  EXPECT_TRUE(check_with({}, motion).feasible);
+}
+
+TEST(Judge, MeetsAnObstacleThatComesByWhenTheRobotDoesAndNotAtAnotherTime) {
+  // Crosses the lane 2 m ahead between 4 s and 8 s.
+  Obstacle cart = box("cart", {2.0, -3.0, 0.5}, {0.3, 0.3, 1.0});
+  cart.motion = {key_frame(4.0, {2.0, -3.0, 0.5}), key_frame(8.0, {2.0, 3.0, 0.5})};
+  Motion motion = centauro().drive(2, 4.0, 12.0);  // is at x = 2 after 6 s
+  const CheckReport met = check_with({cart}, motion);
+  EXPECT_EQ(violated(met), std::set<std::string>{"obstacle_distance"});
+  EXPECT_NE(met.constraint("obstacle_distance").what.find("cart"), std::string::npos);
+  EXPECT_NEAR(met.constraint("obstacle_distance").time_s, 6.0, 1.0);
+  for (double& time : motion.time_s) time += 8.5;
+  const CheckReport missed = check_with({cart}, motion);
+  EXPECT_TRUE(missed.feasible) << missed.constraint("obstacle_distance").worst;
+}
+
+TEST(Judge, SeesAnObstacleRunThroughTheRobotThatStandsStill) {
+  // 12 m/s: over in a tenth of a second of the ten that the step takes.
+  Obstacle ball;
+  ball.shape = Obstacle::Shape::kSphere;
+  ball.name = "ball";
+  ball.size = {0.05, 0.0, 0.0};
+  ball.world_from_obstacle.translation() << -3.0, 0.0, 0.8;
+  ball.motion = {key_frame(7.31, {-3.0, 0.0, 0.8}), key_frame(7.81, {3.0, 0.0, 0.8})};
+  const Motion motion = centauro().drive(2, 0.0, 10.0);
+  EXPECT_EQ(violated(check_with({ball}, motion)), std::set<std::string>{"obstacle_distance"});
+  ball.world_from_obstacle.translation().z() = 2.0;
+  for (KeyFrame& frame : ball.motion) frame.pose.translation().z() = 2.0;
+  EXPECT_TRUE(check_with({ball}, motion).feasible);
+}
+
+TEST(Judge, DrivesOverAMappedFloorButNotThroughAMappedWall) {
+  std::vector<Box> boxes(1);
+  boxes[0].world_from_box.translation() << 1.0, 0.0, -0.025;
+  boxes[0].size << 4.0, 2.0, 0.04;
+  const Motion motion = centauro().drive(11, 0.08, 0.8);
+  World world{octree_from_boxes(boxes, 0.05), {}, {ground()}};
+  const CheckReport floor = Judge(centauro().shared, world).check(motion);
+  EXPECT_EQ(violated(floor), std::set<std::string>{});
+  boxes.push_back({Eigen::Isometry3d::Identity(), {0.05, 2.0, 1.0}});
+  boxes[1].world_from_box.translation() << 1.125, 0.0, 0.5;
+  world.map = octree_from_boxes(boxes, 0.05);
+  const CheckReport wall = Judge(centauro().shared, world).check(motion);
+  EXPECT_TRUE(violated(wall).contains("obstacle_distance"));
+  EXPECT_NE(wall.constraint("obstacle_distance").what.find("voxel"), std::string::npos);
+}
+
+TEST(Judge, ReportsTheClearanceOfADriveBesideAWall) {
+  // 0.1 m beside the outermost point of the robot, which the left elbow or wheel is.
+  double distance = 0.0;
+  const std::vector<Obstacle> near = {box("wall", {0.5, 0.9, 1.0}, {6.0, 0.2, 2.0})};
+  const CheckReport far = check_with(near, centauro().drive(2, 0.0, 1.0));
+  distance = far.min_clearance_m.value();
+  ASSERT_LT(distance, 0.5);
+  ASSERT_GT(distance, 0.1);
+  Obstacle wall = near[0];
+  wall.world_from_obstacle.translation().y() -= distance - 0.1;
+  const CheckReport report = check_with({wall}, centauro().drive(11, 0.08, 0.8));
+  EXPECT_TRUE(report.feasible);
+  EXPECT_NEAR(report.min_clearance_m.value(), 0.1, 1e-6);
+  CheckOptions options;
+  options.min_clearance_m = 0.101;
+  EXPECT_EQ(violated(check_with({wall}, centauro().drive(11, 0.08, 0.8), options)),
+            std::set<std::string>{"obstacle_distance"});
+}
+
+TEST(Judge, RefusesCallsThatMakeNoSense) {
+  const Motion good = centauro().drive(3, 0.08, 0.8);
+  const auto refused = [](const Motion& motion, const CheckOptions& options = {}) {
+    EXPECT_THROW(check_with({}, motion, options), Error);
+  };
+  refused(Motion{});
+  Motion bad = good;
+  bad.time_s.pop_back();
+  refused(bad);
+  bad = good;
+  bad.stance_from.pop_back();
+  refused(bad);
+  bad = good;
+  bad.stance_from[1] = 1;
+  refused(bad);
+  bad = good;
+  bad.stances[0].contacts[0].effector.link = "nowhere";
+  refused(bad);
+  bad = good;
+  bad.stances[0].contacts[0].effector.link = "pelvis";  // no joint turns it
+  refused(bad);
+  bad = good;
+  bad.stances[0].contacts[0].effector.radius_m = 0.0;
+  refused(bad);
+  CheckOptions options;
+  options.max_step_m = 0.0;
+  refused(good, options);
+  options = {};
+  options.min_clearance_m = kNaN;
+  refused(good, options);
+  options = {};
+  options.min_balance_margin = 1.0;
+  refused(good, options);
+  options = {};
+  options.until_s = kInfinity;
+  refused(good, options);
+  EXPECT_THROW(check_with({}, good).constraint("beauty"), Error);
+}
+
+TEST(Judge, GivesTheSameBitsTwice) {
+  const Obstacle post = box("post", {0.9, 0.75, 0.5}, {0.1, 0.1, 1.0});
+  const Motion motion = centauro().drive(11, 0.08, 0.8);
+  const CheckReport first = check_with({post}, motion), second = check_with({post}, motion);
+  for (std::size_t i = 0; i < first.violations.size(); ++i) {
+    EXPECT_EQ(first.violations[i].worst, second.violations[i].worst);
+    EXPECT_EQ(first.violations[i].time_s, second.violations[i].time_s);
+  }
+}
+
+}  // namespace
+}  // namespace locograph

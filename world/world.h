@@ -1,0 +1,45 @@
+#pragma once
+/// The world around a robot as one value: what is in the way, and what may be touched.
+///
+///     World world = load_world("hall.bt", "boxes.xml");
+///     world.surfaces.push_back(ground());
+///     CollisionWorld exact(robot, world);                      // what a judge sees
+///     WorldDistance field = distance_view(world, options);     // what edges see
+///
+/// A snapshot: a world does not change; a newer one replaces it. Map and obstacles are only in the
+/// way. Surfaces are in the way, too, and may be touched from the side of their normal.
+
+#include <locograph/world/obstacles.h>
+#include <octomap/OcTree.h>
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace locograph {
+
+/// A flat rectangle, touched from above in its own frame.
+struct Surface {
+  std::string name;
+  Eigen::Isometry3d world_from_surface = Eigen::Isometry3d::Identity();  ///< z: its normal
+  double half_x_m = std::numeric_limits<double>::infinity();
+  double half_y_m = std::numeric_limits<double>::infinity();  ///< infinite: without an end
+  double friction = 0.0;  ///< Coulomb's coefficient; 0: what the end effector says
+};
+
+struct World {
+  std::shared_ptr<const octomap::OcTree> map;  ///< null: none
+  std::vector<Obstacle> obstacles;
+  std::vector<Surface> surfaces;
+};
+
+/// The plane z = 0 without an end.
+Surface ground();
+
+/// Map and obstacles of files; empty paths: none. Throws Error for files that cannot be used.
+World load_world(const std::filesystem::path& map, const std::filesystem::path& obstacles);
+
+}  // namespace locograph
