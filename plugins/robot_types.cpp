@@ -6,6 +6,7 @@
 #include <locograph/plugins/contact/stance_parameter.h>
 #include <locograph/plugins/frame_pose/edge_frame_pose.h>
 #include <locograph/plugins/ground_distance/edge_ground_distance.h>
+#include <locograph/plugins/ground_distance/edge_link_height.h>
 #include <locograph/plugins/joint_limits/edge_joint_limits.h>
 #include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
@@ -47,6 +48,7 @@ void add_robot_types(TypeRegistry& types) {
   types.add_edge<EdgeDuration>();
   types.add_edge<EdgeFramePose>();
   types.add_edge<EdgeGroundDistance>();
+  types.add_edge<EdgeLinkHeight>();
   types.add_edge<EdgeJointLimits>();
   types.add_edge<EdgeObstacleDistance>();
   types.add_edge<EdgePlanTracking>();

@@ -63,6 +63,14 @@ inline EndEffector point_contact(const std::string& link, const Eigen::Vector3d&
   return end;
 }
 
+/// A foot that is a ball.
+inline EndEffector ball_contact(const std::string& link, const Eigen::Vector3d& centre,
+                                double radius_m) {
+  EndEffector end = point_contact(link, centre);
+  end.radius_m = radius_m;
+  return end;
+}
+
 /// centauro, coman_plus, which come along; go2, anymal, which are public data: data_folder holds
 /// their files.
 inline PostureRobot posture_robot(const std::string& name, const std::filesystem::path& sources,
@@ -91,10 +99,14 @@ inline PostureRobot posture_robot(const std::string& name, const std::filesystem
     robot.hands = {point_contact("ball1_tip", origin), point_contact("ball2_tip", origin)};
     robot.fewest_feet = 3;
   } else {
+    // Of go2 the ball in the rubber, from which the hull of the foot differs by up to 1.5 mm.
+    const bool go2 = name == "go2";
     const std::vector<std::string> feet =
-        name == "go2" ? std::vector<std::string>{"FL_foot", "FR_foot", "RL_foot", "RR_foot"}
-                      : std::vector<std::string>{"LF_FOOT", "RF_FOOT", "LH_FOOT", "RH_FOOT"};
-    for (const std::string& foot : feet) robot.feet.push_back(point_contact(foot, origin));
+        go2 ? std::vector<std::string>{"FL_foot", "FR_foot", "RL_foot", "RR_foot"}
+            : std::vector<std::string>{"LF_FOOT", "RF_FOOT", "LH_FOOT", "RH_FOOT"};
+    for (const std::string& foot : feet)
+      robot.feet.push_back(go2 ? ball_contact(foot, {-0.002, 0.0, 0.0}, 0.022)
+                               : ball_contact(foot, {0.0, 0.0, 0.0225}, 0.03));
     robot.fewest_feet = 3;
   }
   return robot;
@@ -137,7 +149,7 @@ class ContactSets {
   }
 
  private:
-  static constexpr double kAboveGround_m = 0.01;
+  static constexpr double kAboveGround_m = 0.0;
 
   double uniform(double lower, double upper) {
     return lower + (upper - lower) * 0x1.0p-53 * static_cast<double>(random_() >> 11);
@@ -205,6 +217,7 @@ class ContactSets {
       const bool hand = std::any_of(robot_.hands.begin(), robot_.hands.end(),
                                     [&](const EndEffector& h) { return h.link == end.link; });
       placed.normal = hand ? Eigen::Vector3d(-pose.linear().col(2)) : Eigen::Vector3d::UnitZ();
+      placed.position -= end.radius_m * placed.normal;
     }
     return placed;
   }

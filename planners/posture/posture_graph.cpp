@@ -1,3 +1,4 @@
+#include <locograph/check/limits.h>
 #include <locograph/planners/plan/plan.h>
 #include <locograph/planners/posture/posture_graph.h>
 #include <locograph/plugins/contact/edge_contact.h>
@@ -25,6 +26,8 @@ constexpr int kFirstFrame = 10, kFirstContact = 1000;
 // On squared errors in m, rad and parts of the robot's weight.
 constexpr double kContactWeight = 1e5, kBalanceWeight = 1e4, kLimitWeight = 1e4,
                  kWrenchWeight = 1e3, kTorqueWeight = 1e2;
+/// Links that touch near the ground: what their contacts, closed up to a tolerance, give way to.
+constexpr double kTouchingMargin = 2e-5, kTouchingWeight = 1e6;
 constexpr double kPreferredJoint = 1e-2, kPreferredBase = 1e-4, kWrenchNorm = 1e-2;
 
 // What counts as closed; the check allows 1e-4 m and 1e-3 rad.
@@ -37,6 +40,13 @@ double used(double margin) { return margin > 0.0 ? kMarginUsed * margin : kNoMar
 
 Eigen::VectorXd all(Eigen::Index rows, double value) {
   return Eigen::VectorXd::Constant(rows, value);
+}
+
+/// The judge takes the contact for one on the plane z = 0.
+bool is_on_ground(const Contact& contact) {
+  const Eigen::Vector3d normal = contact.normal.normalized();
+  return std::abs(contact.position.z()) <= limits::kClosed_m &&
+         std::acos(std::clamp(normal.z(), -1.0, 1.0)) <= limits::kClosed_rad;
 }
 
 /// What the contact bears, less a margin.
@@ -126,7 +136,7 @@ Violated WatchedRows::violated(Workspace& workspace) {
 PostureGraph::PostureGraph(std::shared_ptr<const RobotParameter> robot,
                            std::shared_ptr<const WorldParameter> seen,
                            const PostureProblem& problem, const PostureOptions& options,
-                           const std::vector<bool>& coarse_pairs)
+                           const PostureSolver::Shapes& shapes)
     : robot_(std::move(robot)), weight_N_(robot_->robot->total_mass() * standard_gravity().norm()) {
   const Robot& model = *robot_->robot;
   add_parameters(std::move(seen), problem, options);
@@ -143,7 +153,7 @@ PostureGraph::PostureGraph(std::shared_ptr<const RobotParameter> robot,
   constrain(Kind::kJoints, EdgeJointLimits(model, options.joint_margin_rad, kLimitWeight),
             all(joints, used(options.joint_margin_rad)), -1, q_);
   add_balance_edges(options);
-  add_collision_edges(problem, options, coarse_pairs);
+  add_collision_edges(problem, options, shapes);
 }
 
 void PostureGraph::add_parameters(std::shared_ptr<const WorldParameter> seen,
@@ -207,12 +217,12 @@ void PostureGraph::add_balance_edges(const PostureOptions& options) {
 }
 
 void PostureGraph::add_collision_edges(const PostureProblem& problem, const PostureOptions& options,
-                                       const std::vector<bool>& coarse_pairs) {
+                                       const PostureSolver::Shapes& shapes) {
   const auto pairs = static_cast<Eigen::Index>(robot_->self_collision.pairs.size());
   if (pairs > 0) {
     EdgeSelfCollision apart(*robot_, options.self_margin_m, kLimitWeight);
     for (Eigen::Index p = 0; p < pairs; ++p) {
-      if (coarse_pairs[static_cast<std::size_t>(p)]) apart.weights[p] = 0.0;
+      if (shapes.coarse_pairs[static_cast<std::size_t>(p)]) apart.weights[p] = 0.0;
     }
     constrain(Kind::kSelf, std::move(apart), all(pairs, used(options.self_margin_m)), -1, q_);
   }
@@ -231,12 +241,37 @@ void PostureGraph::add_collision_edges(const PostureProblem& problem, const Post
     release_touching(ground.weights);
     constrain(Kind::kSpheres, std::move(ground), all(spheres, used(options.ground_margin_m)), -1,
               q_);
+    keep_touching_above_ground(problem, options, shapes);
   }
   if (seen_) {
     EdgeObstacleDistance obstacles(*robot_, kWorldNumber, options.obstacle_margin_m, kLimitWeight);
     release_touching(obstacles.weights);
     constrain(Kind::kSpheres, std::move(obstacles), all(spheres, used(options.obstacle_margin_m)),
               -1, q_);
+  }
+}
+
+/// Links whose contacts are not on the ground may not reach into it, however near it they touch.
+void PostureGraph::keep_touching_above_ground(const PostureProblem& problem,
+                                              const PostureOptions& options,
+                                              const PostureSolver::Shapes& shapes) {
+  const Robot& model = *robot_->robot;
+  const double margin = std::min(kTouchingMargin, options.ground_margin_m);
+  std::vector<bool> on_ground(model.links().size(), false), near(on_ground);
+  for (const Contact& contact : problem.stance.contacts) {
+    const std::vector<bool> touching = touching_links(model, {&contact, 1});
+    const bool on = is_on_ground(contact);
+    for (std::size_t link = 0; link < touching.size(); ++link) {
+      if (!touching[link]) continue;
+      (on ? on_ground : near)[link] = true;
+    }
+  }
+  for (std::size_t link = 0; link < near.size(); ++link) {
+    if (!near[link] || on_ground[link] || shapes.solids[link]->empty()) continue;
+    constrain(Kind::kContact,
+              EdgeLinkHeight(kRobotNumber, model.links()[link].name, margin, kTouchingWeight,
+                             shapes.solids[link]),
+              all(1, used(margin)), static_cast<int>(link), q_);
   }
 }
 

@@ -1,20 +1,21 @@
 #pragma once
 /// The graph that a posture is the optimum of, and which of its rows are violated.
 ///
-///     PostureGraph posture(robot, seen, problem, options, coarse_pairs);
+///     PostureGraph posture(robot, seen, problem, options, shapes);
 ///     posture.set_start(problem.preferred);
 ///     Problem compiled;
 ///     compiled.compile(posture.graph);
 ///     WatchedRows rows = posture.watch(compiled);
 ///     double worst = rows.worst(workspace);                // 1: the worst row is at its tolerance
 ///
-/// `coarse_pairs` of links have no weight in self-collision. Weights make one unit of violation
+/// Weights make one unit of violation
 /// count alike: 0.01 of m, rad or the robot's weight. Those of the preferred configuration and of
 /// the wrenches' size are so small that they move a constraint by micrometres only.
 
 #include <locograph/core/workspace.h>
 #include <locograph/planners/posture/posture_solver.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
+#include <locograph/plugins/ground_distance/edge_link_height.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
 
 #include <vector>
@@ -54,12 +55,18 @@ class WatchedRows {
   Eigen::VectorXd error_;
 };
 
+/// What is worked out once for a robot.
+struct PostureSolver::Shapes {
+  std::vector<bool> coarse_pairs;  ///< without weight in self-collision
+  std::vector<std::shared_ptr<const LinkSolids>> solids;  ///< of each link
+};
+
 class PostureGraph {
  public:
   /// seen: what is in the way, as edges see it.
   PostureGraph(std::shared_ptr<const RobotParameter> robot,
                std::shared_ptr<const WorldParameter> seen, const PostureProblem& problem,
-               const PostureOptions& options, const std::vector<bool>& coarse_pairs);
+               const PostureOptions& options, const PostureSolver::Shapes& shapes);
 
   /// The configuration, and wrenches that share the weight evenly among the contacts.
   void set_start(const Eigen::VectorXd& configuration);
@@ -77,7 +84,9 @@ class PostureGraph {
   void add_contact_edges();
   void add_balance_edges(const PostureOptions& options);
   void add_collision_edges(const PostureProblem& problem, const PostureOptions& options,
-                           const std::vector<bool>& coarse_pairs);
+                           const PostureSolver::Shapes& shapes);
+  void keep_touching_above_ground(const PostureProblem& problem, const PostureOptions& options,
+                                  const PostureSolver::Shapes& shapes);
   template <class E, class... Vertices>
   void constrain(WatchedRows::Kind kind, E edge, const Eigen::VectorXd& tolerance, int link,
                  Vertices... vertices);

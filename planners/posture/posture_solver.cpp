@@ -55,13 +55,13 @@ class Search {
   Search(const std::shared_ptr<const RobotParameter>& robot,
          const std::shared_ptr<const WorldParameter>& seen, const Judge& judge,
          const PostureProblem& problem, const PostureOptions& options,
-         const std::vector<bool>& coarse, Workspace& workspace)
+         const PostureSolver::Shapes& shapes, Workspace& workspace)
       : robot_(*robot->robot),
         judge_(judge),
         problem_(problem),
         options_(options),
         random_(options.seed),
-        posture_(robot, seen, problem, options, coarse),
+        posture_(robot, seen, problem, options, shapes),
         solver_(make_linear_solver("dense")),
         workspace_(workspace) {
     compiled_.compile(posture_.graph);
@@ -237,8 +237,13 @@ PostureSolver::PostureSolver(std::shared_ptr<const RobotParameter> robot, World 
                              const WorldFiles& files)
     : robot_(std::move(robot)),
       judge_(robot_->robot, world),
-      coarse_pairs_(coarse_pairs(robot_, judge_)),
       workspaces_(std::make_unique<Workspaces>()) {
+  auto shapes = std::make_unique<Shapes>();
+  shapes->coarse_pairs = coarse_pairs(robot_, judge_);
+  const Robot& model = *robot_->robot;
+  for (int link = 0; link < static_cast<int>(model.links().size()); ++link)
+    shapes->solids.push_back(std::make_shared<const LinkSolids>(model, link));
+  shapes_ = std::move(shapes);
   const auto seen = std::make_shared<WorldParameter>();
   seen->set_files(files.map, files.obstacles);
   if (const double ground = ground_height(world); std::isfinite(ground)) {
@@ -246,10 +251,10 @@ PostureSolver::PostureSolver(std::shared_ptr<const RobotParameter> robot, World 
   }
   seen->now = distance_view(world);
   seen_ = seen;
-  if (!robot_->robot->floating_base()) {
+  if (!model.floating_base()) {
     throw Error("a posture of a robot with a fixed base", "a floating base");
   }
-  RobotState(*robot_->robot).require_mass();
+  RobotState(model).require_mass();
 }
 
 PostureSolver::~PostureSolver() = default;
@@ -265,7 +270,7 @@ PostureResult PostureSolver::solve(const PostureProblem& problem,
   }
   std::unique_ptr<Workspace> workspace = workspaces_->take();
   PostureResult result =
-      Search(robot_, seen_, judge_, problem, options, coarse_pairs_, *workspace).run();
+      Search(robot_, seen_, judge_, problem, options, *shapes_, *workspace).run();
   workspaces_->give_back(std::move(workspace));
   return result;
 }
@@ -277,7 +282,7 @@ Graph PostureSolver::graph(const PostureProblem& problem, const PostureResult& r
   exact.ground_margin_m = exact.wrench_margin = exact.torque_margin = 0.0;
   // What it stays near is itself: the graph is at rest.
   const PostureProblem found{problem.stance, result.configuration, problem.file};
-  PostureGraph posture(robot_, seen_, found, exact, coarse_pairs_);
+  PostureGraph posture(robot_, seen_, found, exact, *shapes_);
   const std::optional<BalanceCertificate>& balance = result.report.balance;
   posture.set(result.configuration, balance ? balance->wrenches : std::vector<Eigen::VectorXd>());
   if (!problem.file.empty()) {

@@ -19,7 +19,8 @@
 ///
 /// Constraints are solved with margins (PostureOptions), so that what the check asks for holds with
 /// room to spare. Pairs of links whose covering shapes overlap although the links do not, in a
-/// named configuration of the robot, are left to the check.
+/// named configuration of the robot, are left to the check. Links that touch something near the
+/// ground which is not the ground, as stones, are kept out of it by their exact shapes.
 /// Deterministic but for the deadline, up to rounding that depends on where vectors lie in memory:
 /// a program that makes the same calls gets the same bits. Thread-safe.
 
@@ -98,6 +99,8 @@ struct PostureResult {
 
 class PostureSolver {
  public:
+  struct Shapes;  ///< of the robot, for its own use
+
   /// files: what graph() is saved with. Throws Error for a robot without a floating base, without
   /// masses, or with shapes that cannot be used.
   explicit PostureSolver(std::shared_ptr<const RobotParameter> robot, World world = posture_world(),
@@ -123,7 +126,7 @@ class PostureSolver {
   std::shared_ptr<const RobotParameter> robot_;
   std::shared_ptr<const WorldParameter> seen_;  ///< the world as edges see it
   Judge judge_;
-  std::vector<bool> coarse_pairs_;
+  std::unique_ptr<const Shapes> shapes_;
   std::unique_ptr<Workspaces> workspaces_;
 };
 
