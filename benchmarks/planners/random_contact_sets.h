@@ -8,9 +8,9 @@
 ///
 /// How a set is drawn. A configuration: every joint within ±0.4 rad of the home posture and inside
 /// its limits, the base tilted by up to 0.15 rad about x and y and turned anywhere; again until it
-/// does not collide with itself; then lifted or lowered so that its lowest point is 1 cm above the
-/// ground: what it touches are stones of any height, and a link may touch what its own contact is on
-/// and nothing else.
+/// does not collide with itself; then lifted or lowered so that its lowest point is on the ground.
+/// What it touches are stones of any height, or the ground where a ball stands on it; a link may
+/// reach into what its own contact is on and into nothing else.
 /// Then one to four end effectors: for humanoids one foot or both, for robots on four legs three or
 /// all of them, since fewer hold them at single configurations only; hands at random. The poses
 /// that these have become the contacts, so there is a configuration that closes them without
@@ -140,19 +140,30 @@ class ContactSets {
     }
     set.drawn[2] -= lowest;
     state.update(set.drawn.data());
-    const std::vector<Eigen::Isometry3d> at = poses(state);
-    set.drawn[2] += kAboveGround_m;
-    set.drawn[2] -= world_.surroundings({.world_from_link = at}).surface.distance_m;
+    set.drawn[2] -= world_.surroundings({.world_from_link = poses(state)}).surface.distance_m;
     state.update(set.drawn.data());
     for (const EndEffector& end : ends()) set.stance.contacts.push_back(place(end, state));
+    if (const double height = height_of_standing_ball(set.stance); height != 0.0) {
+      set.drawn[2] -= height;
+      for (Contact& contact : set.stance.contacts) contact.position.z() -= height;
+    }
     return set;
   }
 
  private:
-  static constexpr double kAboveGround_m = 0.0;
-
   double uniform(double lower, double upper) {
     return lower + (upper - lower) * 0x1.0p-53 * static_cast<double>(random_() >> 11);
+  }
+
+  /// Of the lowest contact above the ground, where it is a ball that stands on it up to how the
+  /// link's shape differs from a ball; else 0.
+  static double height_of_standing_ball(const Stance& stance) {
+    constexpr double kDiffers_m = 3e-3;
+    const auto lowest = std::min_element(
+        stance.contacts.begin(), stance.contacts.end(),
+        [](const Contact& a, const Contact& b) { return a.position.z() < b.position.z(); });
+    const double height = lowest->position.z();
+    return lowest->effector.radius_m > 0.0 && std::abs(height) <= kDiffers_m ? height : 0.0;
   }
 
   static std::vector<Eigen::Isometry3d> poses(const RobotState& state) {

@@ -27,11 +27,11 @@ constexpr int kFirstFrame = 10, kFirstContact = 1000;
 constexpr double kContactWeight = 1e5, kBalanceWeight = 1e4, kLimitWeight = 1e4,
                  kWrenchWeight = 1e3, kTorqueWeight = 1e2;
 /// Links that touch near the ground: what their contacts, closed up to a tolerance, give way to.
-constexpr double kTouchingMargin = 2e-5, kTouchingWeight = 1e6;
+constexpr double kTouchingMargin = 3e-5, kTouchingWeight = 1e6;
 constexpr double kPreferredJoint = 1e-2, kPreferredBase = 1e-4, kWrenchNorm = 1e-2;
 
 // What counts as closed; the check allows 1e-4 m and 1e-3 rad.
-constexpr double kContactTolerance = 3e-5, kBalanceTolerance = 2e-4, kWrenchTolerance = 5e-3;
+constexpr double kContactTolerance = 5e-5, kBalanceTolerance = 2e-4, kWrenchTolerance = 5e-3;
 /// The part of a margin that a violation may use up.
 constexpr double kMarginUsed = 0.9;
 constexpr double kNoMargin = 1e-7;
