@@ -23,6 +23,9 @@ struct CheckOptions {
   /// What the scenario or the contacts file says that each end effector can bear, by its name. It
   /// counts instead of what a motion says of it.
   std::vector<EndEffector> known;
+  /// Contacts whose places are known, by the word of a contacts file. A contact of a motion that is
+  /// at none of its end effector's violates `contact_claims`. Empty: a motion says where it stands.
+  std::vector<Contact> places = {};
   /// A motion that claims more than is known (a larger sole, more friction, larger forces, another
   /// kind, link or place) violates `contact_claims`. False: it is judged by what is known alone.
   bool compare_claims = true;

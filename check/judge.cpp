@@ -40,7 +40,8 @@ class Check {
   CheckReport run() {
     const Stopwatch watch;
     for (const Stance& stance : context_.motion.stances)
-      context_.stances.emplace_back(context_.robot, context_.world, stance, context_.options.known);
+      context_.stances.emplace_back(context_.robot, context_.world, stance, context_.options.known,
+                                    context_.options.places);
     NumbersCheck numbers(context_);
     numbers.run();
     check_stances();

@@ -55,6 +55,19 @@ std::string excess_claim(const EndEffector& claimed, const EndEffector& known) {
   return "";
 }
 
+/// Up to rounding, the contact is where the other one is. A direction that only one of them holds
+/// is another claim.
+bool is_at(const Contact& contact, const Contact& place) {
+  const auto same = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return (a - b).norm() <= kRounding;
+  };
+  return same(contact.position, place.position) &&
+         same(contact.normal.stableNormalized(), place.normal.stableNormalized()) &&
+         contact.forward.has_value() == place.forward.has_value() &&
+         (!place.forward ||
+          same(contact.forward->stableNormalized(), place.forward->stableNormalized()));
+}
+
 /// The part of a convex polygon where n . x <= d. Sutherland and Hodgman, Reentrant polygon
 /// clipping, 1974.
 Polygon clip(const Polygon& polygon, const Eigen::Vector2d& n, double d) {
@@ -123,7 +136,7 @@ void place_on_surfaces(const World& world, JudgedContact& judged) {
 }  // namespace
 
 JudgedStance::JudgedStance(const Robot& robot, const World& world, const Stance& stance,
-                           std::span<const EndEffector> known) {
+                           std::span<const EndEffector> known, std::span<const Contact> places) {
   require_sound_stance(robot, stance);
   const std::vector<int>& body_of = robot.tree().body_of_link;
   const auto body = [&](const std::string& link) {
@@ -150,6 +163,14 @@ JudgedStance::JudgedStance(const Robot& robot, const World& world, const Stance&
       other.push_back(contact.name() + " is on the body that is known as " + name_of(*alias));
     else
       unknown.push_back(contact.name());
+  }
+  if (!places.empty()) {
+    for (const Contact& contact : stance.contacts) {
+      if (std::none_of(places.begin(), places.end(), [&](const Contact& place) {
+            return place.name() == contact.name() && is_at(contact, place);
+          }))
+        other.push_back(contact.name() + " is at a place that is not known");
+    }
   }
   touching = touching_links(robot, taken.contacts);
   for (const Contact& contact : taken.contacts) {

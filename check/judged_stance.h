@@ -48,7 +48,7 @@ struct JudgedStance {
 
   /// Throws Error for a stance that is not sound.
   JudgedStance(const Robot& robot, const World& world, const Stance& stance,
-               std::span<const EndEffector> known);
+               std::span<const EndEffector> known, std::span<const Contact> places = {});
 
   /// Where links touch in a configuration.
   std::vector<CollisionWorld::Touch> touches(std::span<const Eigen::Isometry3d> poses) const;

@@ -132,7 +132,7 @@ std::optional<Lie> jump(const Honest& honest, Random& random) {
 
 std::optional<Lie> float_in_the_air(const Honest& honest, Random& random) {
   if (honest.world.surfaces.empty()) return std::nullopt;
-  Lie lie = lie_about(honest, {"contact_on_surface"});
+  Lie lie = lie_about(honest, {"contact_on_surface", "contact_claims"});
   const double up = random() % 2 == 0 ? kBeyond * limits::kClosed_m : uniform(random, 0.001, 50.0);
   for (Eigen::VectorXd& q : lie.motion.configurations) q[2] += up;
   for (Stance& stance : lie.motion.stances)
@@ -467,7 +467,7 @@ std::optional<Lie> obstacle_afterwards(const Honest& honest, Random& random) {
 
 /// The ground ends before the farthest contact does.
 std::optional<Lie> ground_ends(const Honest& honest, Random& random) {
-  if (honest.world.surfaces.size() != 1) return std::nullopt;
+  if (honest.world.surfaces.size() != 1 || !honest.options.surfaces_known) return std::nullopt;
   const std::size_t vertex = any_below(random, vertices(honest));
   RobotState state(*honest.robot);
   Eigen::VectorXd q = honest.motion.configurations[vertex];

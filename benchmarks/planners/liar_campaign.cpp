@@ -77,6 +77,7 @@ class Postures {
       for (Contact& contact : honest.motion.stances.front().contacts) {
         contact.effector.name = contact.effector.link;
         honest.options.known.push_back(contact.effector);
+        honest.options.places.push_back(contact);
       }
       return honest;
     }

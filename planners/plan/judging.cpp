@@ -72,9 +72,10 @@ Judging judging_of(const Graph& graph, const Plan& plan, const JudgingRequest& r
     judging.options.surfaces_known = false;
   }
   if (contacts && !other) {
-    const Stance stance = load_contacts(contacts->file, *plan.robot->robot);
+    Stance stance = load_contacts(contacts->file, *plan.robot->robot);
     for (const Contact& contact : stance.contacts)
       judging.options.known.push_back(contact.effector);
+    judging.options.places = std::move(stance.contacts);
   }
   if (!request.map.empty() || !request.obstacles.empty()) {
     World instead = load_world(request.map, request.obstacles);

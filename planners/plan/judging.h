@@ -10,7 +10,8 @@
 /// own environment, and what its PARAMS_WORLD adds; what end effectors can bear is the word of the
 /// scenario or of the contacts file. A plan that names neither stands on the plane z = 0 among what
 /// its PARAMS_WORLD names, and what it says of its contacts is taken on trust, which the report
-/// tells. A contacts file says nothing of surfaces: contacts may be anywhere, the ground is z = 0.
+/// tells. A contacts file says where contacts are but nothing of surfaces: the ground is z = 0, and
+/// that there is something to touch at the other places is taken on trust.
 
 #include <locograph/check/check_report.h>
 #include <locograph/planners/plan/plan.h>

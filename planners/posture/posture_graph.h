@@ -57,7 +57,7 @@ class WatchedRows {
 
 /// What is worked out once for a robot.
 struct PostureSolver::Shapes {
-  std::vector<bool> coarse_pairs;  ///< without weight in self-collision
+  std::vector<bool> coarse_pairs;                         ///< without weight in self-collision
   std::vector<std::shared_ptr<const LinkSolids>> solids;  ///< of each link
 };
 

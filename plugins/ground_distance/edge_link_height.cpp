@@ -34,10 +34,7 @@ double LinkSolids::reach_from(const Eigen::Vector3d& point) const {
 
 EdgeLinkHeight::EdgeLinkHeight(int number, std::string link, double margin, double weight,
                                std::shared_ptr<const LinkSolids> given)
-    : robot_number(number),
-      link_name(std::move(link)),
-      margin_m(margin),
-      solids(std::move(given)) {
+    : robot_number(number), link_name(std::move(link)), margin_m(margin), solids(std::move(given)) {
   weights.setConstant(weight);
 }
 

@@ -74,6 +74,26 @@ TEST(PostureSolver, AHumanoidStandsOnItsSoles) {
   EXPECT_LT(std::abs(state.center_of_mass().x()), 0.08);
 }
 
+/// `check` of the saved posture says to the last bit what the solver said.
+void expect_saved_is_judged_alike(const PostureSolver& solver, const PostureProblem& problem,
+                                  const PostureResult& result) {
+  const TemporaryFolder folder;
+  write_graph(solver.graph(problem, result), folder.file("posture.g2o"));
+  TypeRegistry types;
+  add_robot_types(types);
+  const Graph read = read_graph(folder.file("posture.g2o"), types);
+  const Plan plan = plan_of(read);
+  const Judging judging = judging_of(read, plan, {.data_folder = folder.path()});
+  const CheckReport report = judged(read, plan, judging);
+  EXPECT_EQ(report.feasible, result.success) << violation_text(report.worst());
+  ASSERT_EQ(report.violations.size(), result.report.violations.size());
+  for (std::size_t i = 0; i < report.violations.size(); ++i) {
+    if (!result.report.violations[i].judged) continue;
+    EXPECT_EQ(report.violations[i].worst, result.report.violations[i].worst)
+        << report.violations[i].constraint;
+  }
+}
+
 class ReachableSets : public testing::TestWithParam<std::string> {};
 
 TEST_P(ReachableSets, ArePosturesThatTheCheckAccepts) {
@@ -97,6 +117,7 @@ TEST_P(ReachableSets, ArePosturesThatTheCheckAccepts) {
     EXPECT_EQ(result.success,
               judge.check(result.configuration, set.stance, posture_check()).feasible)
         << result.reason;
+    expect_saved_is_judged_alike(solver, {set.stance, result.configuration}, result);
   }
   EXPECT_GE(solved, 9);
 }

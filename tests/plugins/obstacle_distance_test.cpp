@@ -131,7 +131,8 @@ TEST_F(ObstacleDistance, DoesNotTakeTheGroundThatTheWorldNamesForAnObstacle) {
   save_octree(*some_map(false), folder.file("no_floor.bt"));
   world = std::make_shared<WorldParameter>(folder.file("floor.bt"), std::filesystem::path(), 0.0);
   const Eigen::VectorXd with_floor = at(0.3, 0.1);
-  world = std::make_shared<WorldParameter>(folder.file("no_floor.bt"), std::filesystem::path(), 0.0);
+  world =
+      std::make_shared<WorldParameter>(folder.file("no_floor.bt"), std::filesystem::path(), 0.0);
   const Eigen::VectorXd without_floor = at(0.3, 0.1);
   EXPECT_GT(without_floor.maxCoeff(), 0.0);
   EXPECT_TRUE(with_floor == without_floor);

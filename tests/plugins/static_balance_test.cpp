@@ -254,7 +254,10 @@ TEST_P(StaticBalance, KeepsEveryBitInAFile) {
   }
   Evaluated a(graph), b(again);
   for (std::size_t p = 0; p < graph.edge_pools().size(); ++p) {
-    for (int k = 0; k < 4; ++k) EXPECT_EQ(a.error(k, int(p)), b.error(k, int(p)));
+    for (int k = 0; k < 4; ++k)
+      EXPECT_EQ(a.error(k, int(p)), b.error(k, int(p)))
+          << graph.edge_pools()[p]->tag() << ' '
+          << (a.error(k, int(p)) - b.error(k, int(p))).transpose();
   }
 }
 
