@@ -247,10 +247,12 @@ void ContactCheck::keep(const Sample& sample, const LinkPoses* before) {
         add(turn_, turned, track.turn.size());
     }
     if (!contact.is_wheel() || before == nullptr) continue;
-    const double across = track.slip.lateral_m(), along = track.slip.longitudinal_m();
-    track.slip.add(wheel_step(contact, *before, sample.poses));
-    add(lateral_, across, track.slip.lateral_m());
-    add(longitudinal_, along, track.slip.longitudinal_m());
+    if (!track.slip) track.slip.emplace();
+    WheelSlip& slip = *track.slip;
+    const double across = slip.lateral_m(), along = slip.longitudinal_m();
+    slip.add(wheel_step(contact, *before, sample.poses));
+    add(lateral_, across, slip.lateral_m());
+    add(longitudinal_, along, slip.longitudinal_m());
   }
 }
 

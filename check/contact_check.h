@@ -35,7 +35,7 @@ class ContactCheck {
     Eigen::Vector3d offset = Eigen::Vector3d::Zero(), last = Eigen::Vector3d::Zero();
     Eigen::Matrix3d first = Eigen::Matrix3d::Identity();  // orientation of its link
     Extent place, turn;
-    WheelSlip slip;
+    std::optional<WheelSlip> slip;  // of what is or has been a wheel
   };
   struct Sample {
     int vertex = 0;
