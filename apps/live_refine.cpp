@@ -3,6 +3,7 @@
 #include <locograph/apps/plan_file.h>
 #include <locograph/apps/scene.h>
 #include <locograph/planners/online/refine.h>
+#include <locograph/planners/online/window_cause.h>
 #include <locograph/planners/plan/seen_world.h>
 
 #include <algorithm>
@@ -23,16 +24,12 @@ double time_of(const PlanFile& file, int index) {
   return file.graph.vertex(VertexId<VertexConfiguration>{file.plan.slots[index]}).time_s;
 }
 
-Json violation_json(const PlanFile& file, const WindowViolation& violation) {
-  if (!violation.any()) return nullptr;
-  int index = 0;
-  for (std::size_t i = 0; i < file.plan.slots.size(); ++i) {
-    if (file.plan.slots[i] == violation.at_vertex) index = static_cast<int>(i);
-  }
-  return {{"constraint", violation.constraint},
-          {"worst", violation.worst},
-          {"unit", violation.unit},
-          {"index", index}};
+Json violation_json(const CycleReport& cycle) {
+  if (!cycle.violation) return nullptr;
+  return {{"constraint", constraint_name(cycle.violation->tag)},
+          {"worst", cycle.violation->amount},
+          {"unit", cycle.violation->label.unit},
+          {"index", cycle.violated_at}};
 }
 
 Json cycle_json(const PlanFile& file, const CycleReport& cycle) {
@@ -50,7 +47,7 @@ Json cycle_json(const PlanFile& file, const CycleReport& cycle) {
           {"configurations", std::move(configurations)},
           {"feasible", cycle.feasible},
           {"cycle_time", cycle.time_total},
-          {"violation", violation_json(file, cycle.violation)}};
+          {"violation", violation_json(cycle)}};
 }
 
 void run(const LiveJob& job, LiveChannel& channel) {

@@ -20,6 +20,8 @@ struct CommandOptions {
   WorldOptions world;
   int horizon = 20;
   double deadline_ms = 0.0;
+  double goal_tolerance_m = RefineOptions().goal_tolerance_m;
+  double goal_tolerance_rad = RefineOptions().goal_tolerance_rad;
   std::vector<std::string> plugins;
   int threads = 1;
   bool json = false;
@@ -61,10 +63,15 @@ Json report_json(const RefineReport& report, const CommandOptions& options, doub
       {"configurations", report.configurations},
       {"feasible_cycles", report.feasible_cycles},
       {"deadline_misses", report.deadline_misses},
+      {"goal_distance_m", report.goal_distance_m},
+      {"goal_angle_rad", report.goal_angle_rad},
       {"short_of_goal_m", report.short_of_goal_m},
       {"iterations", iterations},
+      {"constraints", report.cycles.empty() ? 0 : report.cycles.front().constraints},
       {"detours_searched", detours},
       {"cycle_time", over_cycles(report, [](const CycleReport& c) { return c.time_total; })},
+      {"iteration_time",
+       over_cycles(report, [](const CycleReport& c) { return c.time_iteration; })},
       {"optimize_time", over_cycles(report, [](const CycleReport& c) { return c.time_optimise; })},
       {"map_update_time", statistics_json(report.map_update_s)},
       {"verify_time", statistics_json(report.verify_s)},
@@ -95,6 +102,8 @@ ExitCode refine_plan(const CommandOptions& options) {
   RefineOptions refine_options;
   refine_options.planner.horizon = options.horizon;
   refine_options.planner.deadline_s = 1e-3 * options.deadline_ms;
+  refine_options.goal_tolerance_m = options.goal_tolerance_m;
+  refine_options.goal_tolerance_rad = options.goal_tolerance_rad;
   refine_options.planner.validate();
   PlanFile file = load_plan(options.input, options.plugins);
   if (!file.plan.world) throw Error(file.name, 0, "the plan has no world", "a PARAMS_WORLD line");
@@ -132,7 +141,9 @@ ExitCode refine_plan(const CommandOptions& options) {
              std::to_string(options.horizon) + ", " + std::to_string(report.dof) +
              " degrees of freedom\n" + (report.success ? "" : "not refined: ") + report.reason +
              "\ncycle time " + ms("p50") + " ms (p95 " + ms("p95") + ", max " + ms("max") +
-             ")\nwritten: " + options.output + '\n');
+             ")\nends " + short_number(report.goal_distance_m) + " m and " +
+             short_number(report.goal_angle_rad) +
+             " rad from the goal\nwritten: " + options.output + '\n');
   return report.success ? kDone : kNo;
 }
 
@@ -149,6 +160,16 @@ Command add_refine(OptionParser& app) {
   parser.add_option("--horizon", o.horizon, "Configurations that one cycle optimises")
       .show_default();
   parser.add_option("--deadline-ms", o.deadline_ms, "Time one cycle may take; 0: no limit")
+      .not_negative()
+      .show_default();
+  parser
+      .add_option("--goal-tolerance", o.goal_tolerance_m,
+                  "How far from the plan's goal the base may end, in any direction [m]")
+      .not_negative()
+      .show_default();
+  parser
+      .add_option("--goal-angle-tolerance", o.goal_tolerance_rad,
+                  "How far from its heading there it may end [rad]")
       .not_negative()
       .show_default();
   parser.add_option("--threads", o.threads, "Most threads to use (this version uses one)")

@@ -27,13 +27,21 @@ class Rounds {
     violation_.assign(count, 0.0);
     last_.assign(count, std::numeric_limits<double>::infinity());
     weight_.resize(count);
+    tolerance_.resize(count);
     information_.resize(problem_.constraints().size());
     joint_.resize(problem_.constraints().size());
     for (std::size_t i = 0; i < problem_.constraints().size(); ++i) {
       const CompiledConstraint& c = problem_.constraints()[i];
-      information_[i] = pool(c).information(problem_.edges()[c.pool].edges[c.k]);
-      joint_[i] = !information_[i].isDiagonal(0.0);
-      for (int r = 0; r < c.count; ++r) weight_[c.row + r] = information_[i](r, r);
+      const int index = problem_.edges()[c.pool].edges[c.k];
+      // A limit on hundreds of rows has its weights, not a matrix of their square.
+      if (!pool(c).has_weights()) {
+        information_[i] = pool(c).information(index);
+        joint_[i] = !information_[i].isDiagonal(0.0);
+      }
+      for (int r = 0; r < c.count; ++r) {
+        weight_[c.row + r] = pool(c).weight(index, r);
+        tolerance_[c.row + r] = tolerance(c, r);
+      }
     }
     if (warm) return;
     for (ConstraintRow& row : rows_) {
@@ -58,8 +66,8 @@ class Rounds {
   }
 
   bool satisfied() const {
-    return std::all_of(violation_.begin(), violation_.end(),
-                       [this](double v) { return v <= options_.tolerance; });
+    return std::equal(violation_.begin(), violation_.end(), tolerance_.begin(),
+                      [](double violation, double tolerance) { return violation <= tolerance; });
   }
 
   /// Multipliers, then penalties. False when nothing is left to raise.
@@ -90,6 +98,8 @@ class Rounds {
       const CompiledConstraint& c = problem_.constraints()[i];
       ConstraintState state;
       state.edge = {c.edge};
+      state.multipliers.resize(c.count);
+      const bool weighted = information_[i].size() == 0;
       Eigen::VectorXd scaled_shift(c.count);
       for (int r = 0; r < c.count; ++r) {
         const ConstraintRow& row = rows_[c.row + r];
@@ -103,9 +113,10 @@ class Rounds {
           state.row = r;
         }
       }
-      const Eigen::VectorXd force = 2.0 * information_[i] * scaled_shift;
       for (int r = 0; r < c.count; ++r) {
-        state.multipliers.push_back(rows_[c.row + r].scale * force[r]);
+        const double force = weighted ? weight_[c.row + r] * scaled_shift[r]
+                                      : information_[i].row(r).dot(scaled_shift);
+        state.multipliers[r] = 2.0 * rows_[c.row + r].scale * force;
       }
       if (state.violation > most) {
         most = state.violation;
@@ -120,7 +131,14 @@ class Rounds {
     return *problem_.graph().edge_pools()[c.pool];
   }
   bool slow(int r) const {
-    return violation_[r] > options_.tolerance && violation_[r] > options_.decrease * last_[r];
+    return violation_[r] > tolerance_[r] && violation_[r] > options_.decrease * last_[r];
+  }
+  double tolerance(const CompiledConstraint& c, int r) const {
+    if (!options_.own_tolerances) return options_.tolerance;
+    const double of_edge = problem_.graph().edge_record(c.edge).tolerance;
+    if (of_edge > 0.0) return of_edge;
+    const double of_type = pool(c).row_tolerance(problem_.edges()[c.pool], c.k, r);
+    return of_type > 0.0 ? of_type : options_.tolerance;
   }
   /// Keeps the multiplier: λ = 2μ Ω shift.
   bool raise(ConstraintRow& row) const {
@@ -135,9 +153,9 @@ class Rounds {
   const Problem& problem_;
   std::vector<ConstraintRow>& rows_;
   const ConstrainedOptions& options_;
-  std::vector<double> error_, violation_, last_, weight_;
-  std::vector<Eigen::MatrixXd> information_;
-  std::vector<bool> joint_;  ///< Ω is not diagonal
+  std::vector<double> error_, violation_, last_, weight_, tolerance_;
+  std::vector<Eigen::MatrixXd> information_;  ///< empty for edges with weights
+  std::vector<bool> joint_;                   ///< Ω is not diagonal
 };
 
 /// The cost of the edges that are no constraints, at the state evaluated last.

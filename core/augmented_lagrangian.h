@@ -34,6 +34,8 @@ struct ConstrainedOptions {
   /// Largest violation of a row at convergence, in the unit of its error; for inequalities also the
   /// largest distance from the boundary, in that unit, of a row that still has a multiplier.
   double tolerance = 1e-8;
+  /// Rows whose edge or type has a tolerance (Graph::set_constraint, edge.h) are held to that.
+  bool own_tolerances = false;
   double initial_penalty = 1.0;  ///< factor on Ω
   double growth = 10.0;          ///< of a penalty that is raised
   double max_penalty = 1e10;     ///< factor on Ω; reached without effect: infeasible

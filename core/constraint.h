@@ -1,15 +1,21 @@
 #pragma once
 /// What makes an edge a constraint, and how its error enters the cost of an augmented Lagrangian.
 ///
-///     EdgeId e = graph.add_edge(on_circle, point);
-///     graph.set_constraint(e, ConstraintKind::kEquality);        // error = 0
-///     graph.set_constraint(f, ConstraintKind::kInequality);      // every row of the error ≤ 0
+///     struct EdgeOnCircle : Edge<1, VertexXY> {
+///       static constexpr ConstraintKind kConstraint = ConstraintKind::kEquality;   // error = 0
+///       static constexpr double kTolerance = 1e-4;                                 // see edge.h
+///
+/// A trait of its type, then; types that hinge by themselves (kOneSided) are inequalities without
+/// saying so. For a single edge the graph may say otherwise, and files keep what it says:
+///
+///     graph.set_constraint(e, ConstraintKind::kInequality);      // every row of the error ≤ 0
 ///
 /// The rows c of a constraint edge are charged as ‖scale·(c + shift)‖² under the edge's Ω, those of
-/// an inequality as ‖max(0, scale·(c + shift))‖²; augmented_lagrangian.h moves shift and scale from
-/// round to round. With scale² = μ this is, up to a constant, 2μ shiftᵀΩ c + μ cᵀΩc: the multiplier
-/// of the Lagrangian Σ eᵀΩe + λᵀc is λ = 2μ Ω shift (Nocedal & Wright 2006, eq. 17.36 and 17.65).
-/// Robust kernels do not apply to constraints.
+/// an inequality as ‖max(0, scale·(c + shift))‖²; as an ordinary edge while shift is 0 and
+/// scale 1, as in optimise(); augmented_lagrangian.h moves them from round to round. With scale² =
+/// μ this is, up to a constant, 2μ shiftᵀΩ c + μ cᵀΩc: the multiplier of the Lagrangian Σ eᵀΩe +
+/// λᵀc is λ = 2μ Ω shift (Nocedal & Wright 2006, eq. 17.36 and 17.65). Robust kernels do not apply
+/// to constraints.
 ///
 /// An inequality needs the signed value: the error of its type is g(x), negative inside. Types that
 /// hinge by themselves (kOneSided) do not tell how far inside they are; they may be constraints of
@@ -34,8 +40,9 @@ struct ConstraintRow {
 void constrain_error(const ConstraintRow* rows, int n, double* e);
 
 /// The same for the derivative (n × d), stored row by row or column by column; `e` is the error
-/// after constrain_error().
+/// after constrain_error(). Rows inside their limit become zero, unless the type hinges by itself:
+/// then they are left as they are, for nobody reads them.
 void constrain_jacobian(const ConstraintRow* rows, int n, int d, const double* e, double* jacobian,
-                        bool by_row);
+                        bool by_row, bool hinged = false);
 
 }  // namespace locograph

@@ -19,6 +19,7 @@ int state_size_of(const CompiledEdges::Slot& slot) {
 }
 const ConstraintRow* constraint_rows(const CompiledEdges& compiled, int k, const Evaluation& x) {
   if (compiled.constraint_row.empty() || compiled.constraint_row[k] < 0) return nullptr;
+  if (x.constraint_rows == nullptr) return nullptr;
   return x.constraint_rows + compiled.constraint_row[k];
 }
 
@@ -62,7 +63,10 @@ DensePriorPool::Vector DensePriorPool::shifted_error(const CompiledEdges& compil
   Vector e(x.scratch->array<double>(n), n);
   error(compiled, k, x, e.data());
   const ConstraintRow* rows = constraint_rows(compiled, k, x);
-  if (rows != nullptr) constrain_error(rows, n, e.data());
+  if (rows != nullptr) {
+    std::copy_n(e.data(), n, x.constraint_errors + compiled.constraint_row[k]);
+    constrain_error(rows, n, e.data());
+  }
   return e;
 }
 

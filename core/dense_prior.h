@@ -47,6 +47,7 @@ class DensePriorPool final : public EdgePool {
   std::unique_ptr<VertexPool> make_slot_pool(int) const override { return nullptr; }
   bool has_weights() const override { return false; }
   bool one_sided() const override { return false; }
+  double weight(int index, int row) const override { return edges[index].information(row, row); }
   Eigen::MatrixXd information(int index) const override { return edges[index].information; }
   void set_information(int index, const Eigen::MatrixXd& information) override {
     edges[index].information = information;

@@ -32,6 +32,13 @@
 /// error has so many rows for each of the many vertices, and files count the vertices, not the
 /// rows. Every edge carries its vertices, information and robust kernel by value.
 ///
+/// Whether it is a constraint (constraint.h), of which kind and how exactly it is meant, stands in
+/// the type: static constexpr ConstraintKind kConstraint, by default kInequality for types with
+/// kOneSided and kNone for the others; and how large a violation counts as none, in the unit of the
+/// row, by the first that the type has: double row_tolerance(int row, const V&… vertices) const,
+/// with the vertices as for row_label; double row_tolerance(int row) const; static constexpr double
+/// kTolerance. Graph::set_constraint() overrides both for a single edge.
+///
 /// What its rows are called when somebody asks which constraint is violated (violations.h), by the
 /// first that the type has: RowLabel row_label(int row, const V&… vertices) const, with the fixed
 /// (or leading) vertices as they stand in the graph; RowLabel row_label(int row) const; static
@@ -42,6 +49,7 @@
 /// rows that each touch a few coordinates (limits, distances). With kOneSided = true its rows are
 /// hinges max(0, …): a row whose error is zero has no derivative and is skipped.
 
+#include <locograph/core/constraint.h>
 #include <locograph/core/robust_kernel.h>
 #include <locograph/core/vertex.h>
 
@@ -111,6 +119,18 @@ struct WeightedEdgeData {
 /// incomplete.)
 template <class E>
 inline constexpr bool kHasWeights = E::kDiagonal;
+
+/// What edges of type E are unless the graph says otherwise.
+template <class E>
+constexpr ConstraintKind constraint_of() {
+  if constexpr (requires { E::kConstraint; }) {
+    return E::kConstraint;
+  } else if constexpr (requires { E::kOneSided; }) {
+    return E::kOneSided ? ConstraintKind::kInequality : ConstraintKind::kNone;
+  } else {
+    return ConstraintKind::kNone;
+  }
+}
 
 namespace detail {
 

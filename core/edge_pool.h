@@ -62,7 +62,10 @@ struct Evaluation {
   const double* state;
   std::span<const std::unique_ptr<DerivedStore>> derived;  ///< one for each vertex pool
   Scratch* scratch;
-  const ConstraintRow* constraint_rows = nullptr;
+  const ConstraintRow* constraint_rows = nullptr;  ///< null: constraints are ordinary edges
+  /// By the same rows: errors as the types give them, written by cost(), read by linearise(), which
+  /// is called on the same state.
+  double* constraint_errors = nullptr;
 };
 
 /// A sum over edges: with the robust kernels, and without.
@@ -94,6 +97,9 @@ class EdgePool {
   virtual std::unique_ptr<VertexPool> make_slot_pool(int slot) const = 0;
   virtual bool has_weights() const = 0;  ///< Ω is diagonal
   virtual bool one_sided() const = 0;    ///< the error is hinged: never negative
+  /// What its edges are unless the graph says otherwise.
+  virtual ConstraintKind constraint() const { return ConstraintKind::kNone; }
+  virtual double weight(int index, int row) const = 0;  ///< on the diagonal of Ω
   virtual Eigen::MatrixXd information(int index) const = 0;
   virtual void set_information(int index, const Eigen::MatrixXd& information) = 0;
   virtual RobustKernel& kernel(int index) = 0;
@@ -125,6 +131,11 @@ class EdgePool {
   /// Removes by moving the last edge into the gap.
   virtual void remove(int index) = 0;
 
+  /// Of a row of edge k: how large a violation counts as none; 0 where the type says nothing. Does
+  /// not allocate.
+  virtual double row_tolerance(const CompiledEdges& /*edges*/, int /*k*/, int /*row*/) const {
+    return 0.0;
+  }
   /// Of a row of edge k, at the states in the graph; empty where the type says nothing.
   virtual RowLabel row_label(const CompiledEdges& /*edges*/, int /*k*/, int /*row*/) const {
     return {};

@@ -2,6 +2,7 @@
 #include <locograph/core/information.h>
 
 #include <Eigen/Cholesky>
+#include <cmath>
 
 namespace locograph {
 namespace {
@@ -51,7 +52,7 @@ int Graph::add_vertex_record(int id, int pool, int index) {
 
 int Graph::add_edge_record(int pool, int index, int line) {
   const int slot = edge_slots();
-  edge_records_.push_back({pool, index, line});
+  edge_records_.push_back({pool, index, line, edge_pools_[pool]->constraint()});
   set_slot(edge_slot_of_pool_index_, pool, index, slot);
   if (!incident_.empty()) {
     for (const int v : edge_vertices(slot)) incident_[v].push_back(slot);
@@ -177,19 +178,27 @@ EdgeId Graph::add_dense_prior(DensePrior prior) {
   return {add_edge_record(number, pool.size() - 1, 0)};
 }
 
-void Graph::set_constraint(EdgeId e, ConstraintKind kind) {
-  EdgeRecord& record = edge_records_[e.slot];
-  const EdgePool& pool = *edge_pools_[record.pool];
-  const bool diagonal =
-      pool.has_weights() || Eigen::MatrixXd(pool.information(record.index)).isDiagonal(0.0);
+void Graph::check_constraint(const EdgePool& pool, int index, ConstraintKind kind) {
+  if (kind == ConstraintKind::kNone || pool.has_weights()) return;
+  const Eigen::MatrixXd information = pool.information(index);
+  const bool diagonal = information.isDiagonal(0.0);
   if (kind == ConstraintKind::kInequality && !diagonal) {
     throw Error("an inequality with an information matrix that is not diagonal", "a diagonal one");
   }
   if (kind == ConstraintKind::kEquality && !diagonal &&
-      pool.information(record.index).llt().info() != Eigen::Success) {
+      information.llt().info() != Eigen::Success) {
     throw Error("a constraint with a singular information matrix", "a positive definite one");
   }
+}
+
+void Graph::set_constraint(EdgeId e, ConstraintKind kind, double tolerance) {
+  if (!(tolerance >= 0.0 && std::isfinite(tolerance))) {
+    throw Error("a tolerance of " + std::to_string(tolerance), "0 (the type's own) or more");
+  }
+  EdgeRecord& record = edge_records_[e.slot];
+  check_constraint(*edge_pools_[record.pool], record.index, kind);
   record.constraint = kind;
+  record.tolerance = tolerance;
 }
 
 void Graph::remove_vertex(int slot) {

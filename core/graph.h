@@ -45,7 +45,8 @@ class Graph {
     int pool = -1;  ///< -1: removed
     int index = 0;
     int line = 0;
-    ConstraintKind constraint = ConstraintKind::kNone;
+    ConstraintKind constraint = ConstraintKind::kNone;  ///< its type's, unless set
+    double tolerance = 0.0;  ///< of its rows; 0: as its type says (edge.h)
   };
 
   Graph() = default;
@@ -137,9 +138,10 @@ class Graph {
         .edges[edge_records_[e.slot].index];
   }
   void remove_edge(EdgeId e);
-  /// Marks an edge as a constraint (constraint.h). Throws Error when its Ω does not suit the kind.
-  /// Not saved in files.
-  void set_constraint(EdgeId e, ConstraintKind kind);
+  /// What an edge is, where that is not what its type says (constraint.h), and how large a
+  /// violation of any of its rows counts as none; 0: as the type says. Saved in files. Throws Error
+  /// when its Ω does not suit the kind, and for a tolerance below 0.
+  void set_constraint(EdgeId e, ConstraintKind kind, double tolerance = 0.0);
 
   int edge_count() const { return edge_count_; }
   int edge_slots() const { return static_cast<int>(edge_records_.size()); }
@@ -212,11 +214,21 @@ class Graph {
     const int pool = edge_pool_of<E>();
     std::vector<E>& edges = static_cast<TypedEdgePool<E>&>(*edge_pools_[pool]).edges;
     edges.push_back(std::move(edge));
-    return {add_edge_record(pool, static_cast<int>(edges.size()) - 1, 0)};
+    const int index = static_cast<int>(edges.size()) - 1;
+    if constexpr (constraint_of<E>() != ConstraintKind::kNone && !kHasWeights<E>) {
+      try {
+        check_constraint(*edge_pools_[pool], index, constraint_of<E>());
+      } catch (const Error&) {
+        edges.pop_back();
+        throw;
+      }
+    }
+    return {add_edge_record(pool, index, 0)};
   }
 
   int add_vertex_record(int id, int pool, int index);
   int add_edge_record(int pool, int index, int line);
+  static void check_constraint(const EdgePool& pool, int index, ConstraintKind kind);
   void check_edge(std::span<const int> vertices) const;
   void check_edge(std::span<const int> vertices,
                   const Eigen::Ref<const Eigen::VectorXd>& weights) const;

@@ -7,6 +7,44 @@
 #include <map>
 
 namespace locograph {
+namespace {
+
+// What an edge's line may end in.
+constexpr std::string_view kConstraintWord = "constraint";
+struct NamedKind {
+  std::string_view name;
+  ConstraintKind kind;
+};
+constexpr NamedKind kKinds[] = {{"none", ConstraintKind::kNone},
+                                {"equality", ConstraintKind::kEquality},
+                                {"inequality", ConstraintKind::kInequality}};
+
+struct Mark {
+  ConstraintKind kind;
+  double tolerance;
+};
+
+Mark read_mark(FieldReader& in) {
+  in.word();
+  const std::string name = in.word();
+  const auto named = std::find_if(std::begin(kKinds), std::end(kKinds),
+                                  [&name](const NamedKind& k) { return k.name == name; });
+  if (named == std::end(kKinds)) {
+    in.fail("constraint '" + name + "'", "'none', 'equality' or 'inequality'");
+  }
+  return {named->kind, in.at_end() ? 0.0 : in.number()};
+}
+
+void write_mark(const Graph::EdgeRecord& record, ConstraintKind of_type, FieldWriter& out) {
+  if (record.constraint == of_type && record.tolerance == 0.0) return;
+  out.word(kConstraintWord);
+  for (const NamedKind& named : kKinds) {
+    if (named.kind == record.constraint) out.word(named.name);
+  }
+  if (record.tolerance > 0.0) out.number(record.tolerance);
+}
+
+}  // namespace
 
 /// One file being read: sorts its lines by kind, so that they may come in any order.
 class GraphReader {
@@ -184,11 +222,16 @@ class GraphReader {
     }
     in.set_parameters(&graph_.parameters_);
     const int index = pool.read(slots_, in);
+    Mark mark{pool.constraint(), 0.0};
+    if (in.peek() == kConstraintWord) mark = read_mark(in);
     in.expect_end();
     pool.bind(index, graph_.parameters_);
     pool.check(index, graph_);
     check_information(pool, index, line.number);
-    graph_.add_edge_record(number, index, line.number);
+    const EdgeId edge{graph_.add_edge_record(number, index, line.number)};
+    if (mark.kind != ConstraintKind::kNone || pool.constraint() != ConstraintKind::kNone) {
+      graph_.set_constraint(edge, mark.kind, mark.tolerance);
+    }
   }
 
   int vertex_of_edge(const EdgePool& pool, int slot, const Line& line, FieldReader& in) {
@@ -306,6 +349,7 @@ std::string write_graph_text(const Graph& graph, const std::filesystem::path& fo
     for (const int v : pool.vertices(record.index)) out.integer(graph.vertex_record(v).id);
     if (pool.arity() < 0) out.tag(" ||");
     pool.write(record.index, out);
+    write_mark(record, pool.constraint(), out);
     out.end_line();
   }
   return out.text();

@@ -7,10 +7,12 @@
 ///
 /// One item a line: parameters, vertices (`TAG id fields…`), `FIX id…`, edges (`TAG ids… fields…
 /// upper triangle of Ω row by row`; with run-time arity `TAG ids… || n …`, n the size of the
-/// error). Lines may come in any order, be blank, be indented, and end in a `#` comment. A file
-/// without any vertex gets them from its edges. Every mistake is an Error with file and line;
-/// nothing is guessed. Numbers are written with 17 significant digits: reading them back gives the
-/// same bits. Paths in parameters are relative to the file.
+/// error). An edge that is another constraint than its type says ends in `constraint KIND`, KIND
+/// none, equality or inequality, and one with a tolerance of its own in `constraint KIND tolerance`
+/// (Graph::set_constraint). Lines may come in any order, be blank, be indented, and end in a `#`
+/// comment. A file without any vertex gets them from its edges. Every mistake is an Error with file
+/// and line; nothing is guessed. Numbers are written with 17 significant digits: reading them back
+/// gives the same bits. Paths in parameters are relative to the file.
 
 #include <locograph/core/graph.h>
 #include <locograph/core/type_registry.h>

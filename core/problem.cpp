@@ -165,9 +165,17 @@ void Problem::compile_window(std::span<const int> free_vertex_slots,
     if (!eliminated) pattern_.kept = static_cast<int>(free_.size());
   }
   std::vector<int> touching;
-  for (const int slot : free_) {
+  const auto touch = [&](int slot) {
     const std::vector<int>& incident = graph_->incident_edges(slot);
     touching.insert(touching.end(), incident.begin(), incident.end());
+  };
+  for (const int slot : free_) touch(slot);
+  if (held != nullptr) {
+    for (const int slot : free_vertex_slots) {
+      if (!graph_->vertex_record(slot).fixed || place_[slot].state_offset >= 0) continue;
+      add_vertex(slot, -1);
+      touch(slot);
+    }
   }
   std::sort(touching.begin(), touching.end());
   touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
@@ -175,7 +183,8 @@ void Problem::compile_window(std::span<const int> free_vertex_slots,
     std::erase_if(touching, [&](int e) {
       const std::span<const int> vertices = graph_->edge_vertices(e);
       return std::any_of(vertices.begin(), vertices.end(), [&](int v) {
-        return place_[v].block < 0 && std::find(held->begin(), held->end(), v) == held->end();
+        return place_[v].state_offset < 0 &&
+               std::find(held->begin(), held->end(), v) == held->end();
       });
     });
   }

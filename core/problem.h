@@ -58,7 +58,9 @@ class Problem {
   void compile(Graph& graph);
   void compile(Graph& graph, std::span<const int> free_vertex_slots);
   /// The same, without the edges that touch a vertex which is neither free nor in `held`: the end
-  /// of a horizon is not tied to what lies behind it.
+  /// of a horizon is not tied to what lies behind it. Vertices of the window that the graph holds
+  /// are seen, held, with all their edges inside it: a constraint that they violate is a constraint
+  /// of the window, though nothing in it can be changed.
   void compile(Graph& graph, std::span<const int> free_vertex_slots, std::span<const int> held);
 
   /// These edges alone, with the vertices on them; free are those that the graph does not hold.

@@ -36,11 +36,13 @@ class TypedEdgePool final : public EdgePool {
   }
 
   bool has_weights() const override { return kHasWeights<E>; }
-  bool one_sided() const override {
+  bool one_sided() const override { return kHinged; }
+  ConstraintKind constraint() const override { return constraint_of<E>(); }
+  double weight(int index, int row) const override {
     if constexpr (kHasWeights<E>) {
-      return E::kOneSided;
+      return edges[index].weights[row];
     } else {
-      return false;
+      return edges[index].information(row, row);
     }
   }
   Eigen::MatrixXd information(int index) const override {
@@ -83,7 +85,10 @@ class TypedEdgePool final : public EdgePool {
       detail::LocalMatrix<Error> e = detail::make_local<Error>(edge.dimension(), 1, *x.scratch);
       Evaluator(edge, slots(compiled, k), x).error(e);
       const ConstraintRow* rows = constraint_rows(compiled, k, x);
-      if (rows != nullptr) constrain_error(rows, edge.dimension(), e.data());
+      if (rows != nullptr) {
+        std::copy_n(e.data(), edge.dimension(), x.constraint_errors + compiled.constraint_row[k]);
+        constrain_error(rows, edge.dimension(), e.data());
+      }
       const double chi2 = weighted_square(edge, e.data());
       total += {robust_weights(edge, rows, chi2).cost, chi2};
     }
@@ -130,6 +135,11 @@ class TypedEdgePool final : public EdgePool {
   RowLabel row_label(const CompiledEdges& compiled, int k, int row) const override {
     return label_of(edges[compiled.edges[k]], slots(compiled, k), row,
                     typename Evaluator::FixedSequence());
+  }
+
+  double row_tolerance(const CompiledEdges& compiled, int k, int row) const override {
+    return tolerance_of(edges[compiled.edges[k]], slots(compiled, k), row,
+                        typename Evaluator::FixedSequence());
   }
 
   bool predict([[maybe_unused]] int index, [[maybe_unused]] int slot,
@@ -196,6 +206,13 @@ class TypedEdgePool final : public EdgePool {
   using Error = Eigen::Matrix<double, E::kDimension, 1>;
   static constexpr int kD = E::kDimension;
   static constexpr int kFixed = detail::fixed_slot_count<E>();
+  static constexpr bool kHinged = [] {
+    if constexpr (kHasWeights<E>) {
+      return E::kOneSided;
+    } else {
+      return false;
+    }
+  }();
 
   static std::span<const CompiledEdges::Slot> slots(const CompiledEdges& compiled, int k) {
     const int begin = compiled.slot_begin[k];
@@ -222,10 +239,30 @@ class TypedEdgePool final : public EdgePool {
     }
   }
 
-  /// Null for an edge that is no constraint.
+  /// Likewise.
+  template <class Own, int... I>
+  static double tolerance_of([[maybe_unused]] const Own& edge,
+                             [[maybe_unused]] std::span<const CompiledEdges::Slot> own,
+                             [[maybe_unused]] int row, std::integer_sequence<int, I...>) {
+    if constexpr (requires {
+                    edge.row_tolerance(row,
+                                       detail::vertex_of<detail::FixedVertex<Own, I>>(own[I])...);
+                  }) {
+      return edge.row_tolerance(row, detail::vertex_of<detail::FixedVertex<Own, I>>(own[I])...);
+    } else if constexpr (requires { edge.row_tolerance(row); }) {
+      return edge.row_tolerance(row);
+    } else if constexpr (requires { Own::kTolerance; }) {
+      return Own::kTolerance;
+    } else {
+      return 0.0;
+    }
+  }
+
+  /// Null for an edge that is no constraint, and where nobody keeps rows for them.
   static const ConstraintRow* constraint_rows(const CompiledEdges& compiled, int k,
                                               const Evaluation& x) {
     if (compiled.constraint_row.empty() || compiled.constraint_row[k] < 0) return nullptr;
+    if (x.constraint_rows == nullptr) return nullptr;
     return x.constraint_rows + compiled.constraint_row[k];
   }
   static RobustKernel::Weights robust_weights(const E& edge, const ConstraintRow* rows,
@@ -294,9 +331,19 @@ class TypedEdgePool final : public EdgePool {
     const int n = edge.dimension();
 
     detail::LocalMatrix<Error> e = detail::make_local<Error>(n, 1, *x.scratch);
-    evaluator.error(e);
     const ConstraintRow* rows = constraint_rows(compiled, k, x);
-    if (rows != nullptr) constrain_error(rows, edge.dimension(), e.data());
+    if (rows != nullptr) {
+      std::copy_n(x.constraint_errors + compiled.constraint_row[k], n, e.data());
+      constrain_error(rows, n, e.data());
+    } else {
+      evaluator.error(e);
+    }
+    if constexpr (kHinged) {
+      // Inside all of its limits: nothing to add, and no Jacobian to clear and fill.
+      bool inside = true;
+      for (int r = 0; r < n && inside; ++r) inside = e[r] == 0.0 || edge.weights[r] == 0.0;
+      if (inside) return {};
+    }
     const double chi2 = weighted_square(edge, e.data());
     const RobustKernel::Weights robust = robust_weights(edge, rows, chi2);
     const Weight weight = {robust.weight,
@@ -313,12 +360,12 @@ class TypedEdgePool final : public EdgePool {
       evaluator.each_slot([&]<class V>(std::type_identity<V>, int s) {
         if (data[s] == nullptr) return;
         constrain_jacobian(rows, n, detail::vertex_of<V>(own[s]).dimension(), e.data(), data[s],
-                           JacobianMatrix<E, V::kDimension>::IsRowMajor);
+                           JacobianMatrix<E, V::kDimension>::IsRowMajor, kHinged);
       });
     }
     if constexpr (kHasWeights<E>) {
-      detail::add_rows(compiled, k, n, e.data(), edge.weights.data(), weight.first, E::kOneSided,
-                       data, *x.scratch, hessian, gradient);
+      detail::add_rows(compiled, k, n, e.data(), edge.weights.data(), weight.first, kHinged, data,
+                       *x.scratch, hessian, gradient);
     } else {
       accumulate(compiled, k, evaluator, e.data(), weight, data, x, hessian, gradient);
     }

@@ -1,10 +1,7 @@
 #include <locograph/core/diagnosis.h>
 #include <locograph/core/violations.h>
-#include <locograph/core/workspace.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <sstream>
 
 namespace locograph {
@@ -13,42 +10,17 @@ namespace {
 std::vector<int> constraint_slots(const Graph& graph) {
   std::vector<int> slots;
   for (int slot = 0; slot < graph.edge_slots(); ++slot) {
-    if (!graph.edge_alive(slot)) continue;
-    const Graph::EdgeRecord& record = graph.edge_record(slot);
-    if (record.constraint != ConstraintKind::kNone ||
-        graph.edge_pools()[record.pool]->one_sided()) {
+    if (graph.edge_alive(slot) && graph.edge_record(slot).constraint != ConstraintKind::kNone) {
       slots.push_back(slot);
     }
   }
   return slots;
 }
 
-/// The slots by pool and index there.
-std::vector<std::vector<int>> by_pool(const Graph& graph, const std::vector<int>& slots) {
-  std::vector<std::vector<int>> slot_of(graph.edge_pools().size());
-  for (std::size_t p = 0; p < slot_of.size(); ++p) slot_of[p].resize(graph.edge_pools()[p]->size());
-  for (const int slot : slots) {
-    slot_of[graph.edge_record(slot).pool][graph.edge_record(slot).index] = slot;
-  }
-  return slot_of;
-}
-
-double tolerance_of(const RowLabel& label, const ViolationOptions& options) {
-  const auto found = options.tolerance_of_unit.find(label.unit);
-  return found == options.tolerance_of_unit.end() ? options.tolerance : found->second;
-}
-
-ConstraintViolation describe(const Graph& graph, int slot) {
-  const Graph::EdgeRecord& record = graph.edge_record(slot);
-  ConstraintViolation violation;
-  violation.edge = {slot};
-  violation.place = edge_text(graph, {slot});
-  violation.tag = graph.edge_pools()[record.pool]->tag();
-  for (const int v : graph.edge_vertices(slot)) {
-    violation.vertices.push_back(graph.vertex_record(v).id);
-  }
-  violation.line = record.line;
-  return violation;
+/// Not a number counts as more than any number.
+double ratio_of(double amount, double tolerance) {
+  const double ratio = amount / tolerance;
+  return std::isnan(ratio) ? std::numeric_limits<double>::infinity() : ratio;
 }
 
 }  // namespace
@@ -72,6 +44,56 @@ void ViolationOptions::validate() const {
   for (const auto& [unit, value] : tolerance_of_unit) check(value);
 }
 
+ConstraintReader::Row ConstraintReader::row_of(int constraint, int row, double error,
+                                               bool one_sided) const {
+  const Problem& problem = workspace_->problem();
+  const CompiledConstraint& c = problem.constraints()[constraint];
+  double tolerance = problem.graph().edge_record(c.edge).tolerance;
+  if (tolerance == 0.0) {
+    tolerance =
+        problem.graph().edge_pools()[c.pool]->row_tolerance(problem.edges()[c.pool], c.k, row);
+  }
+  Row result;
+  result.constraint = constraint;
+  result.row = row;
+  result.amount = std::abs(error);
+  result.own_tolerance = tolerance > 0.0;
+  result.tolerance = result.own_tolerance ? tolerance : default_tolerance_;
+  result.ratio = ratio_of(result.amount, result.tolerance);
+  result.one_sided = one_sided;
+  return result;
+}
+
+ConstraintReader::Row ConstraintReader::worst() const {
+  Row worst;
+  each([&worst](const Row& row) {
+    if (row.ratio > worst.ratio) worst = row;
+  });
+  return worst;
+}
+
+ConstraintViolation ConstraintReader::describe(const Row& row) const {
+  const Problem& problem = workspace_->problem();
+  const Graph& graph = problem.graph();
+  const CompiledConstraint& c = problem.constraints()[row.constraint];
+  const EdgePool& pool = *graph.edge_pools()[c.pool];
+  ConstraintViolation violation;
+  violation.edge = {c.edge};
+  violation.place = edge_text(graph, {c.edge});
+  violation.tag = pool.tag();
+  for (const int v : graph.edge_vertices(c.edge)) {
+    violation.vertices.push_back(graph.vertex_record(v).id);
+  }
+  violation.line = graph.edge_record(c.edge).line;
+  violation.row = row.row;
+  violation.label = pool.row_label(problem.edges()[c.pool], c.k, row.row);
+  violation.amount = row.amount;
+  violation.tolerance = row.tolerance;
+  violation.ratio = row.ratio;
+  violation.one_sided = row.one_sided;
+  return violation;
+}
+
 std::vector<ConstraintViolation> violations(Graph& graph, const ViolationOptions& options) {
   options.validate();
   const std::vector<int> slots = constraint_slots(graph);
@@ -84,36 +106,18 @@ std::vector<ConstraintViolation> violations(Graph& graph, const ViolationOptions
   workspace.load_state();
   workspace.evaluate(workspace.state());
 
-  const std::vector<std::vector<int>> slot_of = by_pool(graph, slots);
-  Eigen::VectorXd e;
-  for (std::size_t p = 0; p < problem.edges().size(); ++p) {
-    const CompiledEdges& compiled = problem.edges()[p];
-    const EdgePool& pool = *graph.edge_pools()[p];
-    for (std::size_t k = 0; k < compiled.edges.size(); ++k) {
-      const int index = compiled.edges[k], slot = slot_of[p][index];
-      const ConstraintKind kind = graph.edge_record(slot).constraint;
-      const bool one_sided = kind == ConstraintKind::kInequality || pool.one_sided();
-      Eigen::MatrixXd information;  // n × n: only of edges that are violated
-      e.resize(pool.dimension(index));
-      workspace.error(static_cast<int>(p), static_cast<int>(k), e.data());
-      for (int row = 0; row < e.size(); ++row) {
-        if (e[row] == 0.0 || (one_sided && e[row] < 0.0)) continue;
-        if (information.size() == 0) information = pool.information(index);
-        if (information(row, row) == 0.0) continue;
-        RowLabel label = pool.row_label(compiled, static_cast<int>(k), row);
-        const double amount = std::abs(e[row]);
-        const double ratio = amount / tolerance_of(label, options);
-        if (ratio <= 1.0) continue;
-        ConstraintViolation violation = describe(graph, slot);
-        violation.row = row;
-        violation.label = std::move(label);
-        violation.amount = amount;
-        violation.ratio = std::isnan(ratio) ? std::numeric_limits<double>::infinity() : ratio;
-        violation.one_sided = one_sided;
-        found.push_back(std::move(violation));
-      }
+  const ConstraintReader reader(workspace, options.tolerance);
+  reader.each([&](ConstraintReader::Row row) {
+    if (!row.own_tolerance && !options.tolerance_of_unit.empty()) {
+      const CompiledConstraint& c = problem.constraints()[row.constraint];
+      const EdgePool& pool = *graph.edge_pools()[c.pool];
+      const auto of_unit = options.tolerance_of_unit.find(
+          pool.row_label(problem.edges()[c.pool], c.k, row.row).unit);
+      if (of_unit != options.tolerance_of_unit.end()) row.tolerance = of_unit->second;
+      row.ratio = ratio_of(row.amount, row.tolerance);
     }
-  }
+    if (row.ratio > 1.0) found.push_back(reader.describe(row));
+  });
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
     if (a.ratio != b.ratio) return a.ratio > b.ratio;
     return a.edge.slot != b.edge.slot ? a.edge.slot < b.edge.slot : a.row < b.row;

@@ -14,6 +14,8 @@ void Workspace::allocate(const Problem& problem) {
   step_.resize(n);
   damping_.assign(n, 0.0);
   constraint_rows_.assign(problem.constraint_rows(), {});
+  constraint_errors_.assign(problem.constraint_rows(), 0.0);
+  evaluated_ = nullptr;
   for (const CompiledConstraint& c : problem.constraints()) {
     for (int r = c.row; r < c.row + c.count; ++r) {
       constraint_rows_[r].one_sided = c.kind == ConstraintKind::kInequality;
@@ -59,6 +61,7 @@ void Workspace::load_state() {
     }
   }
   trial_ = state_;
+  evaluated_ = nullptr;
 }
 
 void Workspace::store_state() const {
@@ -100,7 +103,12 @@ Cost Workspace::sum_chunks(Task&& task) {
   return total;
 }
 
+void Workspace::return_to_state() {
+  if (evaluated_ != state_.data()) evaluate(state_);
+}
+
 Cost Workspace::evaluate(const std::vector<double>& state) {
+  evaluated_ = state.data();
   const std::size_t chunks = problem_->chunks();
   for (std::size_t p = 0; p < derived_.size(); ++p) {
     if (!derived_[p]) continue;

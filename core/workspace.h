@@ -36,6 +36,9 @@ class Workspace {
   std::vector<double>& damping() { return damping_; }
   /// Of the problem's constraints(); as allocated: no shift, scale 1.
   std::vector<ConstraintRow>& constraint_rows() { return constraint_rows_; }
+  const std::vector<ConstraintRow>& constraint_rows() const { return constraint_rows_; }
+  /// By the same rows: their errors at the state evaluated last, as the edges' types give them.
+  const std::vector<double>& constraint_errors() const { return constraint_errors_; }
 
   /// trial = state ⊞ step.
   void apply_step();
@@ -44,6 +47,9 @@ class Workspace {
   /// Derives the quantities of `state` and sums the cost. Returns a non-finite cost for a state
   /// that cannot be evaluated.
   Cost evaluate(const std::vector<double>& state);
+  /// evaluate(state()) after a run whose last trial may have been refused: does nothing where the
+  /// state was evaluated last, as it is when the last trial was accepted.
+  void return_to_state();
   /// Fills hessian() and gradient() at state(), which was evaluated last.
   Cost linearise();
   /// Error vector of edge k of pool p at the state evaluated last.
@@ -75,7 +81,8 @@ class Workspace {
   };
 
   Evaluation evaluation(const std::vector<double>& state, int chunk) {
-    return {state.data(), derived_, &scratch_[chunk], constraint_rows_.data()};
+    return {state.data(), derived_, &scratch_[chunk], constraint_rows_.data(),
+            constraint_errors_.data()};
   }
   template <class Task>
   void for_each(int count, Task&& task);
@@ -85,6 +92,8 @@ class Workspace {
 
   const Problem* problem_ = nullptr;
   std::vector<ConstraintRow> constraint_rows_;
+  std::vector<double> constraint_errors_;
+  const double* evaluated_ = nullptr;  ///< the buffer, state or trial, that was evaluated last
   std::vector<double> state_, trial_, hessian_, gradient_, step_, damping_;
   std::vector<std::unique_ptr<DerivedStore>> derived_;
   std::vector<DerivedFor> derived_for_;

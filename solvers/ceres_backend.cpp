@@ -150,7 +150,13 @@ class CeresProblem {
  public:
   explicit CeresProblem(Graph& graph) {
     problem_.compile(graph);
-    if (!problem_.constraints().empty()) {
+    // Those of a type that is an equality or hinges by itself are ordinary edges to anybody else.
+    const auto& all = problem_.constraints();
+    if (std::any_of(all.begin(), all.end(), [&graph](const CompiledConstraint& c) {
+          const EdgePool& pool = *graph.edge_pools()[c.pool];
+          return c.kind != pool.constraint() ||
+                 (c.kind == ConstraintKind::kInequality && !pool.one_sided());
+        })) {
       throw Error("Ceres cannot solve a graph with constraints", "no edge marked as a constraint");
     }
     workspace_.allocate(problem_);

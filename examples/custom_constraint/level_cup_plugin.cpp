@@ -16,6 +16,7 @@ using namespace locograph;
 /// number of the PARAMS_FRAME, max_tilt [rad], weights. Error (1): max(0, tilt − max_tilt) [rad].
 struct EdgeCupTilt : WeightedEdge<1, VertexConfiguration> {
   static constexpr bool kOneSided = true;
+  static constexpr double kTolerance = 1e-3;
   static constexpr std::string_view kTag = "EDGE_CUP_TILT";
   int frame_number = 0;
   double max_tilt = 0.0;

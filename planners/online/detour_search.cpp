@@ -47,8 +47,9 @@ double DetourSearch::obstacle_cost(const WorldDistance& world, double time_s,
   return options_.obstacle_weight * sum;
 }
 
-void DetourSearch::fill_obstacle_costs(const double* configuration, const WorldDistance& world,
-                                       double time_s, double* costs) {
+/// Of every offset; false when the deadline passes.
+bool DetourSearch::fill_obstacle_costs(const double* configuration, const WorldDistance& world,
+                                       double time_s, const Deadline& deadline, double* costs) {
   state_.update(configuration);
   for (std::size_t s = 0; s < centres_.size(); ++s) {
     const CollisionSphere& sphere = robot_->spheres[s];
@@ -60,23 +61,26 @@ void DetourSearch::fill_obstacle_costs(const double* configuration, const WorldD
   }
   const Eigen::Vector3d side = left(configuration);
   for (int o = -half_; o <= half_; o += kCoarse) {
+    if (deadline.passed()) return false;
     costs[o + half_] = obstacle_cost(world, time_s, o * options_.grid_m * side);
   }
   for (int o = -half_ + 1; o < half_; o += kCoarse) {
     costs[o + half_] = 0.5 * (costs[o + half_ - 1] + costs[o + half_ + 1]);
   }
+  return true;
 }
 
 std::vector<double> DetourSearch::find(const std::vector<const double*>& plan,
                                        const std::vector<double>& time_s,
                                        const WorldDistance& world, double start_offset,
-                                       double start_slope) {
+                                       double start_slope, const Deadline& deadline) {
   const int steps = static_cast<int>(plan.size());
   const int offsets = 2 * half_ + 1, states = offsets * slopes_, steepest = options_.steepest;
   const double grid2 = options_.grid_m * options_.grid_m;
   obstacle_.resize(static_cast<std::size_t>(steps) * offsets);
   for (int k = 0; k < steps; ++k) {
-    fill_obstacle_costs(plan[k], world, time_s[k], obstacle_.data() + k * offsets);
+    double* costs = obstacle_.data() + static_cast<std::size_t>(k) * offsets;
+    if (!fill_obstacle_costs(plan[k], world, time_s[k], deadline, costs)) return {};
   }
   // cost_[offset, slope] of the best way to come from the start; choice_ is the change of slope.
   cost_.assign(states, kInfinite);
@@ -88,6 +92,7 @@ std::vector<double> DetourSearch::find(const std::vector<const double*>& plan,
       std::clamp(static_cast<int>(std::lround(start_slope / options_.grid_m)), -steepest, steepest);
   cost_[(first + half_) * slopes_ + slope + steepest] = 0.0;
   for (int k = 0; k < steps; ++k) {
+    if (deadline.passed()) return {};
     std::fill(next_.begin(), next_.end(), kInfinite);
     std::int8_t* choice = choice_.data() + static_cast<std::size_t>(k) * states;
     for (int o = 0; o < offsets; ++o) {

@@ -13,6 +13,7 @@
 /// on a grid, Δ²o at most one grid step: the global optimum of that one-dimensional problem, left
 /// and right alike.
 
+#include <locograph/common/deadline.h>
 #include <locograph/planners/plan/plan.h>
 #include <locograph/robots/robot_state.h>
 
@@ -37,10 +38,10 @@ class DetourSearch {
 
   /// plan: the configurations of the window as planned. start_offset and start_slope: how far the
   /// executed configuration is to the left of its place in the plan, and how much that changed in
-  /// the last step [m]. Returns an offset for each configuration.
+  /// the last step [m]. Returns an offset for each configuration; none when the deadline passes.
   std::vector<double> find(const std::vector<const double*>& plan,
                            const std::vector<double>& time_s, const WorldDistance& world,
-                           double start_offset, double start_slope);
+                           double start_offset, double start_slope, const Deadline& deadline = {});
 
   /// Unit vector to the left of a configuration's heading.
   static Eigen::Vector3d left(const double* configuration);
@@ -48,8 +49,8 @@ class DetourSearch {
  private:
   double obstacle_cost(const WorldDistance& world, double time_s,
                        const Eigen::Vector3d& shift) const;
-  void fill_obstacle_costs(const double* configuration, const WorldDistance& world, double time_s,
-                           double* costs);
+  bool fill_obstacle_costs(const double* configuration, const WorldDistance& world, double time_s,
+                           const Deadline& deadline, double* costs);
 
   std::shared_ptr<const RobotParameter> robot_;
   DetourOptions options_;

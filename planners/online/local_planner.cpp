@@ -6,10 +6,10 @@
 
 namespace locograph {
 
-struct LocalPlanner::RaisedWeight {
-  EdgePool* pool;
-  int index;
-  Eigen::MatrixXd information;  ///< before
+/// Where the augmented Lagrangian has brought a row of a constraint.
+struct LocalPlanner::Multiplier {
+  int edge, row;
+  double shift, scale;
 };
 
 namespace {
@@ -23,6 +23,10 @@ OptimiserOptions optimiser_options(const LocalPlannerOptions& options) {
   return result;
 }
 
+void add_once(std::vector<int>& slots, int slot) {
+  if (std::find(slots.begin(), slots.end(), slot) == slots.end()) slots.push_back(slot);
+}
+
 }  // namespace
 
 void LocalPlannerOptions::validate() const {
@@ -31,13 +35,15 @@ void LocalPlannerOptions::validate() const {
   if (max_iterations < 1) throw Error("max_iterations is less than 1", "1 or more");
   if (max_rounds < 0) throw Error("max_rounds is negative", "0 or more");
   if (detour_pause < 0) throw Error("detour_pause is negative", "0 or more");
-  if (!(raise > 1.0)) throw Error("weights are not raised", "a factor > 1");
+  if (!(raise > 1.0)) throw Error("penalties are not raised", "a factor > 1");
+  if (!(max_raise >= 1.0)) throw Error("max_raise is less than 1", "a factor of 1 or more");
 }
 
 LocalPlanner::LocalPlanner(Graph& graph, const LocalPlannerOptions& options)
     : graph_(graph),
       options_(options),
       plan_(plan_of(graph)),
+      reader_(workspace_),
       solver_(make_linear_solver("auto")),
       optimiser_(optimiser_options(options)),
       detour_(plan_.robot, options.detour) {
@@ -49,6 +55,9 @@ LocalPlanner::LocalPlanner(Graph& graph, const LocalPlannerOptions& options)
   }
   if (!plan_.world) throw Error("the plan has no world", "a PARAMS_WORLD line");
   for (int i = 0; i < plan_size(); ++i) planned_.emplace_back(configuration(i));
+  index_of_slot_.assign(static_cast<std::size_t>(graph_.vertex_slots()), -1);
+  for (int i = 0; i < plan_size(); ++i) index_of_slot_[plan_.slots[i]] = i;
+  unfinished_.resize(planned_.size());
   // Builds the lists of edges of all vertices now rather than in the first cycle.
   graph_.incident_edges(plan_.slots.front());
 }
@@ -70,42 +79,156 @@ void LocalPlanner::show(const WorldDistance& world) { plan_.world->now = world; 
 /// Configurations new to the window: as planned, moved along with the one before them.
 void LocalPlanner::enter(int executed, int last) {
   const int base = plan_.robot->robot->base_configuration_size();
-  for (int i = std::max(entered_, executed) + 1; i <= last; ++i) {
-    const Eigen::VectorXd before = configuration(i - 1);
-    Eigen::Map<Eigen::VectorXd> q = configuration(i);
-    q.head<3>() += before.head<3>() - planned_[i - 1].head<3>();
+  const auto move_along = [&](int i, const auto& before, auto& q) {
+    q.template head<3>() += before.template head<3>() - planned_[i - 1].head<3>();
     q.tail(q.size() - base) += before.tail(q.size() - base) - planned_[i - 1].tail(q.size() - base);
+  };
+  for (int i = std::max(entered_, executed) + 1; i <= last; ++i) {
+    if (is_fixed(i)) continue;
+    Eigen::Map<Eigen::VectorXd> q = configuration(i);
+    move_along(i, Eigen::VectorXd(configuration(i - 1)), q);
   }
   entered_ = std::max(entered_, last);
+  if (unfinished_end_ <= executed + 1) unfinished_end_ = 0;
+  for (; unfinished_end_ > 0 && unfinished_end_ <= last; ++unfinished_end_) {
+    const int i = unfinished_end_;
+    unfinished_[i] = planned_[i];
+    if (!is_fixed(i)) move_along(i, unfinished_[i - 1], unfinished_[i]);
+  }
 }
 
-void LocalPlanner::compile(int executed, int last) {
+/// The configurations of the window, and vertices of other types whose configurations all lie in
+/// it: these are free. What was executed and is tied to them, and what they share with
+/// configurations elsewhere: held.
+void LocalPlanner::gather_window(int executed, int last) {
   window_.assign(plan_.slots.begin() + executed + 1, plan_.slots.begin() + last + 1);
   held_.assign(1, plan_.slots[executed]);
-  problem_.compile(graph_, window_, held_);
-  workspace_.allocate(problem_);
+  const auto in_window = [&](int index) { return index > executed && index <= last; };
+  const auto belongs = [&](int slot) {
+    for (const int e : graph_.incident_edges(slot)) {
+      for (const int v : graph_.edge_vertices(e)) {
+        if (index_of_slot_[v] >= 0 && !in_window(index_of_slot_[v])) return false;
+      }
+    }
+    return true;
+  };
+  for (int i = executed + 1; i <= last; ++i) {
+    for (const int e : graph_.incident_edges(plan_.slots[i])) {
+      for (const int v : graph_.edge_vertices(e)) {
+        const int index = index_of_slot_[v];
+        if (in_window(index) || index > last) continue;
+        if (index < 0 && belongs(v)) {
+          add_once(window_, v);
+        } else {
+          add_once(held_, v);
+        }
+      }
+    }
+  }
 }
 
-LocalPlanner::Attempt LocalPlanner::optimise(CycleReport& report, const Deadline& deadline) {
+/// Index of a configuration; of another vertex, that of the first configuration it shares an edge
+/// with.
+int LocalPlanner::configuration_of(int slot) const {
+  if (index_of_slot_[slot] >= 0) return index_of_slot_[slot];
+  int first = plan_size();
+  for (const int e : graph_.incident_edges(slot)) {
+    for (const int v : graph_.edge_vertices(e)) {
+      if (index_of_slot_[v] >= 0) first = std::min(first, index_of_slot_[v]);
+    }
+  }
+  return first < plan_size() ? first : -1;
+}
+
+void LocalPlanner::compile(CycleReport& report) {
+  const int last = report.executed + report.window;
+  gather_window(report.executed, last);
+  problem_.compile(graph_, window_, held_);
+  workspace_.allocate(problem_);
+  restore_multipliers();
+  step_of_.clear();
+  for (const CompiledConstraint& c : problem_.constraints()) {
+    int step = 1;
+    for (const int v : graph_.edge_vertices(c.edge)) {
+      step = std::max(step, configuration_of(v) - report.executed);
+    }
+    step_of_.push_back(std::min(step, report.window));
+  }
+  steps_ = report.window;
+  report.constraints = static_cast<int>(problem_.constraints().size());
+}
+
+/// To the rows of a workspace just allocated.
+void LocalPlanner::restore_multipliers() {
+  std::vector<ConstraintRow>& rows = workspace_.constraint_rows();
+  auto next = multipliers_.begin();
+  for (const CompiledConstraint& c : problem_.constraints()) {
+    while (next != multipliers_.end() && next->edge < c.edge) ++next;
+    for (; next != multipliers_.end() && next->edge == c.edge; ++next) {
+      rows[c.row + next->row].shift = next->shift;
+      rows[c.row + next->row].scale = next->scale;
+    }
+  }
+}
+
+void LocalPlanner::keep_multipliers() {
+  multipliers_.clear();
+  for (const CompiledConstraint& c : problem_.constraints()) {
+    for (int r = 0; r < c.count; ++r) {
+      const ConstraintRow& row = workspace_.constraint_rows()[c.row + r];
+      if (row.shift != 0.0 || row.scale != 1.0) {
+        multipliers_.push_back({c.edge, r, row.shift, row.scale});
+      }
+    }
+  }
+}
+
+WindowQuality LocalPlanner::read(double cost) const {
+  return window_quality(reader_, step_of_, steps_, cost);
+}
+
+/// Of the state that was evaluated last.
+bool LocalPlanner::take_if_better(const WindowQuality& quality) {
+  if (!best_state_.empty() && !quality.better_than(best_)) return false;
+  best_ = quality;
+  best_state_ = workspace_.state();
+  return true;
+}
+
+/// The best window so far, into the graph.
+void LocalPlanner::store_best() {
+  workspace_.state() = best_state_;
+  workspace_.store_state();
+}
+
+/// From the state of the workspace; whether it ends in a better window than the best one so far.
+/// The state it begins with counts as well.
+bool LocalPlanner::optimise(CycleReport& report, const Deadline& deadline) {
   Stopwatch watch;
-  optimiser_.options().deadline = deadline;
   optimiser_.start(workspace_, *solver_);
-  while (optimiser_.iterate()) {
+  bool better = take_if_better(read(optimiser_.result().initial.robust));
+  // However little time there is, a cycle makes one step.
+  optimiser_.options().deadline = first_iteration_ && deadline.passed() ? Deadline() : deadline;
+  const bool more = optimiser_.iterate();
+  first_iteration_ = false;
+  optimiser_.options().deadline = deadline;
+  while (more && optimiser_.iterate()) {
   }
   const OptimiserResult& result = optimiser_.result();
+  cut_short_ = result.reason == OptimiserResult::Reason::kDeadline;
   report.iterations += result.iterations;
   for (const IterationStatistics& step : result.statistics) {
     report.time_linearise += step.time_linearise;
     report.time_solve += step.time_solve;
     report.time_evaluate += step.time_evaluate;
+    report.time_iteration =
+        std::max(report.time_iteration, step.time_linearise + step.time_solve + step.time_evaluate);
   }
   report.time_optimise += watch.lap();
-  // The last trial may have been refused: derive the accepted state before reading its errors.
-  Attempt attempt;
-  attempt.cost = workspace_.evaluate(workspace_.state());
-  attempt.violation = check_window(workspace_, violated_);
+  workspace_.return_to_state();
+  better = take_if_better(read(result.final.robust)) || better;
   report.time_check += watch.lap();
-  return attempt;
+  return better;
 }
 
 double LocalPlanner::behind_m(int index) const {
@@ -114,8 +237,10 @@ double LocalPlanner::behind_m(int index) const {
   return behind.dot(left.cross(Eigen::Vector3d::UnitZ()));
 }
 
-/// The window as planned, moved sideways; wheels steered along the way and turned to match.
-void LocalPlanner::apply_detour(int executed, int last) {
+/// The window as planned, moved sideways; wheels steered along the way and turned to match. False
+/// when there is no time for it.
+bool LocalPlanner::apply_detour(const CycleReport& report, const Deadline& deadline) {
+  const int executed = report.executed, last = executed + report.window;
   const Robot& robot = *plan_.robot->robot;
   std::vector<const double*> plan;
   std::vector<double> times;
@@ -129,9 +254,12 @@ void LocalPlanner::apply_detour(int executed, int last) {
   };
   const double start = offset_of(executed);
   const double slope = executed > 0 ? start - offset_of(executed - 1) : 0.0;
-  const std::vector<double> offsets = detour_.find(plan, times, plan_.world->now, start, slope);
+  const std::vector<double> offsets =
+      detour_.find(plan, times, plan_.world->now, start, slope, deadline);
+  if (offsets.empty()) return false;
 
   for (int i = executed + 1; i <= last; ++i) {
+    if (is_fixed(i)) continue;
     Eigen::Map<Eigen::VectorXd> q = configuration(i);
     q = planned_[i];
     q.head<3>() += offsets[i - executed - 1] * DetourSearch::left(planned_[i].data());
@@ -146,27 +274,60 @@ void LocalPlanner::apply_detour(int executed, int last) {
       for (int w = 0; w < wheels.wheels(); ++w) wheels.steer(q, w, way);
     }
     wheels.roll(before, q);
-    configuration(i) = q;
-    before = q;
+    if (!is_fixed(i)) configuration(i) = q;
+    before = configuration(i);
+  }
+  return true;
+}
+
+void LocalPlanner::search_detour(CycleReport& report, const Deadline& deadline) {
+  report.detour = true;
+  const Stopwatch watch;
+  const bool found = apply_detour(report, deadline);
+  workspace_.load_state();
+  report.time_detour = watch.seconds();
+  if (!found || !optimise(report, deadline)) {
+    detour_not_before_ = report.executed + 1 + options_.detour_pause;
   }
 }
 
-void LocalPlanner::raise_weights() {
-  for (const ViolatedEdge& edge : violated_) {
-    EdgePool& pool = *graph_.edge_pools()[edge.pool];
-    const int index = problem_.edges()[edge.pool].edges[edge.k];
-    const Eigen::MatrixXd information = pool.information(index);
-    raised_.push_back({&pool, index, information});
-    pool.set_information(index, options_.raise * information);
-  }
+/// Goes on from the best window with what it violates raised.
+void LocalPlanner::raise_constraints(CycleReport& report, const Deadline& deadline) {
+  const Stopwatch watch;
+  ConstrainedOptions raising;
+  raising.inner = optimiser_options(options_);
+  raising.inner.deadline = deadline;
+  // The first two find out what does not come down by itself.
+  raising.max_rounds = options_.max_rounds + 2;
+  raising.own_tolerances = true;
+  raising.tolerance = ViolationOptions().tolerance;
+  raising.growth = options_.raise;
+  raising.max_penalty = options_.max_raise;
+  workspace_.state() = best_state_;
+  const ConstrainedResult result = optimise_constrained(workspace_, raising, *solver_, true);
+  cut_short_ = result.inner.reason == OptimiserResult::Reason::kDeadline;
+  report.iterations += result.iterations;
+  report.rounds = result.rounds;
+  if (take_if_better(read(result.inner.final.robust)) || cut_short_) keep_multipliers();
+  report.time_optimise += watch.seconds();
 }
 
-void LocalPlanner::restore_weights() {
-  // Backwards: an edge raised twice gets its first weight last.
-  for (auto raised = raised_.rbegin(); raised != raised_.rend(); ++raised) {
-    raised->pool->set_information(raised->index, raised->information);
+/// What the last cycle had no time to finish: from there, rather than from what it handed out.
+void LocalPlanner::load_unfinished(const CycleReport& report) {
+  if (unfinished_end_ == 0) return;
+  take_if_better(read(workspace_.evaluate(workspace_.state()).robust));
+  for (int i = report.executed + 1; i <= report.executed + report.window; ++i) {
+    if (!is_fixed(i)) configuration(i) = unfinished_[i];
   }
-  raised_.clear();
+  workspace_.load_state();
+}
+
+void LocalPlanner::keep_unfinished(const CycleReport& report) {
+  unfinished_end_ = 0;
+  if (!cut_short_ || workspace_.state() == best_state_) return;
+  workspace_.store_state();
+  unfinished_end_ = report.executed + report.window + 1;
+  for (int i = report.executed + 1; i < unfinished_end_; ++i) unfinished_[i] = configuration(i);
 }
 
 CycleReport LocalPlanner::cycle(int executed) {
@@ -181,60 +342,34 @@ CycleReport LocalPlanner::cycle(int executed) {
       options_.deadline_s > 0.0 ? Deadline::after(options_.deadline_s) : Deadline();
   const int last = std::min(executed + options_.horizon, plan_size() - 1);
   report.window = last - executed;
+  best_state_.clear();
+  first_iteration_ = true;
 
-  Stopwatch watch;
+  const Stopwatch watch;
   enter(executed, last);
-  compile(executed, last);
+  compile(report);
   workspace_.load_state();
-  report.time_compile = watch.lap();
+  report.time_compile = watch.seconds();
 
-  Attempt best = optimise(report, deadline);
-  std::vector<double> best_state = workspace_.state();
-  const auto better = [](const Attempt& a, const Attempt& b) {
-    if (a.violation.any() != b.violation.any()) return !a.violation.any();
-    return a.cost.robust < b.cost.robust;
-  };
-  workspace_.store_state();
-  const bool blocked = executed >= detour_not_before_ && behind_m(last) > options_.blocked_m;
-  if ((best.violation.any() || blocked) && !deadline.passed()) {
-    report.detour = true;
-    watch.lap();
-    apply_detour(executed, last);
-    workspace_.load_state();
-    report.time_detour = watch.lap();
-    const Attempt detour = optimise(report, deadline);
-    if (better(detour, best)) {
-      best = detour;
-      best_state = workspace_.state();
-    } else {
-      detour_not_before_ = executed + 1 + options_.detour_pause;
-      workspace_.state() = best_state;
-      workspace_.evaluate(workspace_.state());
-      check_window(workspace_, violated_);
+  load_unfinished(report);
+  optimise(report, deadline);
+  if (!cut_short_) {
+    store_best();
+    const bool blocked = executed >= detour_not_before_ && behind_m(last) > options_.blocked_m;
+    if ((!best_.feasible() || blocked) && !deadline.passed()) search_detour(report, deadline);
+    if (!cut_short_ && !best_.feasible() && options_.max_rounds > 0 && !deadline.passed()) {
+      raise_constraints(report, deadline);
     }
-    for (; best.violation.any() && report.rounds < options_.max_rounds && !deadline.passed();
-         ++report.rounds) {
-      raise_weights();
-      const Attempt round = optimise(report, deadline);
-      // Costs under raised weights do not compare: less violation is better.
-      if (!round.violation.any() || round.violation.worst < best.violation.worst) {
-        best = round;
-        best_state = workspace_.state();
-      }
-    }
-    restore_weights();
   }
-  workspace_.state() = best_state;
-  workspace_.store_state();
-  report.violation = best.violation;
-  report.feasible = !best.violation.any();
-  report.next_feasible = report.feasible;
+  keep_unfinished(report);
+  store_best();
+  report.feasible = best_.feasible();
+  report.feasible_steps = best_.feasible_steps;
+  // Only what comes next has to hold now; the rest has time to be mended.
+  report.next_feasible = best_.feasible_steps >= 1;
   if (!report.feasible) {
-    // Only what comes next has to hold now; the rest has time to be mended.
-    compile(executed, executed + 1);
-    workspace_.load_state();
-    workspace_.evaluate(workspace_.state());
-    report.next_feasible = !check_window(workspace_, violated_).any();
+    report.violation = reader_.describe(best_.first);
+    report.violated_at = executed + best_.feasible_steps + 1;
   }
   report.time_total = cycle_watch.seconds();
   report.deadline_missed = options_.deadline_s > 0.0 && report.time_total > options_.deadline_s;

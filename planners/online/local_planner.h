@@ -8,23 +8,31 @@
 ///       if (!cycle.next_feasible) break;                // stop: the robot stays where it is
 ///     }
 ///
-/// Each cycle frees the H configurations behind the executed one and holds the rest. They start
-/// from the last cycle's result; one that enters the window is moved along with the one before it.
-/// A few Levenberg-Marquardt steps follow. If constraints are still violated, or the window falls
-/// behind the plan, a detour is searched (detour_search.h) and optimised from there; then the
-/// weights of edges that are still violated are raised for a few rounds. The better result stays.
-/// Constraints that cannot be met are reported, with place and size; nothing is handed out as
-/// feasible that is not.
+/// Each cycle frees the H configurations behind the executed one, and vertices of other types that
+/// belong to them alone, and holds the rest: what was executed is seen through the edges that reach
+/// back to it (rolling, velocity, acceleration), what lies behind the window is not. A few
+/// Levenberg-Marquardt steps start from the last cycle's result; a configuration that enters the
+/// window is moved along with the one before it. If constraints are still violated, or the window
+/// falls behind the plan, a detour is searched (detour_search.h) and optimised from there. What
+/// then is violated is raised by the augmented Lagrangian of core, whose multipliers stay with
+/// their edges from cycle to cycle.
+///
+/// Constraints are whatever the edges of the graph say (core/violations.h), those of plug-ins too.
+/// The graph only ever gets a window that is better than the one it had (window_quality.h), at a
+/// deadline as well: what a deadline cut short is gone on with in the next cycle, aside. A cycle
+/// ends at most one iteration after its deadline. Constraints that cannot be met are reported, with
+/// place and size; nothing is handed out as feasible that is not.
 ///
 /// Time and memory of a cycle depend on H, not on the length of the plan; the structure of the
 /// compiled window is kept while it slides.
 
-#include <locograph/core/optimiser.h>
+#include <locograph/core/augmented_lagrangian.h>
 #include <locograph/planners/online/detour_search.h>
-#include <locograph/planners/online/window_check.h>
+#include <locograph/planners/online/window_quality.h>
 #include <locograph/planners/plan/plan.h>
 
 #include <memory>
+#include <optional>
 
 namespace locograph {
 
@@ -32,8 +40,9 @@ struct LocalPlannerOptions {
   int horizon = 20;
   double deadline_s = 0.0;  ///< for one cycle; 0: none
   int max_iterations = 15;  ///< of one optimisation
-  int max_rounds = 3;       ///< in which violated edges gain weight
-  double raise = 10.0;      ///< by which they gain it
+  int max_rounds = 3;       ///< of the augmented Lagrangian, after the first optimisation
+  double raise = 10.0;      ///< growth of a penalty from round to round
+  double max_raise = 1e4;   ///< to which they grow, in all cycles together
   double gain = 1e-4;       ///< see OptimiserOptions
   double blocked_m = 0.05;  ///< behind the plan at the end of the window: look for a detour
   int detour_pause = 4;     ///< cycles to wait after a detour that did not help, unless violated
@@ -47,14 +56,19 @@ struct CycleReport {
   int window = 0;              ///< configurations freed
   bool feasible = false;       ///< the whole window
   bool next_feasible = false;  ///< the configuration that is executed next, and the way to it
-  WindowViolation violation;   ///< the worst one, of the window
+  int feasible_steps = 0;      ///< of the window, before the first violation
+  /// The worst one of the first step that violates any, and the configuration that this leads to.
+  std::optional<ConstraintViolation> violation;
+  int violated_at = -1;  ///< index in the plan
+  int constraints = 0;   ///< edges of the window that were looked at
   int iterations = 0;
   int rounds = 0;
   bool detour = false;  ///< a detour was searched
   bool deadline_missed = false;
-  /// Seconds: the cycle, and its phases.
-  double time_total = 0.0, time_compile = 0.0, time_optimise = 0.0, time_detour = 0.0;
-  double time_check = 0.0, time_linearise = 0.0, time_solve = 0.0, time_evaluate = 0.0;
+  /// Seconds: the cycle, its longest iteration, and its phases.
+  double time_total = 0.0, time_iteration = 0.0, time_compile = 0.0, time_optimise = 0.0;
+  double time_detour = 0.0, time_check = 0.0, time_linearise = 0.0, time_solve = 0.0;
+  double time_evaluate = 0.0;
 };
 
 class LocalPlanner {
@@ -74,40 +88,57 @@ class LocalPlanner {
 
   /// How far a configuration is behind its place in the plan as it came, along its heading [m].
   double behind_m(int index) const;
+  /// Configurations as the plan came.
+  const std::vector<Eigen::VectorXd>& planned() const { return planned_; }
 
   /// executed: index in the plan of the configuration the robot is at.
   CycleReport cycle(int executed);
 
  private:
-  struct Attempt {
-    Cost cost;
-    WindowViolation violation;
-  };
+  struct Multiplier;
 
   void enter(int executed, int last);
-  void compile(int executed, int last);
-  Attempt optimise(CycleReport& report, const Deadline& deadline);
-  void apply_detour(int executed, int last);
-  void raise_weights();
-  void restore_weights();
+  void gather_window(int executed, int last);
+  int configuration_of(int slot) const;
+  void compile(CycleReport& report);
+  void restore_multipliers();
+  void keep_multipliers();
+  WindowQuality read(double cost) const;
+  bool take_if_better(const WindowQuality& quality);
+  void store_best();
+  bool optimise(CycleReport& report, const Deadline& deadline);
+  void search_detour(CycleReport& report, const Deadline& deadline);
+  bool apply_detour(const CycleReport& report, const Deadline& deadline);
+  void raise_constraints(CycleReport& report, const Deadline& deadline);
+  void load_unfinished(const CycleReport& report);
+  void keep_unfinished(const CycleReport& report);
   Eigen::Map<Eigen::VectorXd> configuration(int index);
   Eigen::Map<const Eigen::VectorXd> configuration(int index) const;
+  bool is_fixed(int index) const { return graph_.vertex_record(plan_.slots[index]).fixed; }
 
   Graph& graph_;
   LocalPlannerOptions options_;
   Plan plan_;
   std::vector<Eigen::VectorXd> planned_;  ///< configurations as the plan came
+  std::vector<int> index_of_slot_;        ///< in the plan; -1 for vertices of other types
   int detour_not_before_ = 0;             ///< executed index; see detour_pause
   int entered_ = 0;                       ///< last index that has been in a window
   Problem problem_;
   Workspace workspace_;
+  ConstraintReader reader_;
   std::unique_ptr<LinearSolver> solver_;
   Optimiser optimiser_;
   DetourSearch detour_;
   std::vector<int> window_, held_;
-  std::vector<ViolatedEdge> violated_;
-  struct RaisedWeight;
-  std::vector<RaisedWeight> raised_;
+  std::vector<int> step_of_;  ///< of the constraints, see window_quality()
+  int steps_ = 0;             ///< of the window
+  WindowQuality best_;
+  std::vector<double> best_state_;
+  bool cut_short_ = false;                   ///< the last optimisation, by the deadline
+  bool first_iteration_ = true;              ///< of the cycle: no deadline prevents it
+  std::vector<Eigen::VectorXd> unfinished_;  ///< what a deadline cut short, by index in the plan
+  int unfinished_end_ = 0;                   ///< one behind its last configuration; 0: none
+  std::vector<Multiplier> multipliers_;      ///< by edge slot, ascending
 };
 
 }  // namespace locograph

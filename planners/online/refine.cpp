@@ -1,25 +1,29 @@
 #include <locograph/planners/online/refine.h>
+#include <locograph/planners/online/window_cause.h>
 
+#include <algorithm>
 #include <sstream>
 
 namespace locograph {
 namespace {
 
-std::string describe(const Graph& graph, const CycleReport& cycle) {
+/// What the local planner could not mend.
+std::string describe(const ConstraintViolation& violation, int vertex) {
   std::ostringstream text;
-  text << "stopped at configuration " << cycle.executed << ": " << cycle.violation.constraint
-       << " violated by " << cycle.violation.worst << " " << cycle.violation.unit << " at vertex "
-       << graph.vertex_record(cycle.violation.at_vertex).id;
+  text << constraint_name(violation.tag);
+  if (!violation.label.name.empty()) text << " (" << violation.label.name << ")";
+  text << " violated by " << violation.amount << (violation.label.unit.empty() ? "" : " ")
+       << violation.label.unit << " at vertex " << vertex;
   return text.str();
 }
 
-std::string describe(int executed, const CheckReport& check) {
+/// What the judge refused.
+std::string describe(const CheckReport& check) {
   std::ostringstream text;
-  text << "stopped at configuration " << executed << ":";
   for (const Violation& violation : check.violations) {
     if (!violation.violated) continue;
-    text << " " << violation.constraint << " " << violation.worst << " " << violation.unit
-         << " (limit " << violation.limit << ") on the way to the next";
+    text << violation.constraint << " " << violation.worst << " " << violation.unit << " (limit "
+         << violation.limit << ") on the way to the next";
     break;
   }
   return text.str();
@@ -34,54 +38,118 @@ Motion step_of(const Graph& graph, const Plan& plan, int executed) {
   return motion_of(graph, step);
 }
 
+/// Walks along the plan and keeps the report.
+class Walk {
+ public:
+  Walk(Graph& graph, const RefineOptions& options)
+      : graph_(graph), options_(options), planner_(graph, options.planner) {
+    report_.dof = planner_.dimension_of_configuration();
+    report_.success = true;
+    report_.reason = "every configuration is feasible";
+    report_.configurations = planner_.plan_size();
+  }
+
+  RefineReport run(const WorldAt& world_at) {
+    for (int executed = 0; executed + 1 < planner_.plan_size(); ++executed) {
+      if (!step(executed, world_at)) return std::move(report_);
+    }
+    arrive();
+    return std::move(report_);
+  }
+
+ private:
+  int last_of_window(int executed) const {
+    return std::min(executed + options_.planner.horizon, planner_.plan_size() - 1);
+  }
+
+  bool step(int executed, const WorldAt& world_at) {
+    const Stopwatch watch;
+    if (const WorldDistance* world = world_at ? world_at(executed) : nullptr) planner_.show(*world);
+    report_.map_update_s.push_back(watch.seconds());
+    const CycleReport cycle = planner_.cycle(executed);
+    report_.cycles.push_back(cycle);
+    report_.feasible_cycles += cycle.feasible ? 1 : 0;
+    report_.deadline_misses += cycle.deadline_missed ? 1 : 0;
+    if (options_.on_cycle) options_.on_cycle(cycle);
+    if (!cycle.next_feasible) {
+      const int slot = planner_.plan().slots[static_cast<std::size_t>(cycle.violated_at)];
+      stop(executed, describe(*cycle.violation, graph_.vertex_record(slot).id));
+      return false;
+    }
+    if (!options_.verify) return true;
+    const Stopwatch verify_watch;
+    const CheckReport check = options_.verify(step_of(graph_, planner_.plan(), executed));
+    report_.verify_s.push_back(verify_watch.seconds());
+    if (!check.feasible) stop(executed, describe(check));
+    return check.feasible;
+  }
+
+  void measure_goal(int at) {
+    const int slot = planner_.plan().slots[static_cast<std::size_t>(at)];
+    const Eigen::Map<const Eigen::VectorXd> is(graph_.state(slot), graph_.state_size(slot));
+    const Eigen::VectorXd& goal = planner_.planned().back();
+    report_.goal_distance_m = (is.head<3>() - goal.head<3>()).norm();
+    report_.goal_angle_rad =
+        Eigen::Quaterniond(is.data() + 3).angularDistance(Eigen::Quaterniond(goal.data() + 3));
+  }
+
+  std::string goal_text() const {
+    std::ostringstream text;
+    text << report_.goal_distance_m << " m and " << report_.goal_angle_rad << " rad";
+    return text.str();
+  }
+
+  std::string cause_behind(int executed) {
+    const auto cause =
+        find_cause(graph_, planner_.plan(), planner_.planned(), executed, last_of_window(executed));
+    return cause ? cause->text : "";
+  }
+
+  void stop(int executed, const std::string& symptom) {
+    const std::string cause = cause_behind(executed);
+    measure_goal(executed);
+    report_.success = false;
+    report_.reason = "stopped at configuration " + std::to_string(executed) + ": " +
+                     (cause.empty() ? "" : cause + "; what gave way is ") + symptom + "; after " +
+                     std::to_string(executed) + " of " + std::to_string(planner_.plan_size() - 1) +
+                     " steps, " + goal_text() + " from the goal";
+    const Plan plan = planner_.plan();
+    for (int i = executed + 1; i < planner_.plan_size(); ++i) graph_.remove_vertex(plan.slots[i]);
+    report_.configurations = executed + 1;
+  }
+
+  void arrive() {
+    const int last = planner_.plan_size() - 1;
+    report_.short_of_goal_m = planner_.behind_m(last);
+    measure_goal(last);
+    if (report_.goal_distance_m <= options_.goal_tolerance_m &&
+        report_.goal_angle_rad <= options_.goal_tolerance_rad) {
+      return;
+    }
+    report_.success = false;
+    const bool blocked = report_.short_of_goal_m > options_.goal_tolerance_m;
+    report_.reason = std::string(blocked ? "blocked" : "beside the goal") +
+                     ": feasible, but it ends " + goal_text() + " from the goal of the plan";
+    const std::string cause = cause_behind(std::max(0, last - options_.planner.horizon));
+    if (!cause.empty()) report_.reason += ", which meets " + cause;
+  }
+
+  Graph& graph_;
+  const RefineOptions& options_;
+  LocalPlanner planner_;
+  RefineReport report_;
+};
+
+void require_tolerance(double tolerance) {
+  if (!(tolerance >= 0.0)) throw Error("the tolerance of the goal is negative", "0 or more");
+}
+
 }  // namespace
 
 RefineReport refine(Graph& graph, const WorldAt& world_at, const RefineOptions& options) {
-  LocalPlanner planner(graph, options.planner);
-  RefineReport report;
-  report.dof = planner.dimension_of_configuration();
-  report.success = true;
-  report.reason = "every configuration is feasible";
-  report.configurations = planner.plan_size();
-  const auto stop = [&](int executed, const std::string& reason) {
-    report.success = false;
-    report.reason = reason;
-    const Plan plan = planner.plan();
-    for (int i = executed + 1; i < planner.plan_size(); ++i) graph.remove_vertex(plan.slots[i]);
-    report.configurations = executed + 1;
-  };
-  for (int executed = 0; executed + 1 < planner.plan_size(); ++executed) {
-    const Stopwatch watch;
-    if (const WorldDistance* world = world_at ? world_at(executed) : nullptr) planner.show(*world);
-    report.map_update_s.push_back(watch.seconds());
-    const CycleReport cycle = planner.cycle(executed);
-    report.cycles.push_back(cycle);
-    report.feasible_cycles += cycle.feasible ? 1 : 0;
-    report.deadline_misses += cycle.deadline_missed ? 1 : 0;
-    if (options.on_cycle) options.on_cycle(cycle);
-    if (!cycle.next_feasible) {
-      stop(executed, describe(graph, cycle));
-      return report;
-    }
-    if (options.verify) {
-      const Stopwatch verify_watch;
-      const CheckReport check = options.verify(step_of(graph, planner.plan(), executed));
-      report.verify_s.push_back(verify_watch.seconds());
-      if (!check.feasible) {
-        stop(executed, describe(executed, check));
-        return report;
-      }
-    }
-  }
-  report.short_of_goal_m = planner.behind_m(planner.plan_size() - 1);
-  if (report.short_of_goal_m > options.goal_tolerance_m) {
-    report.success = false;
-    std::ostringstream text;
-    text << "blocked: feasible, but the goal of the plan is " << report.short_of_goal_m
-         << " m ahead";
-    report.reason = text.str();
-  }
-  return report;
+  require_tolerance(options.goal_tolerance_m);
+  require_tolerance(options.goal_tolerance_rad);
+  return Walk(graph, options).run(world_at);
 }
 
 }  // namespace locograph

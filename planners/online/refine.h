@@ -6,8 +6,8 @@
 ///     RefineReport report = refine(graph, world_seen_at, options);
 ///
 /// Stops before a configuration that cannot be made feasible: the rest of the plan is removed from
-/// the graph, and the report says which constraint stood in the way. A plan that is feasible but
-/// ends short of its goal, because the robot had to wait in front of something, is no success.
+/// the graph, and the report says what stood in the way (window_cause.h) and how far it got. A plan
+/// that is feasible but does not end at its goal, whether short of it or beside it, is no success.
 
 #include <locograph/check/check_report.h>
 #include <locograph/check/motion.h>
@@ -19,7 +19,9 @@ namespace locograph {
 
 struct RefineOptions {
   LocalPlannerOptions planner;
-  double goal_tolerance_m = 0.25;  ///< along the plan; to the side a detour may end anywhere
+  /// How far from where it was planned the last configuration's base may end, in any direction.
+  double goal_tolerance_m = 0.25;
+  double goal_tolerance_rad = 0.25;
   /// Called after each cycle, e.g. to show progress; may be empty.
   std::function<void(const CycleReport&)> on_cycle;
   /// The independent verdict on the motion from the executed configuration to the next, before it
@@ -37,6 +39,8 @@ struct RefineReport {
   int deadline_misses = 0;
   int configurations = 0;        ///< left in the plan
   double short_of_goal_m = 0.0;  ///< how far the last configuration is behind where it was planned
+  /// From the base of the last configuration that is left to that of the plan's goal.
+  double goal_distance_m = 0.0, goal_angle_rad = 0.0;
   bool success = false;
   std::string reason;
 };

@@ -21,8 +21,6 @@ namespace {
 
 using Kind = WatchedRows::Kind;
 
-constexpr int kFirstFrame = 10, kFirstContact = 1000;
-
 // On squared errors in m, rad and parts of the robot's weight.
 constexpr double kContactWeight = 1e5, kBalanceWeight = 1e4, kLimitWeight = 1e4,
                  kWrenchWeight = 1e3, kTorqueWeight = 1e2;
@@ -35,6 +33,8 @@ constexpr double kContactTolerance = 5e-5, kBalanceTolerance = 2e-4, kWrenchTole
 /// The part of a margin that a violation may use up.
 constexpr double kMarginUsed = 0.9;
 constexpr double kNoMargin = 1e-7;
+/// The tolerance that the type of an edge has.
+constexpr double kOfType = 0.0;
 
 double used(double margin) { return margin > 0.0 ? kMarginUsed * margin : kNoMargin; }
 
@@ -63,67 +63,47 @@ Contact with_margin(Contact contact, double margin) {
 
 }  // namespace
 
-const Eigen::VectorXd& WatchedRows::error(Workspace& workspace, const Edge& edge) {
-  error_.resize(edge.tolerance.size());
-  workspace.error(edge.pool, edge.k, error_.data());
-  for (Eigen::Index r = 0; r < error_.size(); ++r) {
-    error_[r] = edge.weights[r] == 0.0 ? 0.0 : std::abs(error_[r]) / edge.tolerance[r];
-  }
-  return error_;
+double WatchedRows::worst(const Workspace& workspace) const {
+  return ConstraintReader(workspace).worst().ratio;
 }
 
-double WatchedRows::worst(Workspace& workspace) {
-  double worst = 0.0;
-  for (const Edge& edge : edges_) {
-    if (edge.kind == Kind::kSelf) continue;
-    worst = std::max(worst, error(workspace, edge).maxCoeff());
-  }
-  if (worst > 1.0) return worst;
-  for (const Edge& edge : edges_) {
-    if (edge.kind == Kind::kSelf) worst = std::max(worst, error(workspace, edge).maxCoeff());
-  }
-  return worst;
-}
-
-Violated WatchedRows::violated(Workspace& workspace) {
+Violated WatchedRows::violated(const Workspace& workspace) const {
   const Robot& robot = *robot_->robot;
   Violated violated;
   violated.joints.assign(static_cast<std::size_t>(robot.active_joint_count()), false);
   const auto move_chain = [&](int link) {
     for (const int i : robot.support(link)) violated.joints[static_cast<std::size_t>(i)] = true;
   };
-  for (const Edge& edge : edges_) {
-    const Eigen::VectorXd& e = error(workspace, edge);
-    for (Eigen::Index r = 0; r < e.size(); ++r) {
-      if (e[r] <= 1.0) continue;
-      switch (edge.kind) {
-        case Kind::kContact:
-          violated.base = true;
-          move_chain(edge.link);
-          break;
-        case Kind::kJoints:
-          violated.joints[static_cast<std::size_t>(r)] = true;
-          break;
-        case Kind::kSelf: {
-          const SelfCollisionShapes::Pair& pair =
-              robot_->self_collision.pairs[static_cast<std::size_t>(r)];
-          move_chain(robot_->bounds[static_cast<std::size_t>(pair.first)].link);
-          move_chain(robot_->bounds[static_cast<std::size_t>(pair.second)].link);
-          break;
-        }
-        case Kind::kSpheres:
-          violated.base = true;
-          move_chain(robot_->spheres[static_cast<std::size_t>(r)].link);
-          break;
-        case Kind::kBalance:
-        case Kind::kWrenches:
-        case Kind::kTorques:
-          violated.base = true;
-          for (const int link : loaded_links_) move_chain(link);
-          break;
+  ConstraintReader(workspace).each([&](const ConstraintReader::Row& found) {
+    if (found.ratio <= 1.0) return;
+    const Edge& edge = edges_[static_cast<std::size_t>(found.constraint)];
+    const std::size_t row = static_cast<std::size_t>(found.row);
+    switch (edge.kind) {
+      case Kind::kContact:
+        violated.base = true;
+        move_chain(edge.link);
+        break;
+      case Kind::kJoints:
+        violated.joints[row] = true;
+        break;
+      case Kind::kSelf: {
+        const SelfCollisionShapes::Pair& pair = robot_->self_collision.pairs[row];
+        move_chain(robot_->bounds[static_cast<std::size_t>(pair.first)].link);
+        move_chain(robot_->bounds[static_cast<std::size_t>(pair.second)].link);
+        break;
       }
+      case Kind::kSpheres:
+        violated.base = true;
+        move_chain(robot_->spheres[row].link);
+        break;
+      case Kind::kBalance:
+      case Kind::kWrenches:
+      case Kind::kTorques:
+        violated.base = true;
+        for (const int link : loaded_links_) move_chain(link);
+        break;
     }
-  }
+  });
   // Nothing stands out: the check refused what the edges allow.
   if (!violated.base && std::none_of(violated.joints.begin(), violated.joints.end(),
                                      [](bool moved) { return moved; })) {
@@ -149,9 +129,8 @@ PostureGraph::PostureGraph(std::shared_ptr<const RobotParameter> robot,
   graph.add_edge(EdgePlanTracking(problem.preferred, preference), q_);
   graph.add_edge(EdgeWrenchNorm(graph.vertex(w_), kWrenchNorm / (weight_N_ * weight_N_)), w_);
   add_contact_edges();
-  const int joints = model.active_joint_count();
   constrain(Kind::kJoints, EdgeJointLimits(model, options.joint_margin_rad, kLimitWeight),
-            all(joints, used(options.joint_margin_rad)), -1, q_);
+            used(options.joint_margin_rad), -1, q_);
   add_balance_edges(options);
   add_collision_edges(problem, options, shapes);
 }
@@ -178,42 +157,36 @@ void PostureGraph::add_parameters(std::shared_ptr<const WorldParameter> seen,
 }
 
 template <class E, class... Vertices>
-void PostureGraph::constrain(Kind kind, E edge, const Eigen::VectorXd& tolerance, int link,
-                             Vertices... vertices) {
-  if (tolerance.size() == 0) return;
-  Eigen::VectorXd weights = edge.weights;
+void PostureGraph::constrain(Kind kind, E edge, double tolerance, int link, Vertices... vertices) {
+  if (edge.dimension() == 0) return;
   const EdgeId id = graph.add_edge(std::move(edge), vertices...);
-  constraints_.push_back({kind, id, link, tolerance, std::move(weights)});
+  if (tolerance > 0.0) graph.set_constraint(id, constraint_of<E>(), tolerance);
+  constraints_.push_back({kind, id, link});
 }
 
 void PostureGraph::add_contact_edges() {
   for (const int number : contact_numbers_) {
     const auto contact = graph.parameters().get<ContactParameter>(number);
-    EdgeContact closure(*contact, number, kContactWeight);
-    const Eigen::VectorXd tolerance = all(closure.dimension(), kContactTolerance);
-    constrain(Kind::kContact, std::move(closure), tolerance, contact->closure.link(), q_);
+    constrain(Kind::kContact, EdgeContact(*contact, number, kContactWeight), kContactTolerance,
+              contact->closure.link(), q_);
   }
 }
 
 void PostureGraph::add_balance_edges(const PostureOptions& options) {
   const double unit = 1.0 / (weight_N_ * weight_N_);
   constrain(Kind::kBalance, EdgeBalance(kBalanceWeight * unit, kBalanceWeight * unit),
-            all(6, kBalanceTolerance * weight_N_), -1, q_, w_);
+            kBalanceTolerance * weight_N_, -1, q_, w_);
   EdgeContactWrench bearable(*graph.vertex(w_).contacts, kWrenchWeight * unit);
   const double spare = std::min(kWrenchTolerance, 0.1 * options.wrench_margin) * weight_N_;
-  const Eigen::VectorXd tolerance = all(bearable.dimension(), std::max(spare, kNoMargin));
-  constrain(Kind::kWrenches, std::move(bearable), tolerance, -1, w_);
+  constrain(Kind::kWrenches, std::move(bearable), std::max(spare, kNoMargin), -1, w_);
   if (!options.enforce_torque_limits) return;
   const Robot& robot = *robot_->robot;
   EdgeTorqueLimits torques(robot, 1.0 - options.torque_margin, 0.0);
-  Eigen::VectorXd allowed(robot.active_joint_count());
   for (int i = 0; i < robot.active_joint_count(); ++i) {
     const double effort = robot.active_joint(i).max_effort;
-    const bool limited = std::isfinite(effort);
-    torques.weights[i] = limited ? kTorqueWeight / (effort * effort) : 0.0;
-    allowed[i] = limited ? effort * std::max(0.5 * options.torque_margin, kNoMargin) : 1.0;
+    torques.weights[i] = std::isfinite(effort) ? kTorqueWeight / (effort * effort) : 0.0;
   }
-  constrain(Kind::kTorques, std::move(torques), allowed, -1, q_, w_);
+  constrain(Kind::kTorques, std::move(torques), kOfType, -1, q_, w_);
 }
 
 void PostureGraph::add_collision_edges(const PostureProblem& problem, const PostureOptions& options,
@@ -224,7 +197,7 @@ void PostureGraph::add_collision_edges(const PostureProblem& problem, const Post
     for (Eigen::Index p = 0; p < pairs; ++p) {
       if (shapes.coarse_pairs[static_cast<std::size_t>(p)]) apart.weights[p] = 0.0;
     }
-    constrain(Kind::kSelf, std::move(apart), all(pairs, used(options.self_margin_m)), -1, q_);
+    constrain(Kind::kSelf, std::move(apart), used(options.self_margin_m), -1, q_);
   }
   const auto spheres = static_cast<Eigen::Index>(robot_->spheres.size());
   if (spheres == 0) return;
@@ -239,15 +212,13 @@ void PostureGraph::add_collision_edges(const PostureProblem& problem, const Post
   if (ground_z_m_ == 0.0) {
     EdgeGroundDistance ground(*robot_, options.ground_margin_m, kLimitWeight);
     release_touching(ground.weights);
-    constrain(Kind::kSpheres, std::move(ground), all(spheres, used(options.ground_margin_m)), -1,
-              q_);
+    constrain(Kind::kSpheres, std::move(ground), used(options.ground_margin_m), -1, q_);
     keep_touching_above_ground(problem, options, shapes);
   }
   if (seen_) {
     EdgeObstacleDistance obstacles(*robot_, kWorldNumber, options.obstacle_margin_m, kLimitWeight);
     release_touching(obstacles.weights);
-    constrain(Kind::kSpheres, std::move(obstacles), all(spheres, used(options.obstacle_margin_m)),
-              -1, q_);
+    constrain(Kind::kSpheres, std::move(obstacles), used(options.obstacle_margin_m), -1, q_);
   }
 }
 
@@ -271,7 +242,7 @@ void PostureGraph::keep_touching_above_ground(const PostureProblem& problem,
     constrain(Kind::kContact,
               EdgeLinkHeight(kRobotNumber, model.links()[link].name, margin, kTouchingWeight,
                              shapes.solids[link]),
-              all(1, used(margin)), static_cast<int>(link), q_);
+              used(margin), static_cast<int>(link), q_);
   }
 }
 
@@ -304,12 +275,11 @@ WatchedRows PostureGraph::watch(const Problem& compiled) const {
   WatchedRows rows;
   rows.robot_ = robot_;
   rows.loaded_links_ = loaded_links_;
-  for (const Constraint& constraint : constraints_) {
-    const Graph::EdgeRecord& record = graph.edge_record(constraint.edge.slot);
-    const auto& edges = compiled.edges()[static_cast<std::size_t>(record.pool)].edges;
-    const auto found = std::find(edges.begin(), edges.end(), record.index);
-    rows.edges_.push_back({constraint.kind, record.pool, static_cast<int>(found - edges.begin()),
-                           constraint.link, constraint.tolerance, constraint.weights});
+  for (const CompiledConstraint& c : compiled.constraints()) {
+    const auto found =
+        std::find_if(constraints_.begin(), constraints_.end(),
+                     [&c](const Constraint& constraint) { return constraint.edge.slot == c.edge; });
+    rows.edges_.push_back({found->kind, found->link});
   }
   return rows;
 }

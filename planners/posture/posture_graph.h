@@ -8,11 +8,12 @@
 ///     WatchedRows rows = posture.watch(compiled);
 ///     double worst = rows.worst(workspace);                // 1: the worst row is at its tolerance
 ///
-/// Weights make one unit of violation
-/// count alike: 0.01 of m, rad or the robot's weight. Those of the preferred configuration and of
-/// the wrenches' size are so small that they move a constraint by micrometres only.
+/// Its constraints and their tolerances are in the graph, for core/violations.h to read. Weights
+/// make one unit of violation count alike: 0.01 of m, rad or the robot's weight. Those of the
+/// preferred configuration and of the wrenches' size are so small that they move a constraint by
+/// micrometres only.
 
-#include <locograph/core/workspace.h>
+#include <locograph/core/violations.h>
 #include <locograph/planners/posture/posture_solver.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
 #include <locograph/plugins/ground_distance/edge_link_height.h>
@@ -33,26 +34,21 @@ class WatchedRows {
  public:
   enum class Kind { kContact, kJoints, kSelf, kSpheres, kBalance, kWrenches, kTorques };
 
-  /// The largest violation, in tolerances. Self-collision, which costs as much as all the others
-  /// together, is looked at once these hold.
-  double worst(Workspace& workspace);
+  /// The largest violation, in tolerances.
+  double worst(const Workspace& workspace) const;
   /// What the rows above their tolerance depend on.
-  Violated violated(Workspace& workspace);
+  Violated violated(const Workspace& workspace) const;
 
  private:
   friend class PostureGraph;
   struct Edge {
     Kind kind;
-    int pool, k;
     int link;  ///< of a contact
-    Eigen::VectorXd tolerance, weights;
   };
-  const Eigen::VectorXd& error(Workspace& workspace, const Edge& edge);
 
   std::shared_ptr<const RobotParameter> robot_;
   std::vector<int> loaded_links_;
-  std::vector<Edge> edges_;
-  Eigen::VectorXd error_;
+  std::vector<Edge> edges_;  ///< of the problem's constraints
 };
 
 /// What is worked out once for a robot.
@@ -88,14 +84,12 @@ class PostureGraph {
   void keep_touching_above_ground(const PostureProblem& problem, const PostureOptions& options,
                                   const PostureSolver::Shapes& shapes);
   template <class E, class... Vertices>
-  void constrain(WatchedRows::Kind kind, E edge, const Eigen::VectorXd& tolerance, int link,
-                 Vertices... vertices);
+  void constrain(WatchedRows::Kind kind, E edge, double tolerance, int link, Vertices... vertices);
 
   struct Constraint {
     WatchedRows::Kind kind;
     EdgeId edge;
     int link;
-    Eigen::VectorXd tolerance, weights;
   };
 
   std::shared_ptr<const RobotParameter> robot_;

@@ -41,6 +41,8 @@ class AccelerationRows {
     SecondDifference difference;
   };
 
+  /// How large a violation of a limit counts as none.
+  static double tolerance(double limit) { return 1e-3 * limit; }
   static int count(const Robot& robot) { return robot.active_joint_count() + 2; }
   /// What bind() of an edge asks of its limits. Throws Error.
   static void check(std::string_view tag, const Eigen::VectorXd& limits, int rows,

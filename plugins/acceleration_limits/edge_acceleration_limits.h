@@ -16,6 +16,7 @@
 /// base frame of the middle one, each by its Δt. Throws Error where the times do not increase.
 
 #include <locograph/core/typed_edge_pool.h>
+#include <locograph/plugins/acceleration_limits/acceleration_rows.h>
 #include <locograph/plugins/configuration/edge_fit.h>
 #include <locograph/plugins/configuration/row_labels.h>
 
@@ -46,6 +47,7 @@ struct EdgeAccelerationLimits
                  const ConfigurationState& c, JacobianRef<EdgeAccelerationLimits, 0> ja,
                  JacobianRef<EdgeAccelerationLimits, 1> jb,
                  JacobianRef<EdgeAccelerationLimits, 2> jc) const;
+  double row_tolerance(int row) const { return AccelerationRows::tolerance(limits[row]); }
   RowLabel row_label(int row, const VertexConfiguration& a, const VertexConfiguration&,
                      const VertexConfiguration&) const {
     return motion_row(*a.robot->robot, row, "acceleration", "/s^2");

@@ -24,6 +24,7 @@ template <class... Vertices>
 struct AccelerationLimitedEdge : WeightedEdge<Eigen::Dynamic, Vertices...> {
   Eigen::VectorXd limits;  ///< one for each row, ≥ 0
   auto fields() { return std::tie(limits); }
+  double row_tolerance(int row) const { return AccelerationRows::tolerance(limits[row]); }
   void resize(int n) {
     this->weights.resize(n);
     limits.resize(n);
@@ -41,6 +42,7 @@ struct AccelerationLimitsTimed
     : AccelerationLimitedEdge<VertexConfiguration, VertexConfiguration, VertexConfiguration,
                               VertexTimeStep, VertexTimeStep> {
   static constexpr bool kOneSided = kKind == LimitKind::kHinged;
+  static constexpr ConstraintKind kConstraint = ConstraintKind::kInequality;
   static constexpr std::string_view kTag =
       kOneSided ? "EDGE_ACCELERATION_LIMITS_TIMED" : "EDGE_ACCELERATION_LIMITS_TIMED_SIGNED";
   void bind(const Parameters& parameters) const {
@@ -83,6 +85,7 @@ template <LimitKind kKind>
 struct RestAccelerationLimitsTimed
     : AccelerationLimitedEdge<VertexConfiguration, VertexConfiguration, VertexTimeStep> {
   static constexpr bool kOneSided = kKind == LimitKind::kHinged;
+  static constexpr ConstraintKind kConstraint = ConstraintKind::kInequality;
   static constexpr std::string_view kTag = kOneSided ? "EDGE_REST_ACCELERATION_LIMITS_TIMED"
                                                      : "EDGE_REST_ACCELERATION_LIMITS_TIMED_SIGNED";
   void bind(const Parameters& parameters) const {

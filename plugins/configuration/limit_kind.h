@@ -4,9 +4,9 @@
 ///     e[0] = limit_error(LimitKind::kHinged, step_s - max_s);
 ///     if (limit_acts(LimitKind::kHinged, step_s - max_s)) j(0, 0) = step_s;
 ///
-/// Hinged, g becomes max(0, g): an ordinary edge, zero and without derivative inside. Signed, g
-/// stays: for Graph::set_constraint(e, ConstraintKind::kInequality), which then has a multiplier
-/// (constraint.h). A signed edge that is not marked as a constraint pulls towards its limit.
+/// Hinged, g becomes max(0, g): zero and without derivative inside, whoever looks at it. Signed, g
+/// stays: the type says that it is an inequality, which then has a multiplier (constraint.h). A
+/// signed edge that Graph::set_constraint() makes an ordinary one pulls towards its limit.
 
 namespace locograph {
 
@@ -17,6 +17,12 @@ inline double limit_error(LimitKind kind, double g) {
 }
 /// Whether the derivative of g is that of the error.
 inline bool limit_acts(LimitKind kind, double g) { return kind == LimitKind::kSigned || g > 0.0; }
+/// How large a violation of a limit that is kept with a margin counts as none: what is left of the
+/// margin then is for what edges do not see. Without a margin, rounding.
+inline double margin_tolerance(double margin) {
+  constexpr double kUsed = 0.9, kRounding = 1e-6;
+  return margin > 0.0 ? kUsed * margin : kRounding;
+}
 /// The derivative of |x|, 0 at its kink.
 inline double sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
 

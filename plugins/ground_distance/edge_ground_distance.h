@@ -12,6 +12,7 @@
 
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/plugins/configuration/edge_fit.h>
+#include <locograph/plugins/configuration/limit_kind.h>
 
 namespace locograph {
 
@@ -30,6 +31,7 @@ struct EdgeGroundDistance : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
   EdgeGroundDistance(const RobotParameter& robot, double margin_m, double weight);
 
   void error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const;
+  double row_tolerance(int) const { return margin_tolerance(margin_m); }
   void jacobians(const ConfigurationState& q, JacobianRef<EdgeGroundDistance, 0> j) const;
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeGroundDistance::kTag, EdgeGroundDistance)

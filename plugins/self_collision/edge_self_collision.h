@@ -9,11 +9,13 @@
 /// shapes d is never above the distance, and below it by at most kSelfOvershoot_m for each (more
 /// where a shape would need too many spheres or capsules).
 ///
-/// Pairs whose bounding spheres are further apart than the margin cost one comparison. Where the
-/// nearest capsules change, d has a kink; where axes meet, one of the possible gradients is taken.
+/// Pairs whose bounding spheres are further apart than the margin cost one comparison, pairs
+/// without weight nothing: their error is zero. Where the nearest capsules change, d has a kink;
+/// where axes meet, one of the possible gradients is taken.
 
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/plugins/configuration/edge_fit.h>
+#include <locograph/plugins/configuration/limit_kind.h>
 #include <locograph/plugins/configuration/row_labels.h>
 
 namespace locograph {
@@ -34,6 +36,7 @@ struct EdgeSelfCollision : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
 
   void error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const ConfigurationState& q, JacobianRef<EdgeSelfCollision, 0> j) const;
+  double row_tolerance(int) const { return margin_tolerance(margin_m); }
   RowLabel row_label(int row, const VertexConfiguration& q) const;
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeSelfCollision::kTag, EdgeSelfCollision)

@@ -1,6 +1,7 @@
 #include <locograph/plugins/configuration/edge_fit.h>
 #include <locograph/plugins/static_balance/edge_balance.h>
 #include <locograph/plugins/static_balance/static_rows.h>
+#include <locograph/robots/statics.h>
 
 namespace locograph {
 
@@ -19,6 +20,11 @@ void EdgeBalance::error(const ConfigurationState& q, const WrenchesState& wrench
     add_wrench_on_base(q.kinematics, AppliedWrench(q.kinematics, *contact, components), e);
     components += contact->components().size();
   }
+}
+
+double EdgeBalance::row_tolerance(int, const VertexConfiguration& q, const VertexWrenches&) const {
+  constexpr double kPart = 2e-4;
+  return kPart * q.robot->robot->total_mass() * standard_gravity().norm();
 }
 
 void EdgeBalance::jacobians(const ConfigurationState& q, const WrenchesState& wrenches,

@@ -16,6 +16,7 @@ namespace locograph {
 
 struct EdgeBalance : WeightedEdge<6, VertexConfiguration, VertexWrenches> {
   static constexpr std::string_view kTag = "EDGE_BALANCE";
+  static constexpr ConstraintKind kConstraint = ConstraintKind::kEquality;
 
   EdgeBalance() = default;
   /// Weights of the three rows of the force and of the moment.
@@ -28,6 +29,8 @@ struct EdgeBalance : WeightedEdge<6, VertexConfiguration, VertexWrenches> {
   void jacobians(const ConfigurationState& q, const WrenchesState& wrenches,
                  JacobianRef<EdgeBalance, 0> by_q, JacobianRef<EdgeBalance, 1> by_wrenches) const;
   RowLabel row_label(int row) const { return pose_row(row, "N", "N m"); }
+  /// A part of the robot's weight.
+  double row_tolerance(int, const VertexConfiguration& q, const VertexWrenches&) const;
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeBalance::kTag, EdgeBalance)
 extern template class TypedEdgePool<EdgeBalance>;

@@ -28,6 +28,7 @@ namespace locograph {
 struct EdgeContactWrench : WeightedEdge<Eigen::Dynamic, VertexWrenches> {
   static constexpr bool kOneSided = true;
   static constexpr std::string_view kTag = "EDGE_CONTACT_WRENCH";
+  static constexpr double kTolerance = 1e-3;  ///< N, N m
 
   EdgeContactWrench() = default;
   EdgeContactWrench(const ContactList& contacts, double weight);

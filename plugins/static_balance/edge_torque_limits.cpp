@@ -91,6 +91,13 @@ void EdgeTorqueLimits::jacobians(const ConfigurationState& q, const WrenchesStat
   }
 }
 
+double EdgeTorqueLimits::row_tolerance(int row, const VertexConfiguration& q,
+                                       const VertexWrenches&) const {
+  constexpr double kPart = 0.5, kRounding = 1e-7;
+  const double effort = q.robot->robot->active_joint(row).max_effort;
+  return std::isfinite(effort) ? effort * std::max(kPart * (1.0 - fraction), kRounding) : kRounding;
+}
+
 RowLabel EdgeTorqueLimits::row_label(int row, const VertexConfiguration& q,
                                      const VertexWrenches&) const {
   const Joint& joint = q.robot->robot->active_joint(row);

@@ -31,6 +31,8 @@ struct EdgeTorqueLimits : WeightedEdge<Eigen::Dynamic, VertexConfiguration, Vert
                  JacobianRef<EdgeTorqueLimits, 0> by_q,
                  JacobianRef<EdgeTorqueLimits, 1> by_wrenches) const;
   RowLabel row_label(int row, const VertexConfiguration& q, const VertexWrenches&) const;
+  /// Half of what `fraction` leaves of the effort.
+  double row_tolerance(int row, const VertexConfiguration& q, const VertexWrenches&) const;
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeTorqueLimits::kTag, EdgeTorqueLimits)
 extern template class TypedEdgePool<EdgeTorqueLimits>;

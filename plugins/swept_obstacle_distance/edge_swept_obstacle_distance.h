@@ -23,6 +23,7 @@
 
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/plugins/configuration/edge_fit.h>
+#include <locograph/plugins/configuration/limit_kind.h>
 #include <locograph/plugins/configuration/row_labels.h>
 
 namespace locograph {
@@ -48,6 +49,7 @@ struct EdgeSweptObstacleDistance
   void jacobians(const ConfigurationState& a, const ConfigurationState& b,
                  JacobianRef<EdgeSweptObstacleDistance, 0> ja,
                  JacobianRef<EdgeSweptObstacleDistance, 1> jb) const;
+  double row_tolerance(int) const { return margin_tolerance(margin_m); }
   RowLabel row_label(int row, const VertexConfiguration& a, const VertexConfiguration&) const {
     return sphere_row(*a.robot, row, "near an obstacle on its way");
   }

@@ -17,6 +17,8 @@ namespace locograph {
 template <LimitKind kKind>
 struct TimeStepLimits : WeightedEdge<2, VertexTimeStep> {
   static constexpr bool kOneSided = kKind == LimitKind::kHinged;
+  static constexpr ConstraintKind kConstraint = ConstraintKind::kInequality;
+  static constexpr double kTolerance = 1e-6;  ///< s
   static constexpr std::string_view kTag =
       kOneSided ? "EDGE_TIME_STEP_LIMITS" : "EDGE_TIME_STEP_LIMITS_SIGNED";
   double min_s = 0.0;

@@ -17,6 +17,12 @@ void EdgeVelocityLimits::error(const ConfigurationState& a, const ConfigurationS
                                                                     b.time_s - a.time_s, e);
 }
 
+double EdgeVelocityLimits::row_tolerance(int row, const VertexConfiguration& a,
+                                         const VertexConfiguration& b) const {
+  return VelocityRows{fraction, base_linear_m_s, base_angular_rad_s}.tolerance(*a.robot->robot, row,
+                                                                               b.time_s - a.time_s);
+}
+
 void EdgeVelocityLimits::jacobians(const ConfigurationState& a, const ConfigurationState& b,
                                    JacobianRef<EdgeVelocityLimits, 0> ja,
                                    JacobianRef<EdgeVelocityLimits, 1> jb) const {

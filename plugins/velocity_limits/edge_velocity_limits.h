@@ -37,6 +37,7 @@ struct EdgeVelocityLimits : WeightedEdge<Eigen::Dynamic, VertexConfiguration, Ve
   void jacobians(const ConfigurationState& a, const ConfigurationState& b,
                  JacobianRef<EdgeVelocityLimits, 0> ja,
                  JacobianRef<EdgeVelocityLimits, 1> jb) const;
+  double row_tolerance(int row, const VertexConfiguration& a, const VertexConfiguration& b) const;
   RowLabel row_label(int row, const VertexConfiguration& a, const VertexConfiguration&) const {
     return motion_row(*a.robot->robot, row, "step");
   }

@@ -20,6 +20,7 @@ template <LimitKind kKind>
 struct VelocityLimitsTimed
     : WeightedEdge<Eigen::Dynamic, VertexConfiguration, VertexConfiguration, VertexTimeStep> {
   static constexpr bool kOneSided = kKind == LimitKind::kHinged;
+  static constexpr ConstraintKind kConstraint = ConstraintKind::kInequality;
   static constexpr std::string_view kTag =
       kOneSided ? "EDGE_VELOCITY_LIMITS_TIMED" : "EDGE_VELOCITY_LIMITS_TIMED_SIGNED";
   VelocityRows limits;
@@ -47,6 +48,10 @@ struct VelocityLimitsTimed
                  JacobianRef<VelocityLimitsTimed, 2> by_step) const {
     limits.jacobians(kKind, a, b, step_s, ja, jb, &by_step);
     by_step *= step_s;  // d Δt = Δt d(log Δt)
+  }
+  double row_tolerance(int row, const VertexConfiguration& a, const VertexConfiguration&,
+                       const VertexTimeStep& step) const {
+    return limits.tolerance(*a.robot->robot, row, step.seconds());
   }
   RowLabel row_label(int row, const VertexConfiguration& a, const VertexConfiguration&,
                      const VertexTimeStep&) const {

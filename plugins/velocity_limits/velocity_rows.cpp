@@ -1,9 +1,17 @@
 #include <locograph/plugins/configuration/edge_fit.h>
 #include <locograph/plugins/velocity_limits/velocity_rows.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace locograph {
+
+double VelocityRows::tolerance(const Robot& robot, int row, double dt_s) const {
+  constexpr double kMost = 1e-3;  // rad, m
+  if (row >= robot.active_joint_count() || !std::isfinite(joint_rate(robot, row))) return kMost;
+  const double left = (1.0 - fraction) * robot.active_joint(row).max_velocity * dt_s;
+  return std::min(kMost, margin_tolerance(left));
+}
 
 void VelocityRows::error(std::string_view tag, LimitKind kind, const ConfigurationState& a,
                          const ConfigurationState& b, double dt_s,

@@ -21,6 +21,9 @@ struct VelocityRows {
   using Jacobian =
       Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
+  /// How large a violation of a row counts as none: of a joint, nothing that its own limit does not
+  /// leave room for.
+  double tolerance(const Robot& robot, int row, double dt_s) const;
   static int count(const Robot& robot) { return robot.active_joint_count() + 2; }
   /// Throws Error when e has another size, or the robots differ.
   void error(std::string_view tag, LimitKind kind, const ConfigurationState& a,

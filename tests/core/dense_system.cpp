@@ -20,6 +20,18 @@ StateEvaluation::StateEvaluation(const Problem& problem, const std::vector<doubl
   }
 }
 
+namespace {
+
+/// What edge k of pool p is to the problem.
+ConstraintKind kind_of(const Problem& problem, std::size_t p, int k) {
+  for (const CompiledConstraint& c : problem.constraints()) {
+    if (c.pool == static_cast<int>(p) && c.k == k) return c.kind;
+  }
+  return ConstraintKind::kNone;
+}
+
+}  // namespace
+
 DenseSystem one_by_one(const Problem& problem, const std::vector<double>& state, bool numeric) {
   const int n = problem.dimension();
   DenseSystem system{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), {}};
@@ -31,9 +43,17 @@ DenseSystem one_by_one(const Problem& problem, const std::vector<double>& state,
     for (int k = 0; k < static_cast<int>(edges.edges.size()); ++k) {
       Eigen::VectorXd e(pool.dimension(edges.edges[k]));
       pool.error(edges, k, x, e.data());
+      // Constraints have no kernel, and an inequality counts where it is violated only.
+      const ConstraintKind kind = kind_of(problem, p, k);
+      const RobustKernel kernel =
+          kind == ConstraintKind::kNone ? pool.kernel(edges.edges[k]) : RobustKernel();
+      const Eigen::VectorXd counts =
+          kind == ConstraintKind::kInequality
+              ? Eigen::VectorXd((e.array() > 0.0).cast<double>().matrix())
+              : Eigen::VectorXd::Ones(e.size());
+      e = counts.cwiseProduct(e);
       const Eigen::MatrixXd information = pool.information(edges.edges[k]);
       const double chi2 = e.dot(information * e);
-      const RobustKernel& kernel = pool.kernel(edges.edges[k]);
       const RobustKernel::Weights robust = kernel.weights(chi2);
       const double beta = pool.has_weights() ? 0.0 : kernel.correction(chi2, robust);
       const Eigen::VectorXd along = information * e;
@@ -43,13 +63,13 @@ DenseSystem one_by_one(const Problem& problem, const std::vector<double>& state,
       for (int i = 0; i < count; ++i) {
         const int at_i = edges.slots[begin + i].tangent_offset;
         if (at_i < 0) continue;
-        const Eigen::MatrixXd ji = pool.jacobian(edges, k, i, x, numeric);
+        const Eigen::MatrixXd ji = counts.asDiagonal() * pool.jacobian(edges, k, i, x, numeric);
         system.gradient.segment(at_i, ji.cols()) +=
             robust.weight * ji.transpose() * information * e;
         for (int j = 0; j < count; ++j) {
           const int at_j = edges.slots[begin + j].tangent_offset;
           if (at_j < 0) continue;
-          const Eigen::MatrixXd jj = pool.jacobian(edges, k, j, x, numeric);
+          const Eigen::MatrixXd jj = counts.asDiagonal() * pool.jacobian(edges, k, j, x, numeric);
           system.hessian.block(at_i, at_j, ji.cols(), jj.cols()) +=
               robust.weight * ji.transpose() * bent * jj;
         }

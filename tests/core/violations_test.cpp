@@ -8,6 +8,8 @@
 #include <limits>
 #include <utility>
 
+#include "common/allocation_counter.h"
+
 namespace locograph {
 namespace violations_test {
 
@@ -74,6 +76,44 @@ struct EdgeSum : DynamicEdge<1, VertexNumber> {
   RowLabel row_label(int) const { return {"sum", "N"}; }
 };
 LOCOGRAPH_REGISTER_EDGE("EDGE_SUM", EdgeSum)
+
+/// A constraint by its type: x = y, within a tenth.
+struct EdgeTied : Edge<1, VertexNumber, VertexNumber> {
+  static constexpr ConstraintKind kConstraint = ConstraintKind::kEquality;
+  static constexpr double kTolerance = 0.1;
+  void error(double x, double y, One e) const { e[0] = x - y; }
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_TIED", EdgeTied)
+
+/// The same of any number of vertices, their sum below a limit, signed; the tolerance is a part of
+/// the limit.
+struct EdgeSumBelow : DynamicEdge<1, VertexNumber> {
+  static constexpr ConstraintKind kConstraint = ConstraintKind::kInequality;
+  double limit = 1.0;
+  auto fields() { return std::tie(limit); }
+  void error(std::span<const double> x, One e) const {
+    e[0] = -limit;
+    for (const double one : x) e[0] += one;
+  }
+  double row_tolerance(int) const { return 0.01 * limit; }
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_SUM_BELOW", EdgeSumBelow)
+
+/// Hinges, but is a wish only.
+struct EdgeWish : WeightedEdge<1, VertexNumber> {
+  static constexpr bool kOneSided = true;
+  static constexpr ConstraintKind kConstraint = ConstraintKind::kNone;
+  void error(double x, One e) const { e[0] = std::max(0.0, x); }
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_WISH", EdgeWish)
+
+/// x ≤ y + gap by rows, with tolerances that depend on a vertex.
+struct EdgeLevels : WeightedEdge<2, VertexNumber> {
+  static constexpr bool kOneSided = true;
+  void error(double x, Two e) const { e << std::max(0.0, x), std::max(0.0, x - 1.0); }
+  double row_tolerance(int row, const VertexNumber& x) const { return row == 0 ? x.state[0] : 0.5; }
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_LEVELS", EdgeLevels)
 
 class Violations : public testing::Test {
  protected:
@@ -163,6 +203,122 @@ TEST_F(Violations, AreOrderedByExcessRelativeToTheToleranceOfTheirUnit) {
   options.tolerance = 1.0;
   options.tolerance_of_unit["kg"] = -1.0;
   EXPECT_THROW(violations(graph, options), Error);
+}
+
+TEST_F(Violations, AreOfConstraintsByTypeBeyondTheToleranceOfTheirRow) {
+  const auto x = add(2.0), y = add(1.5);
+  graph.add_edge(EdgeTied(), x, y);
+  graph.add_dynamic_edge(EdgeSumBelow(), {x, y});
+  graph.add_edge(EdgeLevels(), x);
+  graph.add_edge(EdgeWish(), x);
+  EXPECT_EQ(constraint_count(graph), 3) << "a wish is none";
+  const std::vector<ConstraintViolation> found = violations(graph);
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].tag, "EDGE_SUM_BELOW");
+  EXPECT_DOUBLE_EQ(found[0].ratio, 250.0);
+  EXPECT_DOUBLE_EQ(found[0].tolerance, 0.01);
+  EXPECT_TRUE(found[0].one_sided);
+  EXPECT_EQ(found[1].tag, "EDGE_TIED");
+  EXPECT_DOUBLE_EQ(found[1].ratio, 5.0);
+  EXPECT_EQ(found[2].tag, "EDGE_LEVELS");
+  EXPECT_EQ(found[2].row, 1) << "the other row is at its tolerance";
+  graph.vertex(x).state[0] = 1.55;
+  graph.vertex(y).state[0] = -10.0;
+  ViolationOptions options;
+  options.tolerance = 100.0;
+  EXPECT_EQ(violations(graph, options).size(), 2u) << "the type's tolerance counts, not this one";
+}
+
+TEST_F(Violations, FollowWhatTheGraphSaysOfASingleEdge) {
+  const auto x = add(2.0), y = add(1.5);
+  const EdgeId first = graph.add_edge(EdgeTied(), x, y);
+  const EdgeId second = graph.add_edge(EdgeTied(), y, x);
+  graph.set_constraint(first, ConstraintKind::kNone);
+  graph.set_constraint(second, ConstraintKind::kEquality, 0.05);
+  const std::vector<ConstraintViolation> found = violations(graph);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].edge, second);
+  EXPECT_DOUBLE_EQ(found[0].ratio, 10.0);
+  EXPECT_THROW(graph.set_constraint(second, ConstraintKind::kEquality, -1.0), Error);
+  EXPECT_THROW(graph.set_constraint(second, ConstraintKind::kEquality,
+                                    std::numeric_limits<double>::quiet_NaN()),
+               Error);
+}
+
+TypeRegistry own_types() {
+  TypeRegistry types;
+  types.add_vertex<VertexNumber>();
+  types.add_edge<EdgeTied>();
+  types.add_edge<EdgeSumBelow>();
+  types.add_edge<EdgeAt>();
+  types.add_edge<EdgeBetween>();
+  return types;
+}
+
+TEST_F(Violations, AreTheSameOnceTheGraphIsReadBack) {
+  const auto x = add(2.0), y = add(1.5);
+  graph.set_constraint(graph.add_edge(EdgeTied(), x, y), ConstraintKind::kNone);
+  graph.set_constraint(graph.add_edge(EdgeTied(), y, x), ConstraintKind::kEquality, 0.05);
+  graph.set_constraint(graph.add_edge(EdgeAt(), x), ConstraintKind::kEquality);
+  graph.set_constraint(graph.add_edge(EdgeBetween(), x), ConstraintKind::kInequality, 0.1 / 3.0);
+  graph.add_edge(EdgeTied(), x, y);
+  graph.add_edge(EdgeAt(), y);
+  const EdgeId sum = graph.add_dynamic_edge(EdgeSumBelow(), {x, y});
+  graph.set_constraint(sum, ConstraintKind::kInequality, 3.0);
+  const std::string text = write_graph_text(graph);
+  EXPECT_NE(text.find("constraint none\n"), std::string::npos) << text;
+  Graph again = read_graph_text(text, "a.g2o", ".", own_types());
+  EXPECT_EQ(write_graph_text(again), text);
+  const std::vector<ConstraintViolation> before = violations(graph), after = violations(again);
+  ASSERT_EQ(before.size(), after.size());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    EXPECT_EQ(before[i].tag, after[i].tag);
+    EXPECT_EQ(before[i].vertices, after[i].vertices);
+    EXPECT_EQ(before[i].ratio, after[i].ratio);
+  }
+}
+
+TEST_F(Violations, AreNotReadFromAFileThatSaysNothingSensible) {
+  const auto fails = [](const std::string& end, const std::string& what) {
+    try {
+      read_graph_text("VERTEX_NUMBER 0 1\nVERTEX_NUMBER 1 2\nEDGE_TIED 0 1 1 " + end + "\n",
+                      "a.g2o", ".", own_types());
+      ADD_FAILURE() << end;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.line(), 3);
+      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+    }
+  };
+  fails("constraint", "constraint");
+  fails("constraint perhaps", "perhaps");
+  fails("constraint equality -1", "tolerance");
+  fails("constraint equality 1 2", "2");
+  fails("constrained", "constrained");
+}
+
+TEST_F(Violations, AreReadOffAWorkspaceWithoutAllocating) {
+  if (!test::allocations_are_counted()) GTEST_SKIP() << "a sanitizer brings its own malloc";
+  std::vector<VertexId<VertexNumber>> all;
+  for (int i = 0; i < 20; ++i) all.push_back(add(i));
+  for (int i = 1; i < 20; ++i) graph.add_edge(EdgeTied(), all[i - 1], all[i]);
+  graph.add_dynamic_edge(EdgeSumBelow(), all);
+  graph.add_edge(EdgeOrdered(), all[3], all[2]);
+  graph.add_edge(EdgeLevels(), all[3]);
+  Problem problem;
+  problem.compile(graph);
+  Workspace workspace;
+  workspace.allocate(problem);
+  workspace.load_state();
+  workspace.evaluate(workspace.state());
+  const ConstraintReader reader(workspace);
+  const long before = test::allocation_count();
+  const ConstraintReader::Row worst = reader.worst();
+  int violated = 0;
+  reader.each([&violated](const ConstraintReader::Row& row) { violated += row.ratio > 1.0; });
+  EXPECT_EQ(test::allocation_count(), before);
+  EXPECT_EQ(violated, 19 + 1 + 1 + 1);
+  EXPECT_EQ(reader.describe(worst).tag, "EDGE_ORDERED") << "in units of the default tolerance";
+  EXPECT_EQ(violations(graph).size(), 22u);
 }
 
 TEST_F(Violations, IgnoreRowsOfWeightZeroAndRemovedEdges) {

@@ -78,6 +78,10 @@ void expect_gets_past(const Surroundings& surroundings) {
   EXPECT_LT(check.constraint("lateral_slip").worst, 5e-3);
   EXPECT_LT(check.constraint("longitudinal_slip").worst, 5e-3);
   EXPECT_NEAR(configurations(graph).back()[0], 4.0, 0.3);
+  EXPECT_LT(report.goal_distance_m, 0.25) << "in any direction";
+  EXPECT_DOUBLE_EQ(
+      report.goal_distance_m,
+      (configurations(graph).back() - configurations(drive()).back()).head<3>().norm());
 }
 
 TEST(Refine, DrivesAroundABoxGivenAsAnObstacle) { expect_gets_past({{box_ahead()}, nullptr}); }
@@ -115,6 +119,10 @@ void expect_stops(const Surroundings& surroundings) {
   EXPECT_TRUE(report.reason.find("obstacle_distance") != std::string::npos ||
               report.reason.find("blocked") != std::string::npos)
       << report.reason;
+  EXPECT_NE(report.reason.find(surroundings.map ? "the map" : "wall"), std::string::npos)
+      << "the cause, not what gave way: " << report.reason;
+  EXPECT_NE(report.reason.find("from the goal"), std::string::npos) << report.reason;
+  EXPECT_GT(report.goal_distance_m, 1.0);
   EXPECT_EQ(configurations(graph).size(), static_cast<std::size_t>(report.configurations));
   expect_feasible(surroundings.check(graph));
   EXPECT_LT(configurations(graph).back()[0], 2.4) << "through the wall";
@@ -134,6 +142,9 @@ TEST(Refine, RemovesWhatCannotBeExecutedWhenThereIsNowhereToGo) {
       refine(graph, [&world](int executed) { return executed == 12 ? &world : nullptr; }, {});
   EXPECT_FALSE(report.success);
   EXPECT_EQ(report.reason.find("stopped at configuration 12: "), 0u) << report.reason;
+  EXPECT_NE(report.reason.find("(rock)"), std::string::npos) << report.reason;
+  EXPECT_NE(report.reason.find("after 12 of 49 steps"), std::string::npos) << report.reason;
+  EXPECT_NEAR(report.goal_distance_m, 4.0 * 37 / 49, 1e-2);
   EXPECT_EQ(report.configurations, 13);
   EXPECT_EQ(configurations(graph).size(), 13u);
   EXPECT_FALSE(report.cycles.back().feasible);
@@ -172,6 +183,21 @@ TEST(Refine, RefusesAHorizonOfNothingAndANegativeDeadline) {
   expect_same(graph, drive(), 0.0);
 }
 
+TEST(Refine, IsNoSuccessWhereItEndsTooFarFromTheGoal) {
+  const Surroundings surroundings{{box_ahead()}, nullptr};
+  const WorldDistance world = surroundings.seen();
+  RefineOptions options;
+  options.goal_tolerance_m = 1e-6;
+  Graph graph = drive();
+  const RefineReport report = refine(
+      graph, [&world](int executed) { return executed == 0 ? &world : nullptr; }, options);
+  EXPECT_FALSE(report.success);
+  EXPECT_EQ(report.configurations, 50);
+  EXPECT_NE(report.reason.find("from the goal"), std::string::npos) << report.reason;
+  options.goal_tolerance_m = -1.0;
+  EXPECT_THROW(refine(graph, {}, options), Error);
+}
+
 TEST(Refine, GivesTheSameBitsAgain) {
   const Surroundings surroundings{{}, map_of(box_ahead())};
   Graph first = drive(), second = drive();
@@ -189,82 +215,6 @@ TEST(Refine, TellsAfterEveryCycleAndOnlyThen) {
   ASSERT_EQ(executed.size(), 49u);
   for (int i = 0; i < 49; ++i) EXPECT_EQ(executed[i], i);
   EXPECT_EQ(report.map_update_s.size(), 49u);
-}
-
-TEST(LocalPlanner, NeverChangesWhatIsExecutedNorTheStart) {
-  Graph graph = drive();
-  LocalPlanner planner(graph, {});
-  planner.show(Surroundings{{box_ahead()}, nullptr}.seen());
-  std::vector<Eigen::VectorXd> executed;
-  for (int at = 0; at + 1 < planner.plan_size(); ++at) {
-    executed.push_back(configurations(graph)[at]);
-    ASSERT_TRUE(planner.cycle(at).next_feasible) << at;
-    const std::vector<Eigen::VectorXd> now = configurations(graph);
-    for (int i = 0; i <= at; ++i) ASSERT_EQ(now[i], executed[i]) << "in cycle " << at;
-  }
-  EXPECT_EQ(executed.front(), configurations(drive()).front());
-}
-
-TEST(LocalPlanner, ChangesNothingBehindTheWindow) {
-  Graph graph = drive();
-  LocalPlannerOptions options;
-  options.horizon = 30;
-  LocalPlanner planner(graph, options);
-  planner.show(Surroundings{{box_ahead()}, nullptr}.seen());
-  planner.cycle(0);
-  const std::vector<Eigen::VectorXd> now = configurations(graph), before = configurations(drive());
-  EXPECT_NE(now[25], before[25]);
-  for (int i = 31; i < 50; ++i) EXPECT_EQ(now[i], before[i]) << i;
-}
-
-TEST(LocalPlanner, RefusesAnExecutedConfigurationThatHasNoNext) {
-  Graph graph = drive();
-  LocalPlanner planner(graph, {});
-  EXPECT_THROW(planner.cycle(-1), Error);
-  EXPECT_THROW(planner.cycle(49), Error);
-  EXPECT_EQ(planner.cycle(48).window, 1);
-}
-
-TEST(LocalPlanner, RestoresTheWeightsItRaised) {
-  Graph graph = drive();
-  LocalPlanner planner(graph, {});
-  // Nowhere to go: violated whatever is tried.
-  planner.show(Surroundings{{box("rock", {0.5, 0.0, 0.5}, {3.0, 3.0, 1.0})}, nullptr}.seen());
-  const CycleReport report = planner.cycle(0);
-  EXPECT_FALSE(report.feasible);
-  EXPECT_GT(report.rounds, 0);
-  const Graph fresh = drive();
-  ASSERT_EQ(graph.edge_pools().size(), fresh.edge_pools().size());
-  for (std::size_t p = 0; p < graph.edge_pools().size(); ++p) {
-    const EdgePool& pool = *graph.edge_pools()[p];
-    for (int i = 0; i < pool.size(); ++i) {
-      ASSERT_EQ(pool.information(i), fresh.edge_pools()[p]->information(i));
-    }
-  }
-}
-
-TEST(LocalPlanner, CompilesTheSameWindowForAShortAndALongPlanAndKeepsItsPattern) {
-  Graph short_plan = plan_wheeled_drive(centauro_drive(4.0, 0.0, 50));
-  Graph long_plan = plan_wheeled_drive(centauro_drive(160.0, 0.0, 2000));
-  LocalPlanner near(short_plan, {}), far(long_plan, {});
-  near.cycle(0);
-  const BlockPattern pattern = near.compiled_window().pattern();
-  const int edges = near.compiled_window().edge_count();
-  EXPECT_EQ(pattern.size(), 20);
-  EXPECT_EQ(pattern.scalar_size(), 20 * 30);
-  EXPECT_EQ(pattern.blocks(), 20 + 19) << "neighbours only";
-  const auto expect_same_window = [&](LocalPlanner& planner, int executed) {
-    const CycleReport report = planner.cycle(executed);
-    const Problem& window = planner.compiled_window();
-    EXPECT_TRUE(window.pattern() == pattern) << executed;
-    EXPECT_EQ(window.edge_count(), edges);
-    EXPECT_EQ(report.window, 20);
-    std::size_t active = 0;
-    for (const auto& pool : window.active()) active += pool.size();
-    EXPECT_EQ(active, 21u) << "the window and the executed configuration";
-  };
-  for (int executed = 1; executed < 30; ++executed) expect_same_window(near, executed);
-  for (int executed = 0; executed < 60; ++executed) expect_same_window(far, executed);
 }
 
 }  // namespace

@@ -1,10 +1,13 @@
 #include <locograph/planners/offline/drive/wheeled_plan.h>
 #include <locograph/planners/plan/plan.h>
+#include <locograph/plugins/acceleration_limits/edge_acceleration_limits.h>
 #include <locograph/plugins/contact/edge_contact.h>
 #include <locograph/plugins/joint_limits/edge_joint_limits.h>
 #include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/plugins/rolling/edge_rolling.h>
+#include <locograph/plugins/self_collision/edge_self_collision.h>
+#include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
 
@@ -46,6 +49,23 @@ std::vector<int> contacts_at(const Stances& from, std::size_t i) {
   return numbers;
 }
 
+/// Keeps links apart that are apart in every one of the configurations.
+EdgeSelfCollision self_collision_edge(const std::shared_ptr<const RobotParameter>& robot,
+                                      const std::vector<Eigen::VectorXd>& configurations,
+                                      double margin_m, double weight) {
+  EdgeSelfCollision edge(*robot, margin_m, weight);
+  Eigen::VectorXd lack(edge.weights.size());
+  ConfigurationState state(robot);
+  for (const Eigen::VectorXd& q : configurations) {
+    state.update(q.data());
+    edge.error(state, lack);
+    for (Eigen::Index p = 0; p < lack.size(); ++p) {
+      if (lack[p] > 0.0) edge.weights[p] = 0.0;
+    }
+  }
+  return edge;
+}
+
 }  // namespace
 
 void add_wheeled_plan(Graph& graph, const Motion& motion, const PlanEdgeOptions& options) {
@@ -84,9 +104,13 @@ void add_wheeled_plan(Graph& graph, const Motion& motion, const PlanEdgeOptions&
                                                        configurations[i], number_from[i])));
   }
   graph.set_fixed(ids.front(), true);
+  Eigen::VectorXd goal = track;
+  goal[0] = goal[1] = goal[5] = options.track_goal;
+  const EdgeSelfCollision apart =
+      self_collision_edge(robot, configurations, options.self_margin_m, options.limit_weight);
   Eigen::VectorXd step(model.tangent_size());
   for (std::size_t i = 0; i < ids.size(); ++i) {
-    graph.add_edge(EdgePlanTracking(configurations[i], track), ids[i]);
+    graph.add_edge(EdgePlanTracking(configurations[i], i + 1 < ids.size() ? track : goal), ids[i]);
     graph.add_edge(EdgeJointLimits(model, options.joint_margin_rad, options.limit_weight), ids[i]);
     graph.add_edge(
         EdgeObstacleDistance(*robot, kWorldNumber, options.obstacle_margin_m, options.limit_weight),
@@ -95,15 +119,24 @@ void add_wheeled_plan(Graph& graph, const Motion& motion, const PlanEdgeOptions&
       const auto contact = graph.parameters().get<ContactParameter>(number);
       graph.add_edge(EdgeContact(*contact, number, options.constraint_weight), ids[i]);
     }
+    if (apart.weights.size() > 0) graph.add_edge(apart, ids[i]);
     if (i == 0) continue;
     model.difference(configurations[i - 1].data(), configurations[i].data(), step.data());
     graph.add_edge(EdgeVelocityTracking(step, steps), ids[i - 1], ids[i]);
     graph.add_edge(EdgeVelocityLimits(model, options.velocity_fraction, options.base_linear_m_s,
                                       options.base_angular_rad_s, options.limit_weight),
                    ids[i - 1], ids[i]);
-    if (from[i - 1]->wheels.empty()) continue;
-    graph.add_edge(EdgeRolling(*from[i - 1], number_from[i - 1], options.constraint_weight),
+    if (!from[i - 1]->wheels.empty()) {
+      graph.add_edge(EdgeRolling(*from[i - 1], number_from[i - 1], options.constraint_weight),
+                     ids[i - 1], ids[i]);
+    }
+    graph.add_edge(EdgeSweptObstacleDistance(*robot, kWorldNumber, options.obstacle_margin_m,
+                                             options.swept_samples, options.limit_weight),
                    ids[i - 1], ids[i]);
+    if (i == 1) continue;
+    graph.add_edge(EdgeAccelerationLimits(model, options.joint_acceleration_rad_s2, 0.0, 0.0,
+                                          options.acceleration_weight),
+                   ids[i - 2], ids[i - 1], ids[i]);
   }
 }
 

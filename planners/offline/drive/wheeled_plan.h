@@ -14,26 +14,32 @@ namespace locograph {
 /// constraints are large against those of tracking, so that what tracking wants bends constraints
 /// by micrometres only.
 struct PlanEdgeOptions {
-  double constraint_weight = 1e5;  ///< contacts, rolling
-  double limit_weight = 1e4;       ///< joints, velocities, obstacles
+  double constraint_weight = 1e5;    ///< contacts, rolling
+  double limit_weight = 1e4;         ///< joints, velocities, obstacles, the robot itself
+  double acceleration_weight = 1e2;  ///< per (rad/s²)²
   double obstacle_margin_m = 0.05;
   double joint_margin_rad = 0.01;
   double velocity_fraction = 0.95;
   double base_linear_m_s = 0.5;
   double base_angular_rad_s = 0.5;
+  int swept_samples = 4;  ///< between two configurations, see edge_swept_obstacle_distance.h
+  double self_margin_m = 0.01;
+  double joint_acceleration_rad_s2 = 10.0;
 
   // Tracking, of the plan and of its steps. Falling behind weighs more than passing to the side:
   // a robot that stops in front of an obstacle is safe, but gets nowhere.
   double track_forward = 20.0, track_lateral = 0.5, track_height = 20.0;
   double track_tilt = 50.0, track_yaw = 5.0, track_joint = 1.0;
+  double track_goal = 50.0;  ///< forward, lateral and yaw of the last configuration: to come back
   double step_base = 50.0, step_joint = 5.0, step_steering = 0.5;
 };
 
 /// Adds the stances, the configurations, the first one fixed, and all edges: every contact of a
 /// stance at the configurations at both ends of its steps, rolling on the steps. Parameters
-/// kRobotNumber and kWorldNumber (plan.h) must be set. Joints that steer (a carrier of a wheel
-/// turns about them) and wheels are not tracked: rolling decides them. Throws Error for a motion
-/// whose stances are not known everywhere.
+/// kRobotNumber and kWorldNumber (plan.h) must be set. Pairs of links that the shapes of
+/// EDGE_SELF_COLLISION see too near to each other in the motion already have no weight there.
+/// Joints that steer (a carrier of a wheel turns about them) and wheels are not tracked: rolling
+/// decides them. Throws Error for a motion whose stances are not known everywhere.
 void add_wheeled_plan(Graph& graph, const Motion& motion, const PlanEdgeOptions& options = {});
 
 }  // namespace locograph

@@ -1,0 +1,49 @@
+#pragma once
+/// A person walks across the way of the CENTAURO drive: what the local planner says of its windows,
+/// beside what the judge says of them.
+///
+///     for (const Crossing& crossing : crossings(24)) {
+///       const CrossingResult result = run_crossing(scenario, crossing, {});
+///       if (result.wrongly_feasible > 0) …
+///     }
+///
+/// Shared by a benchmark and a test.
+
+#include <locograph/planners/online/local_planner.h>
+#include <locograph/planners/scenario/scenario.h>
+
+#include <string>
+#include <vector>
+
+namespace locograph {
+
+/// A cylinder of a person's size that walks along y at 0.5 m/s.
+struct Crossing {
+  double x_m = 0.0;      ///< where it meets the robot's way
+  double delay_s = 0.0;  ///< it is there that much later than the robot's base was planned to be
+  bool from_left = false;
+};
+
+/// Places along the drive, delays and sides, in turn.
+std::vector<Crossing> crossings(int count);
+
+struct CrossingResult {
+  int windows = 0;           ///< judged
+  int called_feasible = 0;   ///< by the planner
+  int judged_feasible = 0;   ///< by the judge
+  int agreed_feasible = 0;   ///< by both
+  int wrongly_feasible = 0;  ///< by the planner alone
+  int steps = 0;             ///< executed
+  bool arrived = false;      ///< all of them
+  std::string refused;       ///< what the judge said of the first window wrongly called feasible
+};
+
+struct CrossingOptions {
+  LocalPlannerOptions planner;
+  int every = 1;  ///< how many cycles from one window that is judged to the next
+};
+
+CrossingResult run_crossing(const Scenario& scenario, const Crossing& crossing,
+                            const CrossingOptions& options);
+
+}  // namespace locograph

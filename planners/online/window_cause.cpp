@@ -1,0 +1,125 @@
+#include <locograph/planners/online/window_cause.h>
+#include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
+#include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
+#include <locograph/robots/robot_state.h>
+
+#include <algorithm>
+#include <cctype>
+#include <sstream>
+
+namespace locograph {
+namespace {
+
+/// Puts configurations where they were planned, and back when it goes.
+class AsPlanned {
+ public:
+  AsPlanned(Graph& graph, const Plan& plan, const std::vector<Eigen::VectorXd>& planned, int first,
+            int last)
+      : graph_(graph), plan_(plan), first_(first) {
+    for (int i = first; i <= last; ++i) {
+      kept_.emplace_back(state(i));
+      state(i) = planned[static_cast<std::size_t>(i)];
+    }
+  }
+  ~AsPlanned() {
+    for (std::size_t k = 0; k < kept_.size(); ++k) state(first_ + static_cast<int>(k)) = kept_[k];
+  }
+  AsPlanned(const AsPlanned&) = delete;
+  AsPlanned& operator=(const AsPlanned&) = delete;
+
+ private:
+  Eigen::Map<Eigen::VectorXd> state(int index) {
+    const int slot = plan_.slots[static_cast<std::size_t>(index)];
+    return {graph_.state(slot), graph_.state_size(slot)};
+  }
+
+  Graph& graph_;
+  const Plan& plan_;
+  int first_;
+  std::vector<Eigen::VectorXd> kept_;
+};
+
+/// What of the world is nearest to a point.
+std::string nearest_thing(const WorldDistance& world, const Eigen::Vector3d& point, double time_s) {
+  std::string name = "the map";
+  double nearest = world.map && !world.map->empty() ? world.map->distance(point)
+                                                    : std::numeric_limits<double>::infinity();
+  for (const Obstacle& obstacle : world.obstacles) {
+    const double distance = obstacle.distance(point, time_s);
+    if (distance >= nearest) continue;
+    nearest = distance;
+    name = obstacle.name;
+  }
+  return name;
+}
+
+/// The obstacle that a violated row is about; empty where it is about something else.
+std::string obstacle_of(const Graph& graph, const Plan& plan, const ConstraintViolation& violation,
+                        int at) {
+  const std::type_index type =
+      graph.edge_pools()[graph.edge_record(violation.edge.slot).pool]->type();
+  if (type != typeid(EdgeObstacleDistance) && type != typeid(EdgeSweptObstacleDistance)) return "";
+  const int slot = plan.slots[static_cast<std::size_t>(at)];
+  RobotState state(*plan.robot->robot);
+  state.update(graph.state(slot));
+  const CollisionSphere& sphere = plan.robot->spheres[static_cast<std::size_t>(violation.row)];
+  return nearest_thing(plan.world->now, state.world_from_link(sphere.link) * sphere.center,
+                       graph.vertex(VertexId<VertexConfiguration>{slot}).time_s);
+}
+
+}  // namespace
+
+std::string constraint_name(const std::string& tag) {
+  std::string name = tag.starts_with("EDGE_") ? tag.substr(5) : tag;
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return name;
+}
+
+std::optional<WindowCause> find_cause(Graph& graph, const Plan& plan,
+                                      const std::vector<Eigen::VectorXd>& planned, int executed,
+                                      int last) {
+  const AsPlanned as_planned(graph, plan, planned, executed + 1, last);
+  const std::vector<int> window(plan.slots.begin() + executed + 1, plan.slots.begin() + last + 1);
+  Problem problem;
+  // Without what ties the window to where the robot is: it may be beside the plan by now.
+  problem.compile(graph, window, {});
+  Workspace workspace;
+  workspace.allocate(problem);
+  workspace.load_state();
+  workspace.evaluate(workspace.state());
+  const auto index_of = [&](const CompiledConstraint& c) {
+    int index = executed + 1;
+    for (const int v : graph.edge_vertices(c.edge)) {
+      const auto found = std::find(window.begin(), window.end(), v);
+      if (found == window.end()) continue;
+      index = std::max(index, executed + 1 + static_cast<int>(found - window.begin()));
+    }
+    return index;
+  };
+  const ConstraintReader reader(workspace);
+  ConstraintReader::Row first;
+  int at = last + 1;
+  reader.each([&](const ConstraintReader::Row& row) {
+    if (row.ratio <= 1.0) return;
+    const int index = index_of(problem.constraints()[static_cast<std::size_t>(row.constraint)]);
+    if (index > at || (index == at && row.ratio <= first.ratio)) return;
+    first = row;
+    at = index;
+  });
+  if (first.constraint < 0) return std::nullopt;
+  WindowCause cause{reader.describe(first), at, ""};
+  const ConstraintViolation& violation = cause.violation;
+  std::ostringstream text;
+  text << constraint_name(violation.tag) << ": " << violation.label.name;
+  if (const std::string thing = obstacle_of(graph, plan, violation, at); !thing.empty()) {
+    text << " (" << thing << ")";
+  }
+  text << ", by " << violation.amount << (violation.label.unit.empty() ? "" : " ")
+       << violation.label.unit << " at vertex "
+       << graph.vertex_record(plan.slots[static_cast<std::size_t>(at)]).id;
+  cause.text = text.str();
+  return cause;
+}
+
+}  // namespace locograph

@@ -1,0 +1,227 @@
+#include <locograph/common/error.h>
+#include <locograph/core/graph_file.h>
+#include <locograph/core/typed_edge_pool.h>
+#include <locograph/planners/online/local_planner.h>
+#include <locograph/plugins/acceleration_limits/edge_acceleration_limits.h>
+
+#include "benchmarks/planners/crossing_cases.h"
+#include "planners/planned_drive.h"
+
+namespace locograph {
+namespace local_planner_test {
+
+Graph drive() { return plan_wheeled_drive(centauro_drive()); }
+
+Obstacle box_ahead() { return box("box", {2.0, 0.0, 0.25}, {0.5, 0.5, 0.5}); }
+
+WorldDistance seeing(const std::vector<Obstacle>& obstacles) {
+  WorldDistance world;
+  world.obstacles = obstacles;
+  return world;
+}
+
+/// Of what was executed of a plan.
+void expect_feasible_until(const Graph& graph, int last, const std::vector<Obstacle>& obstacles) {
+  Plan executed = plan_of(graph);
+  executed.slots.resize(static_cast<std::size_t>(last) + 1);
+  executed.stance_from.resize(executed.slots.size());
+  expect_feasible(
+      check_step(executed.robot->robot, motion_of(graph, executed), world_of(obstacles)));
+}
+
+TEST(LocalPlanner, NeverChangesWhatIsExecutedNorTheStart) {
+  Graph graph = drive();
+  LocalPlanner planner(graph, {});
+  planner.show(seeing({box_ahead()}));
+  std::vector<Eigen::VectorXd> executed;
+  for (int at = 0; at + 1 < planner.plan_size(); ++at) {
+    executed.push_back(configurations(graph)[at]);
+    ASSERT_TRUE(planner.cycle(at).next_feasible) << at;
+    const std::vector<Eigen::VectorXd> now = configurations(graph);
+    for (int i = 0; i <= at; ++i) ASSERT_EQ(now[i], executed[i]) << "in cycle " << at;
+  }
+  EXPECT_EQ(executed.front(), configurations(drive()).front());
+}
+
+TEST(LocalPlanner, ChangesNothingBehindTheWindow) {
+  Graph graph = drive();
+  LocalPlannerOptions options;
+  options.horizon = 30;
+  LocalPlanner planner(graph, options);
+  planner.show(seeing({box_ahead()}));
+  planner.cycle(0);
+  const std::vector<Eigen::VectorXd> now = configurations(graph), before = configurations(drive());
+  EXPECT_NE(now[25], before[25]);
+  for (int i = 31; i < 50; ++i) EXPECT_EQ(now[i], before[i]) << i;
+}
+
+TEST(LocalPlanner, RefusesAnExecutedConfigurationThatHasNoNext) {
+  Graph graph = drive();
+  LocalPlanner planner(graph, {});
+  EXPECT_THROW(planner.cycle(-1), Error);
+  EXPECT_THROW(planner.cycle(49), Error);
+  EXPECT_EQ(planner.cycle(48).window, 1);
+}
+
+TEST(LocalPlanner, RestoresTheWeightsItRaised) {
+  Graph graph = drive();
+  LocalPlanner planner(graph, {});
+  // Nowhere to go: violated whatever is tried.
+  planner.show(seeing({box("rock", {0.5, 0.0, 0.5}, {3.0, 3.0, 1.0})}));
+  const CycleReport report = planner.cycle(0);
+  EXPECT_FALSE(report.feasible);
+  EXPECT_GT(report.rounds, 0);
+  const Graph fresh = drive();
+  ASSERT_EQ(graph.edge_pools().size(), fresh.edge_pools().size());
+  for (std::size_t p = 0; p < graph.edge_pools().size(); ++p) {
+    const EdgePool& pool = *graph.edge_pools()[p];
+    for (int i = 0; i < pool.size(); ++i) {
+      ASSERT_EQ(pool.information(i), fresh.edge_pools()[p]->information(i));
+    }
+  }
+}
+
+TEST(LocalPlanner, CompilesTheSameWindowForAShortAndALongPlanAndKeepsItsPattern) {
+  Graph short_plan = plan_wheeled_drive(centauro_drive(4.0, 0.0, 50));
+  Graph long_plan = plan_wheeled_drive(centauro_drive(160.0, 0.0, 2000));
+  LocalPlanner near(short_plan, {}), far(long_plan, {});
+  near.cycle(0);
+  far.cycle(0);
+  near.cycle(1);
+  const BlockPattern pattern = near.compiled_window().pattern();
+  const int edges = near.compiled_window().edge_count();
+  EXPECT_EQ(pattern.size(), 20);
+  EXPECT_EQ(pattern.scalar_size(), 20 * 30);
+  EXPECT_EQ(pattern.blocks(), 20 + 19 + 18) << "neighbours, and theirs: accelerations";
+  const auto expect_same_window = [&](LocalPlanner& planner, int executed) {
+    const CycleReport report = planner.cycle(executed);
+    const Problem& window = planner.compiled_window();
+    EXPECT_TRUE(window.pattern() == pattern) << executed;
+    EXPECT_EQ(window.edge_count(), edges);
+    EXPECT_EQ(report.window, 20);
+    std::size_t active = 0;
+    for (const auto& pool : window.active()) active += pool.size();
+    EXPECT_EQ(active, 22u) << "the window, the executed configuration and the one before";
+  };
+  for (int executed = 2; executed < 30; ++executed) expect_same_window(near, executed);
+  for (int executed = 1; executed < 60; ++executed) expect_same_window(far, executed);
+}
+
+/// A constraint that the planners have never heard of, as a plug-in would bring it: the base stays
+/// on this side of a fence.
+struct EdgeFence : WeightedEdge<1, VertexConfiguration> {
+  static constexpr bool kOneSided = true;
+  static constexpr double kTolerance = 0.01;
+  double x_m = 0.0;
+  void error(const ConfigurationState& q, Eigen::Ref<Eigen::Matrix<double, 1, 1>> e) const {
+    e[0] = std::max(0.0, q.base_position().x() - x_m);
+  }
+  RowLabel row_label(int) const { return {"beyond the fence", "m"}; }
+};
+LOCOGRAPH_REGISTER_EDGE("EDGE_FENCE", EdgeFence)
+
+void add_fence(Graph& graph, double x_m) {
+  EdgeFence fence;
+  fence.x_m = x_m;
+  fence.weights[0] = 1e2;  // far too little to hold by itself
+  for (const int slot : plan_of(graph).slots) {
+    graph.add_edge(fence, VertexId<VertexConfiguration>{slot});
+  }
+}
+
+TEST(LocalPlanner, RaisesAConstraintOfAPlugInUntilItHolds) {
+  Graph graph = drive();
+  add_fence(graph, 1.0);
+  LocalPlanner planner(graph, {});
+  int raised = 0;
+  for (int executed = 0; executed + 1 < planner.plan_size(); ++executed) {
+    const CycleReport report = planner.cycle(executed);
+    raised += report.rounds > 0 ? 1 : 0;
+    if (!report.next_feasible) break;
+    EXPECT_LE(configurations(graph)[executed + 1][0], 1.0 + EdgeFence::kTolerance + 1e-9);
+  }
+  EXPECT_GT(raised, 0);
+}
+
+TEST(LocalPlanner, SeesAConstraintThatAFixedConfigurationViolates) {
+  Graph graph = drive();
+  add_fence(graph, 3.0);
+  const Plan plan = plan_of(graph);
+  graph.set_fixed(VertexId<VertexConfiguration>{plan.slots[45]}, true);  // at 3.67 m
+  const Eigen::VectorXd before = configurations(graph)[45];
+  LocalPlanner planner(graph, {});
+  CycleReport report = planner.cycle(0);
+  EXPECT_TRUE(report.feasible) << "it is not in the window yet";
+  for (int executed = 1; executed <= 30; ++executed) report = planner.cycle(executed);
+  EXPECT_FALSE(report.feasible);
+  EXPECT_EQ(configurations(graph)[45], before);
+}
+
+TEST(LocalPlanner, SeesAccelerationsAcrossTheSeam) {
+  Graph graph = drive();
+  const Plan plan = plan_of(graph);
+  // Standing still until now, and no way to move on as fast as planned.
+  for (int i = 0; i < 3; ++i) {
+    const auto id = [&](int k) { return VertexId<VertexConfiguration>{plan.slots[k]}; };
+    EdgeAccelerationLimits limit(*plan.robot->robot, 0.0, 0.0, 0.0, 1e4);
+    limit.limits[plan.robot->robot->active_joint_count()] = 1e-3;
+    graph.add_edge(limit, id(i), id(i + 1), id(i + 2));
+  }
+  graph.vertex(VertexId<VertexConfiguration>{plan.slots[1]}).state =
+      graph.vertex(VertexId<VertexConfiguration>{plan.slots[0]}).state;
+  LocalPlanner planner(graph, {});
+  planner.cycle(1);
+  const std::vector<Eigen::VectorXd> now = configurations(graph);
+  const double step_s = 40.0 / 49.0;
+  EXPECT_LT((now[2] - now[1]).head<3>().norm(), 1e-3 * step_s * step_s * 2.0);
+}
+
+TEST(LocalPlanner, NeverGivesUpAFeasibleWindowForADeadline) {
+  for (const double deadline_s : {1e-6, 2e-4, 1e-3, 5e-3}) {
+    Graph graph = drive();
+    LocalPlannerOptions options;
+    options.deadline_s = deadline_s;
+    LocalPlanner planner(graph, options);
+    for (int executed = 0; executed < 10; ++executed) {
+      ASSERT_TRUE(planner.cycle(executed).feasible) << deadline_s << " s, cycle " << executed;
+    }
+    planner.show(seeing({box_ahead()}));
+    int feasible_steps = 0, executed = 10;
+    for (; executed + 1 < planner.plan_size(); ++executed) {
+      const CycleReport report = planner.cycle(executed);
+      EXPECT_GE(report.feasible_steps, feasible_steps - 1) << deadline_s << " s, " << executed;
+      feasible_steps = report.feasible_steps;
+      if (!report.next_feasible) break;
+    }
+    expect_feasible_until(graph, executed, {box_ahead()});
+  }
+}
+
+TEST(LocalPlanner, MakesTheSamePlanWithADeadlineThatIsGenerous) {
+  Graph without = drive(), with = drive();
+  LocalPlannerOptions options;
+  LocalPlanner free(without, options);
+  options.deadline_s = 1e4;
+  LocalPlanner bound(with, options);
+  for (LocalPlanner* planner : {&free, &bound}) {
+    planner->show(seeing({box_ahead()}));
+    for (int executed = 0; executed < 25; ++executed) planner->cycle(executed);
+  }
+  EXPECT_EQ(write_graph_text(without), write_graph_text(with));
+}
+
+TEST(LocalPlanner, CallsFeasibleWhatTheJudgeAccepts) {
+  CrossingOptions options;
+  options.every = 6;
+  int judged = 0, agreed = 0;
+  for (const Crossing& crossing : crossings(4)) {
+    const CrossingResult result = run_crossing(centauro_drive(), crossing, options);
+    EXPECT_EQ(result.wrongly_feasible, 0) << result.refused;
+    judged += result.judged_feasible;
+    agreed += result.agreed_feasible;
+  }
+  EXPECT_GE(agreed, 0.95 * judged);
+}
+
+}  // namespace local_planner_test
+}  // namespace locograph
