@@ -47,9 +47,9 @@ Motion window_of(const Graph& graph, const Plan& plan, const CycleReport& cycle)
 
 std::string first_refusal(const CheckReport& report) {
   for (const Violation& v : report.violations) {
-    if (v.violated || !v.judged) return violation_text(v);
+    if (v.violated) return violation_text(v);
   }
-  return "";
+  return violation_text(report.worst());
 }
 
 }  // namespace

@@ -47,9 +47,11 @@ double DetourSearch::obstacle_cost(const WorldDistance& world, double time_s,
   return options_.obstacle_weight * sum;
 }
 
-/// Of every offset; false when the deadline passes.
-bool DetourSearch::fill_obstacle_costs(const double* configuration, const WorldDistance& world,
-                                       double time_s, const Deadline& deadline, double* costs) {
+void DetourSearch::forget() { obstacle_.clear(); }
+
+/// Of every offset.
+void DetourSearch::fill_obstacle_costs(const double* configuration, const WorldDistance& world,
+                                       double time_s, double* costs) {
   state_.update(configuration);
   for (std::size_t s = 0; s < centres_.size(); ++s) {
     const CollisionSphere& sphere = robot_->spheres[s];
@@ -61,26 +63,29 @@ bool DetourSearch::fill_obstacle_costs(const double* configuration, const WorldD
   }
   const Eigen::Vector3d side = left(configuration);
   for (int o = -half_; o <= half_; o += kCoarse) {
-    if (deadline.passed()) return false;
     costs[o + half_] = obstacle_cost(world, time_s, o * options_.grid_m * side);
   }
   for (int o = -half_ + 1; o < half_; o += kCoarse) {
     costs[o + half_] = 0.5 * (costs[o + half_ - 1] + costs[o + half_ + 1]);
   }
-  return true;
 }
 
-std::vector<double> DetourSearch::find(const std::vector<const double*>& plan,
+std::vector<double> DetourSearch::find(int first_index, const std::vector<const double*>& plan,
                                        const std::vector<double>& time_s,
                                        const WorldDistance& world, double start_offset,
                                        double start_slope, const Deadline& deadline) {
   const int steps = static_cast<int>(plan.size());
   const int offsets = 2 * half_ + 1, states = offsets * slopes_, steepest = options_.steepest;
   const double grid2 = options_.grid_m * options_.grid_m;
-  obstacle_.resize(static_cast<std::size_t>(steps) * offsets);
+  obstacle_.erase(obstacle_.begin(), obstacle_.lower_bound(first_index));
+  bool added = false;
   for (int k = 0; k < steps; ++k) {
-    double* costs = obstacle_.data() + static_cast<std::size_t>(k) * offsets;
-    if (!fill_obstacle_costs(plan[k], world, time_s[k], deadline, costs)) return {};
+    std::vector<double>& costs = obstacle_[first_index + k];
+    if (!costs.empty()) continue;
+    if (added && deadline.passed()) return {};
+    costs.resize(offsets);
+    fill_obstacle_costs(plan[k], world, time_s[k], costs.data());
+    added = true;
   }
   // cost_[offset, slope] of the best way to come from the start; choice_ is the change of slope.
   cost_.assign(states, kInfinite);
@@ -92,12 +97,11 @@ std::vector<double> DetourSearch::find(const std::vector<const double*>& plan,
       std::clamp(static_cast<int>(std::lround(start_slope / options_.grid_m)), -steepest, steepest);
   cost_[(first + half_) * slopes_ + slope + steepest] = 0.0;
   for (int k = 0; k < steps; ++k) {
-    if (deadline.passed()) return {};
     std::fill(next_.begin(), next_.end(), kInfinite);
+    const std::vector<double>& obstacle = obstacle_.at(first_index + k);
     std::int8_t* choice = choice_.data() + static_cast<std::size_t>(k) * states;
     for (int o = 0; o < offsets; ++o) {
-      const double here = obstacle_[static_cast<std::size_t>(k) * offsets + o] +
-                          options_.lateral_weight * grid2 * (o - half_) * (o - half_);
+      const double here = obstacle[o] + options_.lateral_weight * grid2 * (o - half_) * (o - half_);
       for (int s = -steepest; s <= steepest; ++s) {
         const int from = o - s;
         if (from < 0 || from >= offsets) continue;

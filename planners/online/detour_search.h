@@ -18,6 +18,7 @@
 #include <locograph/robots/robot_state.h>
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -38,10 +39,16 @@ class DetourSearch {
 
   /// plan: the configurations of the window as planned. start_offset and start_slope: how far the
   /// executed configuration is to the left of its place in the plan, and how much that changed in
-  /// the last step [m]. Returns an offset for each configuration; none when the deadline passes.
-  std::vector<double> find(const std::vector<const double*>& plan,
+  /// the last step [m]. first: index in the plan of the window's first configuration. Returns an
+  /// offset for each configuration; none when the deadline passes. What has been found out about
+  /// the obstacles until then is kept for the next call, by index in the plan: at least for one
+  /// configuration more with every call.
+  std::vector<double> find(int first, const std::vector<const double*>& plan,
                            const std::vector<double>& time_s, const WorldDistance& world,
                            double start_offset, double start_slope, const Deadline& deadline = {});
+
+  /// The world or the plan has changed: what was kept does not count any more.
+  void forget();
 
   /// Unit vector to the left of a configuration's heading.
   static Eigen::Vector3d left(const double* configuration);
@@ -49,8 +56,8 @@ class DetourSearch {
  private:
   double obstacle_cost(const WorldDistance& world, double time_s,
                        const Eigen::Vector3d& shift) const;
-  bool fill_obstacle_costs(const double* configuration, const WorldDistance& world, double time_s,
-                           const Deadline& deadline, double* costs);
+  void fill_obstacle_costs(const double* configuration, const WorldDistance& world, double time_s,
+                           double* costs);
 
   std::shared_ptr<const RobotParameter> robot_;
   DetourOptions options_;
@@ -58,7 +65,8 @@ class DetourSearch {
   int half_ = 0;    ///< offsets run from −half_ to half_ grid steps
   int slopes_ = 0;  ///< 2 · steepest + 1
   std::vector<Eigen::Vector3d> centres_, bound_centres_;
-  std::vector<double> obstacle_, cost_, next_;
+  std::vector<double> cost_, next_;
+  std::map<int, std::vector<double>> obstacle_;  ///< of every offset, by index in the plan
   std::vector<std::int8_t> choice_;
 };
 

@@ -20,6 +20,8 @@ OptimiserOptions optimiser_options(const LocalPlannerOptions& options) {
   result.gain = options.gain;
   // Constraints weigh up to 1e5 times as much as tracking: λ must begin far below either.
   result.initial_lambda = 1e-10;
+  // What is in the way begins to act all at once.
+  result.shorten_steps = true;
   return result;
 }
 
@@ -74,7 +76,10 @@ Eigen::Map<const Eigen::VectorXd> LocalPlanner::configuration(int index) const {
   return {std::as_const(graph_).state(slot), graph_.state_size(slot)};
 }
 
-void LocalPlanner::show(const WorldDistance& world) { plan_.world->now = world; }
+void LocalPlanner::show(const WorldDistance& world) {
+  plan_.world->now = world;
+  detour_.forget();
+}
 
 /// Configurations new to the window: as planned, moved along with the one before them.
 void LocalPlanner::enter(int executed, int last) {
@@ -255,7 +260,7 @@ bool LocalPlanner::apply_detour(const CycleReport& report, const Deadline& deadl
   const double start = offset_of(executed);
   const double slope = executed > 0 ? start - offset_of(executed - 1) : 0.0;
   const std::vector<double> offsets =
-      detour_.find(plan, times, plan_.world->now, start, slope, deadline);
+      detour_.find(executed + 1, plan, times, plan_.world->now, start, slope, deadline);
   if (offsets.empty()) return false;
 
   for (int i = executed + 1; i <= last; ++i) {
@@ -286,7 +291,12 @@ void LocalPlanner::search_detour(CycleReport& report, const Deadline& deadline) 
   const bool found = apply_detour(report, deadline);
   workspace_.load_state();
   report.time_detour = watch.seconds();
-  if (!found || !optimise(report, deadline)) {
+  detour_due_ = !found && deadline.passed();
+  if (detour_due_) {
+    cut_short_ = true;
+    return;
+  }
+  if (!found || !optimise(report, deadline) || cut_short_) {
     detour_not_before_ = report.executed + 1 + options_.detour_pause;
   }
 }
@@ -352,11 +362,20 @@ CycleReport LocalPlanner::cycle(int executed) {
   report.time_compile = watch.seconds();
 
   load_unfinished(report);
-  optimise(report, deadline);
+  if (detour_due_ && executed >= detour_not_before_) {
+    cut_short_ = false;
+    take_if_better(read(workspace_.evaluate(workspace_.state()).robust));
+    search_detour(report, deadline);
+  } else {
+    optimise(report, deadline);
+    detour_due_ = cut_short_ && !best_.feasible();
+  }
   if (!cut_short_) {
     store_best();
     const bool blocked = executed >= detour_not_before_ && behind_m(last) > options_.blocked_m;
-    if ((!best_.feasible() || blocked) && !deadline.passed()) search_detour(report, deadline);
+    if (!report.detour && (!best_.feasible() || blocked) && !deadline.passed()) {
+      search_detour(report, deadline);
+    }
     if (!cut_short_ && !best_.feasible() && options_.max_rounds > 0 && !deadline.passed()) {
       raise_constraints(report, deadline);
     }

@@ -122,6 +122,7 @@ class LocalPlanner {
   std::vector<Eigen::VectorXd> planned_;  ///< configurations as the plan came
   std::vector<int> index_of_slot_;        ///< in the plan; -1 for vertices of other types
   int detour_not_before_ = 0;             ///< executed index; see detour_pause
+  bool detour_due_ = false;               ///< a deadline left no time for one: first of all, then
   int entered_ = 0;                       ///< last index that has been in a window
   Problem problem_;
   Workspace workspace_;

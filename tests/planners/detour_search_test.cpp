@@ -22,7 +22,7 @@ class Search : public testing::Test {
     WorldDistance world;
     world.obstacles = obstacles;
     DetourSearch search(plan_.robot, options_);
-    return search.find(window_, times_, world, offset, slope);
+    return search.find(0, window_, times_, world, offset, slope);
   }
   static double farthest(const std::vector<double>& offsets) {
     double result = 0.0;
