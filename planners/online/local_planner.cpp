@@ -20,8 +20,6 @@ OptimiserOptions optimiser_options(const LocalPlannerOptions& options) {
   result.gain = options.gain;
   // Constraints weigh up to 1e5 times as much as tracking: λ must begin far below either.
   result.initial_lambda = 1e-10;
-  // What is in the way begins to act all at once.
-  result.shorten_steps = true;
   return result;
 }
 
