@@ -2,7 +2,7 @@
 /// A point in time after which work should stop; the only clock that decisions may look at.
 ///
 ///     Deadline deadline = Deadline::after(0.010);     // seconds
-///     while (!deadline.passed()) { … }
+///     while (!deadline.passed()) try_another_start();
 
 #include <chrono>
 #include <optional>

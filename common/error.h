@@ -1,9 +1,8 @@
 #pragma once
 /// The one family of exceptions for bad input: what is wrong, what was expected, and where.
 ///
-///     throw locograph::Error("graph.g2o", 12, "unknown vertex 7", "an id declared by a VERTEX
-///     line");
-///     // what(): graph.g2o:12: unknown vertex 7, expected an id declared by a VERTEX line
+///     throw locograph::Error("graph.g2o", 12, "unknown vertex 7", "the id of a VERTEX line");
+///     // what(): graph.g2o:12: unknown vertex 7, expected the id of a VERTEX line
 ///
 /// Numerical outcomes (not converged, singular, infeasible) are results, never exceptions.
 

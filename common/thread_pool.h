@@ -2,7 +2,7 @@
 /// Fork and join on a fixed number of threads, the caller's included.
 ///
 ///     ThreadPool threads(2);
-///     threads.run(chunks, [&](int chunk) { … });     // returns when all are done
+///     threads.run(chunks, [&](int chunk) { sums[chunk] = sum(chunk); });   // waits for all
 ///
 /// Which thread runs which chunk is left open; what a chunk computes must depend on its number
 /// only. run() does not allocate, must not be nested and is called by one thread at a time. The

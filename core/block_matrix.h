@@ -1,8 +1,9 @@
 #pragma once
 /// The pattern of a symmetric block-sparse matrix: its upper triangle, by block columns.
 ///
-///     BlockPattern pattern;                       // blocks (row[k], c), row[k] ≤ c, ascending
-///     for (int k = pattern.column_begin[c]; k < pattern.column_begin[c + 1]; ++k) { … }
+///     for (int k = pattern.column_begin[c]; k < pattern.column_begin[c + 1]; ++k) {
+///       rows.push_back(pattern.row[k]);           // blocks (row[k], c), row[k] ≤ c, ascending
+///     }
 ///
 /// The values are one flat array; block k is column-major, dimension[row] × dimension[c], and
 /// starts at value_offset[k]. Diagonal blocks are stored in full.

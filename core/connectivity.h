@@ -1,8 +1,9 @@
 #pragma once
 /// Connected components of a graph, and which of them nothing holds in place.
 ///
-///     for (const Component& c : components(graph)) if (!c.anchored) graph.set_fixed(c.first,
-///     true);
+///     for (const Component& c : components(graph)) {
+///       if (!c.anchored) graph.set_fixed(c.first, true);
+///     }
 
 #include <locograph/core/graph.h>
 

@@ -3,7 +3,8 @@
 ///
 ///     Covariance covariance(graph, *make_linear_solver("auto"));   // linearises and factorises
 ///     if (!covariance.singular()) Eigen::Matrix3d sigma = covariance.block(a, a);
-///     std::vector<Eigen::MatrixXd> blocks = covariance.blocks({{a, a}, {a, b}});
+///     std::vector<std::pair<int, int>> pairs = {{a.slot, a.slot}, {a.slot, b.slot}};
+///     std::vector<Eigen::MatrixXd> blocks = covariance.blocks(pairs);
 ///
 /// A block is a dimension × dimension matrix in the tangents of its two vertices, for the free
 /// vertices of the graph with the others held where they are. Ω is taken to be the inverse

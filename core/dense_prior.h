@@ -9,7 +9,9 @@
 ///
 ///     DensePrior prior;
 ///     prior.vertices = {a.slot, b.slot};
-///     prior.states = …; prior.offset = …; prior.information = …;
+///     prior.states = {0.0, 0.0, 0.0, 1.0, 0.0, 0.1};
+///     prior.offset = Eigen::VectorXd::Zero(6);
+///     prior.information = 100.0 * Eigen::MatrixXd::Identity(6, 6);
 ///     EdgeId e = graph.add_dense_prior(prior);
 ///
 /// The pool derives from EdgePool itself: its vertices have no type known when it is compiled. It

@@ -22,8 +22,19 @@
 /// A DynamicEdge has its arity chosen at run time: any number of `Many` vertices, after the fixed
 /// `Leading` ones. It takes the same path through the solver; error() receives the many as a span:
 ///
-///     struct EdgeCentroid : DynamicEdge<2, VertexXY> { …
-///       template <class T> void error(std::span<const Eigen::Matrix<T,2,1>> points, … e) const;
+///     /// Centroid of some points. Error (2): centroid − measured [m].
+///     struct EdgeCentroid : DynamicEdge<2, VertexXY> {
+///       Eigen::Vector2d measured = Eigen::Vector2d::Zero();
+///       auto fields() { return std::tie(measured); }
+///       template <class T>
+///       void error(std::span<const Eigen::Matrix<T, 2, 1>> points,
+///                  Eigen::Ref<Eigen::Matrix<T, 2, 1>> e) const {
+///         e = -measured.cast<T>();
+///         const double share = 1.0 / static_cast<double>(points.size());
+///         for (const Eigen::Matrix<T, 2, 1>& p : points) e += T(share) * p;
+///       }
+///     };
+///     LOCOGRAPH_REGISTER_EDGE("CENTROID_XY", EdgeCentroid)
 ///
 /// Optional members: fields() names what is saved besides ids and information (without it nothing
 /// is); bind(const Parameters&) looks up shared parameters before use; predict_first/predict_second

@@ -3,7 +3,7 @@
 ///
 ///     GraduationOptions options;
 ///     GraduationResult result = optimise_graduated(graph, options, *solver, trusted_edges);
-///     if (result.weight[edge.slot] < 0.5) …                       // that measurement is wrong
+///     if (result.weight[e.slot] < 0.5) std::cerr << "that measurement is wrong\n";
 ///
 /// Yang, Antonante, Tzoumas & Carlone 2020 ("Graduated non-convexity for robust spatial
 /// perception"): an outer loop over the optimiser on one compiled problem. Every suspect edge gets

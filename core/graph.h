@@ -2,10 +2,13 @@
 /// The hyper-graph a user edits: vertices and edges by value, one contiguous pool for each type.
 ///
 ///     Graph graph;
-///     VertexId<VertexSE2> a = graph.add_vertex(0, VertexSE2()), b = graph.add_vertex(1,
-///     VertexSE2()); EdgeSE2 edge; edge.measurement = SE2<double>(1.0, 0.0, 0.1); EdgeId e =
-///     graph.add_edge(edge, a, b); graph.set_fixed(a, true); graph.vertex(b).state;      // by
-///     value, in its pool
+///     VertexId<VertexSE2> a = graph.add_vertex(0, VertexSE2());
+///     VertexId<VertexSE2> b = graph.add_vertex(1, VertexSE2());
+///     EdgeSE2 edge;
+///     edge.measurement = SE2<double>(1.0, 0.0, 0.1);
+///     EdgeId e = graph.add_edge(edge, a, b);
+///     graph.set_fixed(a, true);
+///     graph.vertex(b).state;                      // by value, in its pool
 ///
 /// A vertex has an id of the user's choice (the number in a file) and a slot, which is what edges
 /// and VertexId hold: slots never move while the vertex lives. Removing keeps pools contiguous.

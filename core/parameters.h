@@ -1,9 +1,15 @@
 #pragma once
 /// Parameters: what many edges or vertices share (a sensor's offset, a robot, a map), by number.
 ///
-///     struct PoseOffset : Parameter { … tag(), read(), write() … };
-///     graph.parameters().set(0, std::make_shared<PoseOffset>(…));
-///     auto offset = graph.parameters().get<PoseOffset>(0);
+///     struct RangeOffset : Parameter {
+///       double offset_m = 0.0;
+///       std::string_view tag() const override { return "PARAMS_RANGE_OFFSET"; }
+///       void read(FieldReader& in) override { offset_m = in.number(); }
+///       void write(FieldWriter& out) const override { out.number(offset_m); }
+///     };
+///
+///     graph.parameters().set(0, std::make_shared<RangeOffset>());
+///     auto offset = graph.parameters().get<RangeOffset>(0);
 ///
 /// In a file a parameter is one line `TAG number fields…`. Parameters are immutable once set.
 

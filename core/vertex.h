@@ -14,9 +14,15 @@
 /// `View` is a cheap value made from the state. A vertex whose edges share expensive quantities
 /// (a robot's kinematics) has instead
 ///
-///     struct Derived { … };                                  // what edges see
-///     Derived make_derived() const;                          // allocates once
-///     void derive(const double* state, Derived&) const;      // fills it; once per state
+///     struct VertexHeading : Vertex<1, 1> {
+///       struct Derived {
+///         double cosine, sine;                                 // what edges see
+///       };
+///       Derived make_derived() const { return {1.0, 0.0}; }    // may allocate
+///       void derive(const double* state, Derived& d) const {   // fills it; once per state
+///         d = {std::cos(state[0]), std::sin(state[0])};
+///       }
+///     };
 ///
 /// What was made for one vertex must serve every other of the type with a state of the same size.
 ///

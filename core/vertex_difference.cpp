@@ -32,8 +32,9 @@ void solve_ominus(int n, int m, const Plus& plus, const double* a, const double*
   Eigen::Map<Eigen::VectorXd> difference(d, n), rest = vector(m), ahead = vector(m),
                                                 behind = vector(m), step = vector(n);
   const Eigen::Map<const Eigen::VectorXd> target(a, m);
-  Eigen::Map<Eigen::MatrixXd> jacobian(scratch.array<double>(std::size_t(m) * n), m, n);
-  Eigen::Map<Eigen::MatrixXd> normal(scratch.array<double>(std::size_t(n) * n), n, n);
+  Eigen::Map<Eigen::MatrixXd> jacobian(scratch.array<double>(static_cast<std::size_t>(m) * n), m,
+                                       n);
+  Eigen::Map<Eigen::MatrixXd> normal(scratch.array<double>(static_cast<std::size_t>(n) * n), n, n);
   difference.setZero();
   const double small = 1e-12 * (1.0 + target.norm());
   constexpr int kMostSteps = 50;

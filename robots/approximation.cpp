@@ -72,7 +72,8 @@ void visit_triangles(const TriangleTree& mesh, const Look& look) {
     const int steps = 1 + static_cast<int>(longest / spacing);
     for (int i = 0; i <= steps; ++i) {
       for (int j = 0; i + j <= steps; ++j) {
-        look(Eigen::Vector3d(a + double(i) / steps * b + double(j) / steps * c));
+        look(Eigen::Vector3d(a + static_cast<double>(i) / steps * b +
+                             static_cast<double>(j) / steps * c));
       }
     }
   }

@@ -2,8 +2,8 @@
 /// How closely the spheres and capsules of the distance edges follow a robot's collision shapes,
 /// measured at dense points that the covering did not look at.
 ///
-///     for (const LinkApproximation& link : approximations(robot, 0.02, {.max_overshoot_m = 0.01}))
-///     {
+///     const CapsuleOptions options{.max_overshoot_m = 0.01};
+///     for (const LinkApproximation& link : approximations(robot, 0.02, options)) {
 ///       report(robot.links()[link.link].name, link.spheres.count, link.spheres.worst_over_m);
 ///     }
 

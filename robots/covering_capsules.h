@@ -1,7 +1,7 @@
 #pragma once
 /// Capsules that cover the collision shapes of a robot, for distances between its links.
 ///
-///     for (const CollisionCapsule& c : covering_capsules(robot, 0.01)) {
+///     for (const CollisionCapsule& c : covering_capsules(robot, {.max_overshoot_m = 0.01})) {
 ///       Eigen::Vector3d from = state.world_from_link(c.link) * c.capsule.from;
 ///     }
 ///

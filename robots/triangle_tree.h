@@ -3,8 +3,8 @@
 /// triangles will do: with holes, overlaps, triangles without area.
 ///
 ///     const TriangleTree tree(stl_triangles("thigh.stl"));
-///     double distance = tree.distance(point);                      // to the nearest triangle, >=
-///     0 bool inside = std::abs(tree.winding_number(point)) > 0.5;    // either orientation
+///     double distance = tree.distance(point);                       // to the nearest triangle
+///     bool inside = std::abs(tree.winding_number(point)) > 0.5;     // either orientation
 ///
 /// Lengths in the units of the corners. Thread-safety: const, freely shared.
 

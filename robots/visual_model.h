@@ -4,8 +4,9 @@
 ///     for (const locograph::VisualShape& shape : locograph::load_visuals(robot)) {
 ///       Eigen::Isometry3d world_from_shape =
 ///           state.world_from_link(shape.link) * shape.link_from_shape;
-///       if (shape.type == locograph::ShapeType::kSphere) draw_sphere(world_from_shape,
-///       shape.radius);
+///       if (shape.type == locograph::ShapeType::kSphere) {
+///         draw_sphere(world_from_shape, shape.radius);
+///       }
 ///     }
 ///
 /// Meshes are drawable when their file exists and is STL; of the others the URDF's reference is

@@ -1,6 +1,7 @@
 #!/bin/bash
-# Builds and runs every test: sources formatted, unit tests under AddressSanitizer and UBSan, then
-# all tests in Release. Quick when nothing has changed; ends with ctest's summary.
+# Builds and runs every test: sources formatted, unit tests under AddressSanitizer and UBSan, what
+# threads share under ThreadSanitizer, then all tests in Release. Quick when nothing has changed;
+# ends with ctest's summary.
 
 . "$(dirname "$0")/setup.sh"
 
@@ -18,21 +19,31 @@ build build
 say "checking the layout of the sources"
 "$root/scripts/format.sh" --check
 
-# Without NDEBUG, so that Eigen's own assertions count too. The libraries' unit tests; the command
-# itself and the installed package are tested in Release below. Several sources at a time, as
-# nobody edits here: what they share is compiled once. -Og takes a quarter less to compile than -O1.
-configure build-asan -DLOCOGRAPH_SANITIZE=address,undefined -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-  -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=4 -DLOCOGRAPH_UNITY_TESTS=ON \
-  "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-Og -g1" -DLOCOGRAPH_BENCHMARKS=OFF
+# configure_sanitized FOLDER SANITIZERS: without NDEBUG, so that Eigen's own assertions count too.
+# Several sources at a time, as nobody edits here: what they share is compiled once. -Og takes a
+# quarter less to compile than -O1.
+configure_sanitized() {
+  configure "$1" -DLOCOGRAPH_SANITIZE="$2" -DCMAKE_BUILD_TYPE=RelWithDebInfo \
+    -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=4 -DLOCOGRAPH_UNITY_TESTS=ON \
+    "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-Og -g1" -DLOCOGRAPH_BENCHMARKS=OFF
+}
+
+# The libraries' unit tests; the command itself and the installed package are tested in Release.
+configure_sanitized build-asan address,undefined
 mapfile -t unit_tests < <(
   cd "$root/tests"
   sed -n 's/^locograph_test(\([a-z_]*\).*/\1/p' \
-    {common,core,solvers,types,robots,world,check,plugins}/CMakeLists.txt
+    {common,core,solvers,types,robots,world,check,plugins,planners}/CMakeLists.txt
 )
 build build-asan --target "${unit_tests[@]}"
 say "running ${unit_tests[*]} under AddressSanitizer and UBSan"
 ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 run_tests build-asan \
   --tests-regex "^($(IFS='|' && echo "${unit_tests[*]}"))" >&2
+
+configure_sanitized build-tsan thread
+build build-tsan --target planners_thread_tests
+say "running planners_thread_tests under ThreadSanitizer"
+TSAN_OPTIONS=halt_on_error=1 run_tests build-tsan --tests-regex '^planners_thread_tests$' >&2
 
 say "running all tests"
 run_tests build

@@ -2,7 +2,7 @@
 /// Estimated seconds of the steps of a factorisation on one thread: what decides which columns are
 /// joined, which order is taken and which solver `auto` chooses. Only ratios matter.
 ///
-///     front_seconds(6, 12)     // a front of 6 pivots over 12 rows
+///     double seconds = front_seconds(6, 12);     // a front of 6 pivots over 12 rows
 ///
 /// The constants are those of the kernels in dense_kernels.h, measured with AVX-512 on a Zen 4
 /// core: products of large tiles run at 26·10⁹ multiply-adds a second, a pivot takes 8 ns (a

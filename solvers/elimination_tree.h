@@ -2,8 +2,9 @@
 /// The elimination tree of a block-sparse matrix in a given order, and how tall each column of its
 /// Cholesky factor is: all there is to know of the factor's cost, in almost linear time.
 ///
-///     const EliminationTree tree = elimination_tree(graph, dimension,
-///     minimum_degree_order(graph));
+///     const BlockGraph graph = block_graph(pattern);
+///     const EliminationTree tree =
+///         elimination_tree(graph, pattern.dimension, minimum_degree_order(graph));
 ///
 /// The order comes back as a postorder of the tree: the same fill, children before parents, and
 /// every subtree contiguous. Sources: Liu 1990 (the tree), Gilbert, Ng & Peyton 1994 (the heights,

@@ -6,7 +6,7 @@
 ///     ItemRunner runner;
 ///     runner.prepare(graph.size(), threads.size());
 ///     runner.run(graph, &threads, [&](int item, const ItemRunner::Crew& crew) {
-///       crew.share(chunks, [&](int chunk) { … });
+///       crew.share(chunks, [&](int chunk) { sums[item][chunk] = sum(item, chunk); });
 ///     });
 ///
 /// Of the ready items the one with the longest path of work behind it comes first (list scheduling,

@@ -2,11 +2,15 @@
 /// Preconditioned conjugate gradients (Hestenes & Stiefel 1952; Saad 2003, algorithm 9.1) for any
 /// product and preconditioner, without allocation.
 ///
+///     const auto times_a = [&](const double* v, double* out) {
+///       product.apply(values, damping, v, out, threads);       // out = A v
+///     };
+///     const auto divide = [&](const double* v, double* out) {
+///       preconditioner.apply(v, out, threads);                 // out = M⁻¹ v
+///     };
 ///     PcgIteration iteration;
 ///     iteration.resize(n);
-///     iteration.solve(options, threads, b, x,
-///                     [&](const double* v, double* out) { … },     // out = A v
-///                     [&](const double* v, double* out) { … });    // out = M⁻¹ v
+///     iteration.solve(options, threads, b, x, times_a, divide);
 ///
 /// It starts from x = 0, so the residual of whatever iterate it ends with is orthogonal to that
 /// iterate: the decrease hᵀ(Dh − g) that Levenberg-Marquardt predicts for a step h is exact also

@@ -4,7 +4,9 @@
 ///
 ///     ScalarMatrix matrix(pattern);
 ///     matrix.set(pattern, values, damping);         // damping on the diagonal
-///     cholmod or Eigen: matrix.begin, matrix.row, matrix.value
+///     Eigen::Map<const Eigen::SparseMatrix<double>> upper(
+///         matrix.size, matrix.size, matrix.begin.back(), matrix.begin.data(), matrix.row.data(),
+///         matrix.value.data());                     // or the arrays of a cholmod_sparse
 
 #include <locograph/core/block_matrix.h>
 

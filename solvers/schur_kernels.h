@@ -4,7 +4,7 @@
 /// The column holds blocks E_i (rows of kept vertices, K × D) above its diagonal block C (D × D).
 /// With C + damping = L Lᵀ and W_i = E_i L⁻ᵀ,
 ///
-///     E_i C⁻¹ E_jᵀ = W_i W_jᵀ,     E_i C⁻¹ b = W_i (L⁻¹ b),
+///   E_i C⁻¹ E_jᵀ = W_i W_jᵀ,     E_i C⁻¹ b = W_i (L⁻¹ b),
 ///
 /// so that one triangular factor serves the matrix, the right-hand side and the back-substitution.
 /// Sizes that bundle adjustment and contact problems have are compiled in; any other size takes the

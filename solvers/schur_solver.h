@@ -7,7 +7,7 @@
 ///
 /// With the kept block rows first, H + damping = [B E; Eᵀ C] and C block-diagonal,
 ///
-///     S x₁ = b₁ − E C⁻¹ b₂,   S = B − E C⁻¹ Eᵀ,   C x₂ = b₂ − Eᵀ x₁
+///   S x₁ = b₁ − E C⁻¹ b₂,   S = B − E C⁻¹ Eᵀ,   C x₂ = b₂ − Eᵀ x₁
 ///
 /// (Brown 1958; Triggs et al. 2000, section 6.1). S is formed straight into the blocks it has, or,
 /// with conjugate gradients, never formed: products with it go through E, and the preconditioner is

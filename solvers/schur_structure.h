@@ -3,7 +3,7 @@
 /// takes, worked out once.
 ///
 ///     SchurStructure structure;
-///     structure.build(pattern);                  // throws when eliminated vertices are tied
+///     structure.build(pattern, true);            // throws when eliminated vertices are tied
 ///     structure.reduced();                       // pattern of S = B − E C⁻¹ Eᵀ
 ///
 /// Work is cut by kept rows into a fixed number of tasks, whatever the number of threads: each owns

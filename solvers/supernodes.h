@@ -2,7 +2,7 @@
 /// The symbolic half of a multifrontal Cholesky factorisation: which block columns are factored
 /// together, what their fronts look like, where they are in memory and what may run at once.
 ///
-///     const Supernodes s = supernodes(tree, dimension);
+///     const Supernodes s = supernodes(graph, tree, pattern.dimension);
 ///     double* panel = factor + s.panel_begin[i];       // padded(width) + padded(below) rows
 ///
 /// A supernode is a set of block columns eliminated together. Its front has `width` scalar pivot

@@ -112,7 +112,7 @@ struct CollisionWorld::Parts {
     std::vector<Eigen::Isometry3d> world_from_body;
     world_from_body.reserve(bodies.size());
     for (const Body& body : bodies)
-      world_from_body.push_back(world_from_link[std::size_t(body.link)] * body.link_from_shape);
+      world_from_body.push_back(world_from_link[body.link] * body.link_from_shape);
     return world_from_body;
   }
 };
@@ -140,10 +140,10 @@ CollisionWorld::CollisionWorld(const Robot& robot, std::shared_ptr<const octomap
   parts_->take_robot(robot);
   parts_->ignores_floor.assign(robot.links().size(), false);
   for (int link : options.ignore_floor_links) {
-    if (link < 0 || std::size_t(link) >= robot.links().size())
+    if (link < 0 || static_cast<std::size_t>(link) >= robot.links().size())
       throw Error("ignore_floor_links names link " + std::to_string(link),
                   "an index below " + std::to_string(robot.links().size()));
-    parts_->ignores_floor[std::size_t(link)] = true;
+    parts_->ignores_floor[link] = true;
   }
   if (tree) parts_->voxels.emplace(*tree);
   for (const Obstacle& obstacle : obstacles) {
@@ -184,13 +184,13 @@ CollisionWorld::Closest CollisionWorld::environment_distance(
       if (distance.distance >= best.distance) continue;
       best = distance;
       link = body.link;
-      obstacle = int(o);
+      obstacle = static_cast<int>(o);
     }
   }
   for (std::size_t b = 0; parts.voxels && b < parts.bodies.size() && !done(); ++b) {
     const Body& body = parts.bodies[b];
     VoxelTree::Query query{body.shape, world_from_body[b]};
-    if (parts.ignores_floor[std::size_t(body.link)]) query.floor_z = parts.options.floor_z_m;
+    if (parts.ignores_floor[body.link]) query.floor_z = parts.options.floor_z_m;
     query.stop_below = stop_below;
     query.best = best;
     if (!parts.voxels->nearest(query)) continue;
@@ -204,7 +204,7 @@ CollisionWorld::Closest CollisionWorld::environment_distance(
   closest.link = link;
   if (link < 0) return closest;
   closest.point = best.on_first;
-  closest.what = obstacle < 0 ? "voxel" : parts.obstacles[std::size_t(obstacle)].name;
+  closest.what = obstacle < 0 ? "voxel" : parts.obstacles[obstacle].name;
   return closest;
 }
 
@@ -401,10 +401,8 @@ CollisionWorld::Closest CollisionWorld::self_distance(
   ShapeDistance best{cutoff_m, {}, {}};
   int first_link = -1, second_link = -1;
   for (const auto& [first, second] : parts.self_pairs) {
-    for (std::size_t a = parts.link_begin[std::size_t(first)];
-         a < parts.link_begin[std::size_t(first) + 1]; ++a) {
-      for (std::size_t b = parts.link_begin[std::size_t(second)];
-           b < parts.link_begin[std::size_t(second) + 1]; ++b) {
+    for (std::size_t a = parts.link_begin[first]; a < parts.link_begin[first + 1]; ++a) {
+      for (std::size_t b = parts.link_begin[second]; b < parts.link_begin[second + 1]; ++b) {
         const ConvexShape& one = parts.bodies[a].shape;
         const ConvexShape& other = parts.bodies[b].shape;
         if (sphere_bound(one, world_from_body[a], other, world_from_body[b]) >= best.distance)
@@ -423,7 +421,7 @@ CollisionWorld::Closest CollisionWorld::self_distance(
   closest.link = first_link;
   closest.other_link = second_link;
   if (first_link < 0) return closest;
-  closest.what = parts.link_names[std::size_t(second_link)];
+  closest.what = parts.link_names[second_link];
   closest.point = best.on_first;
   return closest;
 }

@@ -31,9 +31,9 @@ struct Block {
   Index3 first{}, size{};
 
   int last(int axis) const { return first[axis] + size[axis] - 1; }
-  std::size_t count() const { return std::size_t(size[0]) * size[1] * size[2]; }
+  std::size_t count() const { return static_cast<std::size_t>(size[0]) * size[1] * size[2]; }
   std::size_t index(int x, int y, int z) const {  // relative to first
-    return (std::size_t(x) * size[1] + y) * size[2] + z;
+    return (static_cast<std::size_t>(x) * size[1] + y) * size[2] + z;
   }
 };
 
@@ -87,7 +87,7 @@ Leaf leaf_voxels(const octomap::OcTree& tree, const octomap::OcTree::leaf_bbx_it
   Leaf out;
   out.occupied = tree.isNodeOccupied(*leaf);
   for (unsigned axis = 0; axis < 3; ++axis) {
-    out.first[axis] = (int(leaf.getKey()[axis]) & ~(extent - 1)) - kKeyOffset;
+    out.first[axis] = (static_cast<int>(leaf.getKey()[axis]) & ~(extent - 1)) - kKeyOffset;
     out.last[axis] = out.first[axis] + extent - 1;
   }
   return out;
@@ -97,7 +97,7 @@ template <class Visit>
 void for_each_leaf(const octomap::OcTree& tree, const Block& block, Visit visit) {
   octomap::OcTreeKey first, last;
   for (unsigned axis = 0; axis < 3; ++axis) {
-    const int a = int(axis);
+    const int a = static_cast<int>(axis);
     if (block.last(a) < -kKeyOffset || block.first[a] >= kKeyOffset) return;
     first[axis] = octomap::key_type(std::max(block.first[a], -kKeyOffset) + kKeyOffset);
     last[axis] = octomap::key_type(std::min(block.last(a), kKeyOffset - 1) + kKeyOffset);
@@ -136,8 +136,8 @@ Block block_between(const Eigen::Vector3d& first, const Eigen::Vector3d& last) {
   if ((last - first + Eigen::Vector3d::Ones()).prod() > kMaxVoxels)
     throw Error("the box of interest has too many voxels", "at most 1e8; a smaller box");
   for (int axis = 0; axis < 3; ++axis) {
-    block.first[axis] = int(first[axis]);
-    block.size[axis] = int(last[axis]) - block.first[axis] + 1;
+    block.first[axis] = static_cast<int>(first[axis]);
+    block.size[axis] = static_cast<int>(last[axis]) - block.first[axis] + 1;
   }
   return block;
 }
@@ -165,13 +165,15 @@ DistanceField DistanceField::from_octree(const octomap::OcTree& tree,
   field.max_distance_ = options.max_distance_m;
 
   // Occupied voxels as far away as this can still lower a node's value.
-  const int reach = int(std::ceil(options.max_distance_m / h + kOffset)) + 1;
+  const int reach = static_cast<int>(std::ceil(options.max_distance_m / h + kOffset)) + 1;
   const Block everything{{-kKeyOffset, -kKeyOffset, -kKeyOffset},
                          {2 * kKeyOffset, 2 * kKeyOffset, 2 * kKeyOffset}};
-  const int first_layer = std::isinf(options.ground_z) && options.ground_z < 0
-                              ? -kKeyOffset
-                              : int(std::clamp(std::floor((options.ground_z + 1e-6) / h),
-                                               double(-kKeyOffset), double(kKeyOffset)));
+  const int first_layer =
+      std::isinf(options.ground_z) && options.ground_z < 0
+          ? -kKeyOffset
+          : static_cast<int>(std::clamp(std::floor((options.ground_z + 1e-6) / h),
+                                        static_cast<double>(-kKeyOffset),
+                                        static_cast<double>(kKeyOffset)));
 
   Index3 occupied_first{kKeyOffset, kKeyOffset, kKeyOffset};
   Index3 occupied_last{-kKeyOffset, -kKeyOffset, -kKeyOffset};
@@ -228,9 +230,10 @@ DistanceField DistanceField::from_octree(const octomap::OcTree& tree,
           const int j = y + nodes.first[1] - wide.first[1];
           const int k = z + nodes.first[2] - wide.first[2];
           if (map.at(i, j, k) != occupied) continue;
-          const double cells = std::sqrt(double(transform.getSQCellDistance(i, j, k)));
+          const double cells = std::sqrt(static_cast<double>(transform.getSQCellDistance(i, j, k)));
           const double value = ((occupied ? 1.0 - cells : cells) - kOffset) * h;
-          field.values_[nodes.index(x, y, z)] = float(std::min(value, options.max_distance_m));
+          field.values_[nodes.index(x, y, z)] =
+              static_cast<float>(std::min(value, options.max_distance_m));
         }
   };
   store(Transform(map, true, reach * reach), false);
@@ -244,13 +247,13 @@ DistanceField DistanceField::from_octree(const octomap::OcTree& tree,
 
 DistanceSample DistanceField::sample_inside(const Eigen::Vector3d& point) const {
   const Eigen::Vector3d cell = (point - lower_) * inverse_resolution_;
-  const int x = std::clamp(int(cell.x()), 0, dimensions_[0] - 2);
-  const int y = std::clamp(int(cell.y()), 0, dimensions_[1] - 2);
-  const int z = std::clamp(int(cell.z()), 0, dimensions_[2] - 2);
+  const int x = std::clamp(static_cast<int>(cell.x()), 0, dimensions_[0] - 2);
+  const int y = std::clamp(static_cast<int>(cell.y()), 0, dimensions_[1] - 2);
+  const int z = std::clamp(static_cast<int>(cell.z()), 0, dimensions_[2] - 2);
   const double tx = cell.x() - x, ty = cell.y() - y, tz = cell.z() - z;
 
-  const std::size_t dy = std::size_t(dimensions_[2]), dx = dy * std::size_t(dimensions_[1]);
-  const float* v = values_.data() + std::size_t(x) * dx + std::size_t(y) * dy + std::size_t(z);
+  const std::size_t dy = dimensions_[2], dx = dy * dimensions_[1];
+  const float* v = values_.data() + x * dx + y * dy + z;
   const double v000 = v[0], v001 = v[1], v010 = v[dy], v011 = v[dy + 1];
   const double v100 = v[dx], v101 = v[dx + 1], v110 = v[dx + dy], v111 = v[dx + dy + 1];
 
@@ -264,7 +267,7 @@ DistanceSample DistanceField::sample_inside(const Eigen::Vector3d& point) const 
 
   DistanceSample sample;
   sample.distance = xy0 + tz * (xy1 - xy0);
-  if (sample.distance >= double(float(max_distance_))) {
+  if (sample.distance >= static_cast<double>(static_cast<float>(max_distance_))) {
     sample.distance = max_distance_;
     return sample;
   }

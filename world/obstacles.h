@@ -7,14 +7,14 @@
 ///
 /// The file (metres, seconds, radians; rpy = roll, pitch, yaw as in URDF: R = Rz(y) Ry(p) Rx(r)):
 ///
-///     <obstacles version="1">
-///       <box name="door" center="1 0 1" size="0.1 0.9 2" rpy="0 0 0.3"/>
-///       <sphere name="ball" center="2 0 0.2" radius="0.2"/>
-///       <cylinder name="pillar" center="3 1 1" radius="0.15" height="2"/>
-///       <box name="cart" center="2 -1 0.5" size="0.6 0.4 1" repeat="10">
-///         <keyframe time="5" position="2 1 0.5" rpy="0 0 1.57"/>
-///       </box>
-///     </obstacles>
+///   <obstacles version="1">
+///     <box name="door" center="1 0 1" size="0.1 0.9 2" rpy="0 0 0.3"/>
+///     <sphere name="ball" center="2 0 0.2" radius="0.2"/>
+///     <cylinder name="pillar" center="3 1 1" radius="0.15" height="2"/>
+///     <box name="cart" center="2 -1 0.5" size="0.6 0.4 1" repeat="10">
+///       <keyframe time="5" position="2 1 0.5" rpy="0 0 1.57"/>
+///     </box>
+///   </obstacles>
 ///
 /// `center` and `rpy` are the pose at time 0; each key frame gives the pose at a later time, and in
 /// between the position is linear and the orientation turns at constant rate about one axis. A key

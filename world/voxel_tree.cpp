@@ -13,9 +13,9 @@ VoxelTree::VoxelTree(const octomap::OcTree& tree) : resolution_(tree.getResoluti
     const int extent = 1 << (tree.getTreeDepth() - leaf.getDepth());
     Eigen::Vector3d lower;
     for (unsigned axis = 0; axis < 3; ++axis)
-      lower[axis] =
-          ((int(leaf.getKey()[axis]) & ~(extent - 1)) - (1 << (tree.getTreeDepth() - 1))) *
-          resolution_;
+      lower[axis] = ((static_cast<int>(leaf.getKey()[axis]) & ~(extent - 1)) -
+                     (1 << (tree.getTreeDepth() - 1))) *
+                    resolution_;
     boxes.emplace_back(lower, lower + Eigen::Vector3d::Constant(extent * resolution_));
   }
   if (boxes.empty()) return;
@@ -24,7 +24,7 @@ VoxelTree::VoxelTree(const octomap::OcTree& tree) : resolution_(tree.getResoluti
 }
 
 int VoxelTree::build(std::vector<Eigen::AlignedBox3d>& boxes, std::size_t begin, std::size_t end) {
-  const int index = int(nodes_.size());
+  const int index = static_cast<int>(nodes_.size());
   Eigen::AlignedBox3d bounds, centres;
   for (std::size_t i = begin; i < end; ++i) {
     bounds.extend(boxes[i]);
@@ -35,13 +35,12 @@ int VoxelTree::build(std::vector<Eigen::AlignedBox3d>& boxes, std::size_t begin,
   int axis = 0;
   centres.sizes().maxCoeff(&axis);
   const std::size_t middle = begin + (end - begin) / 2;
-  std::nth_element(boxes.begin() + std::ptrdiff_t(begin), boxes.begin() + std::ptrdiff_t(middle),
-                   boxes.begin() + std::ptrdiff_t(end),
+  std::nth_element(boxes.begin() + begin, boxes.begin() + middle, boxes.begin() + end,
                    [axis](const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) {
                      return a.min()[axis] + a.max()[axis] < b.min()[axis] + b.max()[axis];
                    });
   build(boxes, begin, middle);
-  nodes_[std::size_t(index)].right = build(boxes, middle, end);
+  nodes_[index].right = build(boxes, middle, end);
   return index;
 }
 
@@ -88,14 +87,14 @@ struct VoxelTree::Search {
 
   void visit(int index, double lower_bound) {
     if (lower_bound >= query.best.distance || done()) return;
-    const Node& node = tree.nodes_[std::size_t(index)];
+    const Node& node = tree.nodes_[index];
     if (node.right < 0) {
       leaf(node);
       return;
     }
     int near = index + 1, far = node.right;
-    double near_bound = bound(tree.nodes_[std::size_t(near)]);
-    double far_bound = bound(tree.nodes_[std::size_t(far)]);
+    double near_bound = bound(tree.nodes_[near]);
+    double far_bound = bound(tree.nodes_[far]);
     if (far_bound < near_bound) {
       std::swap(near, far);
       std::swap(near_bound, far_bound);

@@ -1,5 +1,6 @@
 #include "balance_cases.h"
 
+#include <locograph/common/uniform.h>
 #include <locograph/core/graph.h>
 #include <locograph/core/optimiser.h>
 #include <locograph/plugins/static_balance/edge_balance.h>
@@ -15,11 +16,6 @@ namespace locograph {
 namespace {
 
 constexpr int kRobot = 0, kFirst = 1;
-
-/// The same numbers with every standard library.
-double uniform(std::mt19937_64& random, double lower, double upper) {
-  return lower + (upper - lower) * 0x1.0p-53 * static_cast<double>(random() >> 11);
-}
 
 Eigen::Vector3d vector(std::mt19937_64& random, double scale) {
   Eigen::Vector3d v;
@@ -99,7 +95,8 @@ Eigen::VectorXd contact_weights(const std::vector<Contact>& contacts, int facets
     add(2, weight * effector.half_y_m);
     add(8, weight * (effector.half_x_m + effector.half_y_m));
   }
-  const Eigen::Map<const Eigen::VectorXd> all(units.data(), Eigen::Index(units.size()));
+  const Eigen::Map<const Eigen::VectorXd> all(units.data(),
+                                              static_cast<Eigen::Index>(units.size()));
   return all.array().square().inverse().matrix();
 }
 

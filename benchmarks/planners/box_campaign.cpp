@@ -7,6 +7,7 @@
 // configuration was refined, the judge finds the result feasible, and the base ends within 0.3 m
 // of the plan's end along x.
 #include <locograph/check/judge.h>
+#include <locograph/common/uniform.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
 #include <locograph/planners/online/refine.h>
 #include <locograph/planners/plan/plan.h>
@@ -33,11 +34,6 @@ struct Scene {
   double gap;                 ///< between the box and the farther wall
   double wall;                ///< the walls' faces are at y = ±wall
 };
-
-/// The same numbers with every standard library.
-double uniform(std::mt19937_64& random, double lower, double upper) {
-  return lower + (upper - lower) * 0x1.0p-53 * static_cast<double>(random() >> 11);
-}
 
 Scene draw(std::mt19937_64& random) {
   Scene scene;

@@ -56,7 +56,7 @@ struct Tally {
   Json json() const {
     return {{"sets", sets},
             {"solved", solved},
-            {"success_rate", sets == 0 ? 0.0 : double(solved) / sets},
+            {"success_rate", sets == 0 ? 0.0 : static_cast<double>(solved) / sets},
             {"restarts", restarts},
             {"iterations", iterations},
             {"time_solved", times(solved_s)},

@@ -17,6 +17,7 @@
 /// collision. Whether there is one that balances is not known; where the drawn one does, the whole
 /// check holds there.
 
+#include <locograph/common/uniform.h>
 #include <locograph/planners/posture/posture_solver.h>
 #include <locograph/robots/robot_state.h>
 #include <locograph/world/collision_world.h>
@@ -151,10 +152,6 @@ class ContactSets {
   }
 
  private:
-  double uniform(double lower, double upper) {
-    return lower + (upper - lower) * 0x1.0p-53 * static_cast<double>(random_() >> 11);
-  }
-
   /// Of the lowest contact above the ground, where it is a ball that stands on it up to how the
   /// link's shape differs from a ball; else 0.
   static double height_of_standing_ball(const Stance& stance) {
@@ -181,11 +178,12 @@ class ContactSets {
     for (int i = 0; i < model.active_joint_count(); ++i) {
       const Joint& joint = model.active_joint(i);
       double& at = q[7 + i];
-      at =
-          uniform(std::max(joint.lower, at - kSpread_rad), std::min(joint.upper, at + kSpread_rad));
+      at = uniform(random_, std::max(joint.lower, at - kSpread_rad),
+                   std::min(joint.upper, at + kSpread_rad));
     }
-    const double yaw = uniform(-EIGEN_PI, EIGEN_PI), roll = uniform(-kTilt_rad, kTilt_rad),
-                 pitch = uniform(-kTilt_rad, kTilt_rad);
+    const double yaw = uniform(random_, -EIGEN_PI, EIGEN_PI),
+                 roll = uniform(random_, -kTilt_rad, kTilt_rad),
+                 pitch = uniform(random_, -kTilt_rad, kTilt_rad);
     q.segment<4>(3) = (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
                        Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
                        Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()))
@@ -196,8 +194,8 @@ class ContactSets {
   std::vector<EndEffector> ends() {
     std::vector<EndEffector> feet = shuffled(robot_.feet), hands = shuffled(robot_.hands);
     const auto count = [&](std::size_t from, std::size_t to) {
-      return from +
-             static_cast<std::size_t>(uniform(0.0, 1.0) * static_cast<double>(to - from + 1));
+      return from + static_cast<std::size_t>(uniform(random_, 0.0, 1.0) *
+                                             static_cast<double>(to - from + 1));
     };
     const std::size_t most = 4;
     feet.resize(count(static_cast<std::size_t>(robot_.fewest_feet), feet.size()));
@@ -208,7 +206,9 @@ class ContactSets {
 
   std::vector<EndEffector> shuffled(std::vector<EndEffector> ends) {
     for (std::size_t i = ends.size(); i > 1; --i) {
-      std::swap(ends[i - 1], ends[static_cast<std::size_t>(uniform(0.0, 1.0) * double(i))]);
+      std::swap(
+          ends[i - 1],
+          ends[static_cast<std::size_t>(uniform(random_, 0.0, 1.0) * static_cast<double>(i))]);
     }
     return ends;
   }

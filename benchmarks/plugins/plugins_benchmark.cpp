@@ -59,7 +59,8 @@ class Drive {
                          : i == 1 ? Obstacle::Shape::kSphere
                                   : Obstacle::Shape::kCylinder;
         obstacle.size << 0.4, 0.8, 0.4;
-        obstacle.world_from_obstacle.translation() << 0.5 * double(i), i % 2 ? 0.9 : -0.9, 0.4;
+        obstacle.world_from_obstacle.translation() << 0.5 * static_cast<double>(i),
+            i % 2 ? 0.9 : -0.9, 0.4;
       }
     }
     graph_.parameters().set(kRobot, robot_);

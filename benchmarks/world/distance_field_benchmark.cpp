@@ -37,21 +37,22 @@ locograph::DistanceFieldOptions room_options(double max_distance_m) {
 
 // Arguments: resolution and largest distance [mm].
 void build(benchmark::State& state) {
-  const std::shared_ptr<octomap::OcTree> tree = room(1e-3 * double(state.range(0)));
-  const locograph::DistanceFieldOptions options = room_options(1e-3 * double(state.range(1)));
+  const std::shared_ptr<octomap::OcTree> tree = room(1e-3 * static_cast<double>(state.range(0)));
+  const locograph::DistanceFieldOptions options =
+      room_options(1e-3 * static_cast<double>(state.range(1)));
   std::size_t nodes = 0;
   for (auto _ : state) {
     const locograph::DistanceField field = locograph::DistanceField::from_octree(*tree, options);
     nodes = field.values().size();
     benchmark::DoNotOptimize(field.values().data());
   }
-  state.counters["nodes"] = double(nodes);
+  state.counters["nodes"] = static_cast<double>(nodes);
 }
 BENCHMARK(build)->Args({50, 1000})->Args({50, 500})->Args({25, 500})->Unit(benchmark::kMillisecond);
 
 void sample(benchmark::State& state) {
   const locograph::DistanceField field = locograph::DistanceField::from_octree(
-      *room(1e-3 * double(state.range(0))), room_options(0.5));
+      *room(1e-3 * static_cast<double>(state.range(0))), room_options(0.5));
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(0, 1);
   std::vector<Eigen::Vector3d> points;
@@ -78,7 +79,8 @@ void environment_and_self_distance(benchmark::State& state) {
       folder / "centauro_capsule.urdf", folder / "centauro_capsule.srdf", robot_options);
   locograph::RobotState robot_state(robot);
   Eigen::VectorXd q = robot.neutral_configuration();
-  const locograph::CollisionWorld world(robot, room(1e-3 * double(state.range(0))), {});
+  const locograph::CollisionWorld world(robot, room(1e-3 * static_cast<double>(state.range(0))),
+                                        {});
   std::vector<Eigen::Isometry3d> poses(robot.links().size());
   double x = 0.0;
   for (auto _ : state) {
@@ -88,7 +90,7 @@ void environment_and_self_distance(benchmark::State& state) {
     q[2] = 0.9;
     robot_state.update(q.data());
     for (std::size_t link = 0; link < poses.size(); ++link)
-      poses[link] = robot_state.world_from_link(int(link));
+      poses[link] = robot_state.world_from_link(static_cast<int>(link));
     state.ResumeTiming();
     benchmark::DoNotOptimize(world.environment_distance(poses, 0.0).distance_m);
     benchmark::DoNotOptimize(world.self_distance(poses).distance_m);

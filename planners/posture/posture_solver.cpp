@@ -1,3 +1,4 @@
+#include <locograph/common/uniform.h>
 #include <locograph/core/optimiser.h>
 #include <locograph/planners/plan/plan.h>
 #include <locograph/planners/posture/posture_graph.h>
@@ -17,11 +18,6 @@ namespace {
 
 void require(bool good, const char* option, const char* expected) {
   if (!good) throw Error(std::string("option ") + option + " is out of range", expected);
-}
-
-/// The same numbers with every standard library.
-double uniform(std::mt19937_64& random, double lower, double upper) {
-  return lower + (upper - lower) * 0x1.0p-53 * static_cast<double>(random() >> 11);
 }
 
 /// Pairs of RobotParameter::self_collision that the edges would keep apart where the exact shapes

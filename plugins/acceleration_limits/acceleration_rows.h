@@ -1,7 +1,7 @@
 #pragma once
 /// The rows of EDGE_ACCELERATION_LIMITS and of its kinds with time steps as vertices.
 ///
-///     AccelerationRows rows(limits, {a, b, c, {dt_1_s, dt_2_s}});
+///     AccelerationRows rows("EDGE_ACCELERATION_LIMITS", limits, {a, b, c, {dt_1_s, dt_2_s}});
 ///     rows.error(LimitKind::kHinged, e);
 ///
 /// Row: |acceleration| − limit, for each active joint [rad/s² or m/s²], and for the base linear

@@ -4,8 +4,8 @@
 ///     EDGE_COM id  x y z  weights
 ///
 ///     // above (0.1, 0), at whatever height
-///     graph.add_edge(EdgeCom(Eigen::Vector3d(0.1, 0, 0), Eigen::Vector3d(1, 1, 0)),
-///     configuration);
+///     const EdgeCom above({0.1, 0.0, 0.0}, {1.0, 1.0, 0.0});
+///     graph.add_edge(above, configuration);
 ///
 /// Error (3): centre of mass − target [m], along the world axes. A weight of zero leaves a
 /// coordinate free. Throws Error for a robot without a mass.

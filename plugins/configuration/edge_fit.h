@@ -1,12 +1,9 @@
 #pragma once
 /// Whether an edge fits the robot of its vertices: as many rows, and the same robot throughout.
 ///
-///     void bind(const Parameters& parameters) {                      // with the edge's line
-///       require_fitting_robot(parameters, tag, dimension(),
-///                             [](const Robot& r) { return r.active_joint_count(); });
-///     }
-///     void error(const ConfigurationState& q, …) const {
-///       require_rows(tag, e.size(), q.model().active_joint_count());
+///     const auto rows_of = [](const RobotParameter& p) { return p.robot->active_joint_count(); };
+///     require_fitting_robot(parameters, kTag, dimension, rows_of);     // in bind(parameters)
+///     require_rows(kTag, e.size(), q.model().active_joint_count());    // in error(q, e)
 ///
 /// bind() sees the parameters but no vertices: it refuses an edge that fits none of the graph's
 /// robots. What several robots leave open is settled where the edge is evaluated, before anything

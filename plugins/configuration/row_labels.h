@@ -1,9 +1,7 @@
 #pragma once
 /// What the rows of edges on a robot are called (row_label.h).
 ///
-///     RowLabel row_label(int row, const VertexConfiguration& q) const {
-///       return joint_row(*q.robot->robot, row, "limit");         // {"knee_pitch_1 limit", "rad"}
-///     }
+///     RowLabel label = joint_row(robot, row, "limit");         // {"knee_pitch_1 limit", "rad"}
 
 #include <locograph/core/row_label.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>

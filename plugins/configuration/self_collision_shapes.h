@@ -3,7 +3,7 @@
 ///
 ///     for (const SelfCollisionShapes::Pair& pair : robot->self_collision.pairs) {
 ///       const RobotParameter::LinkBound& first = robot->bounds[pair.first];
-///       …robot->self_collision.of_bound[pair.first].begin…
+///       first_capsules.push_back(robot->self_collision.of_bound[pair.first].begin);
 ///     }
 ///
 /// A capsule or a sphere of the URDF is itself; any other shape becomes the spheres or, of a mesh,

@@ -6,7 +6,7 @@
 ///
 /// Error (number of spheres) [m], for a sphere of radius r whose centre goes straight from c_a to
 /// c_b: with ρ = r + margin, N samples at s_k = (k + ½)/N and half a gap h = |c_b − c_a| / (2N),
-///     max(0, max_k √(ρ² + h²) − d(c(s_k), t(s_k))),   d the signed distance of the PARAMS_WORLD.
+///   max(0, max_k √(ρ² + h²) − d(c(s_k), t(s_k))),   d the signed distance of the PARAMS_WORLD.
 /// Times are interpolated like the centres, so moving obstacles are met where they are by then.
 ///
 /// Nothing between the samples is missed: if somewhere on the way the distance falls below ρ and is

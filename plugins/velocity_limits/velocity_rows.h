@@ -1,7 +1,8 @@
 #pragma once
 /// The rows of EDGE_VELOCITY_LIMITS and of its kind with the time step as a vertex.
 ///
-///     VelocityRows{1.0, 0.5, 1.0}.error(LimitKind::kHinged, a, b, dt_s, e);
+///     const VelocityRows rows{1.0, 0.5, 1.0};
+///     rows.error("EDGE_VELOCITY_LIMITS", LimitKind::kHinged, a, b, dt_s, e);
 ///
 /// Row: |what moved from a to b| − rate · Δt, for each active joint [rad or m] and for the base's
 /// distance [m] and angle [rad].

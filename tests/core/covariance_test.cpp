@@ -82,7 +82,7 @@ TEST(Covariance, OfAChainGrowsByTheNoiseOfEachStep) {
   Graph graph;
   std::vector<VertexId<VertexXY>> ids;
   for (int i = 0; i < 6; ++i) {
-    ids.push_back(graph.add_vertex(i, VertexXY({double(i), 0.0})));
+    ids.push_back(graph.add_vertex(i, VertexXY({static_cast<double>(i), 0.0})));
     if (i == 0) continue;
     EdgePointXY edge;
     edge.measurement << 1.0, 0.0;

@@ -42,9 +42,9 @@ TEST(ContactWrenchCone, IsThatOfForcesAtTheCornersFacetByFacet) {
   const Eigen::VectorXd down = -Eigen::VectorXd::Unit(6, 2);
   Eigen::MatrixXd values(18, 16);
   for (int r = 0; r < 16; ++r) {
-    EXPECT_LT(limits_of(contact, rays[std::size_t(r)], cone).maxCoeff(), 1e-14);
+    EXPECT_LT(limits_of(contact, rays[r], cone).maxCoeff(), 1e-14);
     // All rows are linear here, so that the hinge can be undone.
-    values.col(r) = limits_of(contact, rays[std::size_t(r)] + 1e3 * down, cone) -
+    values.col(r) = limits_of(contact, rays[r] + 1e3 * down, cone) -
                     limits_of(contact, 1e3 * down, cone);
   }
   int facets = 0;
@@ -55,7 +55,7 @@ TEST(ContactWrenchCone, IsThatOfForcesAtTheCornersFacetByFacet) {
       EXPECT_LT(values(row, r), 1e-12);
       if (values(row, r) < -1e-9) continue;
       tight.conservativeResize(6, tight.cols() + 1);
-      tight.col(tight.cols() - 1) = rays[std::size_t(r)];
+      tight.col(tight.cols() - 1) = rays[r];
     }
     ASSERT_GT(tight.cols(), 0) << "row " << row;
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(tight);
@@ -86,7 +86,7 @@ TEST(ContactWrenchCone, HasACircleOrAPyramidInsideOrAroundIt) {
                      cone)
         .maxCoeff();
   };
-  for (const double angle : {0.0, 0.3, 0.25 * double(EIGEN_PI), 2.0}) {
+  for (const double angle : {0.0, 0.3, 0.25 * static_cast<double>(EIGEN_PI), 2.0}) {
     EXPECT_EQ(violation(angle, 0.6 - 1e-9), 0.0);
     EXPECT_NEAR(violation(angle, 0.7), 10.0, 1e-12);
   }
@@ -116,7 +116,7 @@ TEST(ContactLimits, HaveAGradientJustBeyondThem) {
   states[2].head<6>() << 0, 0, 100, 0, 8 + kBeyond, 0;           // tilts over its front edge
   states[3].tail<5>() << 0, 0, -1000 - kBeyond, 5 + kBeyond, 0;  // tears the grasp
   for (int i = 0; i < 4; ++i) {
-    const auto w = graph.add_vertex(i, wrenches_at(graph, numbers, states[std::size_t(i)]));
+    const auto w = graph.add_vertex(i, wrenches_at(graph, numbers, states[i]));
     graph.add_edge(EdgeContactWrench(*graph.vertex(w).contacts, 1.0), w);
   }
   Evaluated evaluated(graph);
@@ -241,7 +241,8 @@ std::string evaluation_error(const std::string& text, const std::string& urdf = 
   try {
     Graph graph = read_graph(folder.write("plan.g2o", kGood + text), robot_types());
     Evaluated evaluated(graph);
-    for (std::size_t p = 0; p < graph.edge_pools().size(); ++p) evaluated.error(0, int(p));
+    for (std::size_t p = 0; p < graph.edge_pools().size(); ++p)
+      evaluated.error(0, static_cast<int>(p));
   } catch (const Error& error) {
     return error.what();
   }

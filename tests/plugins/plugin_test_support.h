@@ -9,6 +9,7 @@
 ///     const Eigen::VectorXd e = evaluated.error(0);          // edge 0 of the only pool
 
 #include <gtest/gtest.h>
+#include <locograph/common/uniform.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/core/workspace.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
@@ -86,9 +87,7 @@ Eigen::VectorXd home(const RobotCase& robot, double x, double y);
 class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
-  double uniform(double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(engine_);
-  }
+  double uniform(double low, double high) { return locograph::uniform(engine_, low, high); }
   double sign() { return uniform(-1.0, 1.0) < 0.0 ? -1.0 : 1.0; }
   Eigen::VectorXd vector(Eigen::Index size, double scale);
   Eigen::VectorXd weights(Eigen::Index size);

@@ -46,7 +46,7 @@ TEST(Wrenches, AreEliminatedWithoutChangingTheSolution) {
       if (i > 0) {
         graph.add_edge(EdgeVelocityTracking(Eigen::VectorXd::Zero(model.tangent_size()),
                                             Eigen::VectorXd::Ones(model.tangent_size())),
-                       q[std::size_t(i) - 1], q[std::size_t(i)]);
+                       q[i - 1], q[i]);
       }
     }
     if (eliminate) {
@@ -65,8 +65,8 @@ TEST(Wrenches, AreEliminatedWithoutChangingTheSolution) {
     EXPECT_LT(outcome.final.chi2, 0.1 * outcome.initial.chi2);
     result.resize(model.configuration_size() + 18, 3);
     for (int i = 0; i < 3; ++i) {
-      result.col(i) << graph.vertices_of<VertexConfiguration>()[std::size_t(i)].state,
-          graph.vertices_of<VertexWrenches>()[std::size_t(i)].state;
+      result.col(i) << graph.vertices_of<VertexConfiguration>()[i].state,
+          graph.vertices_of<VertexWrenches>()[i].state;
     }
   };
   Eigen::MatrixXd full, reduced, automatic;
@@ -121,10 +121,10 @@ TEST_P(PublishedPosture, HasThePublishedWrenchesOfLeastNorm) {
   EdgeContactWrench limits(*graph.vertex(w).contacts, 1e6);
   EdgeWrenchNorm norm(graph.vertex(w), 1.0);
   for (int i = 0, row = 0, component = 0; i < 4; ++i) {
-    const ContactParameter& contact = *(*graph.vertex(w).contacts)[std::size_t(i)];
+    const ContactParameter& contact = *(*graph.vertex(w).contacts)[i];
     if (contact.kind() == ContactKind::kSurface) {
       limits.weights.segment(row + contact.limit_rows() - 8, 8).setZero();
-      const bool floor = posture.contacts[std::size_t(i)].normal.z() > 0.5;
+      const bool floor = posture.contacts[i].normal.z() > 0.5;
       norm.weights[component + (floor ? 5 : 3)] = 1e10;
     }
     row += contact.limit_rows();

@@ -119,7 +119,8 @@ TEST_P(FloatingBalance, IsWhatStaticsSayOfTheBase) {
   }
   Evaluated evaluated(standing.graph);
   for (int k = 0; k < 20; ++k) {
-    const Eigen::VectorXd expected = -torques_by_statics(standing, std::size_t(k)).head<6>();
+    const Eigen::VectorXd expected =
+        -torques_by_statics(standing, static_cast<std::size_t>(k)).head<6>();
     EXPECT_LT((evaluated.error(k) - expected).norm(), 1e-12 * expected.norm());
   }
 }
@@ -155,7 +156,8 @@ TEST_P(StaticBalance, HasTorqueLimitsThatAgreeWithStaticsAndWithNumericDifferenc
     Evaluated evaluated(standing.graph);
     Compared compared;
     for (int k = 0; k < kStates; ++k) {
-      const Eigen::VectorXd torques = torques_by_statics(standing, std::size_t(k)).tail(n);
+      const Eigen::VectorXd torques =
+          torques_by_statics(standing, static_cast<std::size_t>(k)).tail(n);
       const Eigen::VectorXd e = evaluated.error(k);
       for (int r = 0; r < n; ++r) {
         const double beyond = std::abs(torques[r]) - fraction * model.active_joint(r).max_effort;
@@ -186,7 +188,7 @@ TEST_P(StaticBalance, HasContactLimitsWithTheJacobianOfNumericDifferences) {
   for (int k = 0; k < kStates; ++k) {
     compare(evaluated, k, 0, kEverywhere, limits);
     EXPECT_TRUE(evaluated.jacobian(k, 0, false, 1).isIdentity(0.0));
-    EXPECT_EQ(evaluated.error(k, 1), standing.graph.vertex(standing.w[std::size_t(k)]).state);
+    EXPECT_EQ(evaluated.error(k, 1), standing.graph.vertex(standing.w[k]).state);
   }
   EXPECT_GT(limits.nonzero, 9 * kStates);
   EXPECT_GT(limits.zero, 9 * kStates);
@@ -245,7 +247,8 @@ TEST_P(StaticBalance, KeepsEveryBitInAFile) {
                          &other = again.vertices_of<VertexWrenches>()[i];
     EXPECT_EQ(one.contact_numbers, other.contact_numbers);
     ASSERT_EQ(one.state.size(), other.state.size());
-    EXPECT_EQ(std::memcmp(one.state.data(), other.state.data(), 8 * std::size_t(one.state.size())),
+    EXPECT_EQ(std::memcmp(one.state.data(), other.state.data(),
+                          8 * static_cast<std::size_t>(one.state.size())),
               0);
     EXPECT_EQ(graph.edges_of<EdgeContactWrench>()[i].weights,
               again.edges_of<EdgeContactWrench>()[i].weights);
@@ -255,9 +258,9 @@ TEST_P(StaticBalance, KeepsEveryBitInAFile) {
   Evaluated a(graph), b(again);
   for (std::size_t p = 0; p < graph.edge_pools().size(); ++p) {
     for (int k = 0; k < 4; ++k)
-      EXPECT_EQ(a.error(k, int(p)), b.error(k, int(p)))
+      EXPECT_EQ(a.error(k, static_cast<int>(p)), b.error(k, static_cast<int>(p)))
           << graph.edge_pools()[p]->tag() << ' '
-          << (a.error(k, int(p)) - b.error(k, int(p))).transpose();
+          << (a.error(k, static_cast<int>(p)) - b.error(k, static_cast<int>(p))).transpose();
   }
 }
 

@@ -60,14 +60,15 @@ class CollisionWorldTest : public testing::Test {
         robot_(Robot::load(folder_.write("parts.urdf", urdf()))),
         far_(robot_.links().size(), Eigen::Isometry3d(Eigen::Translation3d(50, 50, 50))) {
     // Apart from each other as well.
-    for (std::size_t i = 0; i < far_.size(); ++i) far_[i].translation().x() += 5.0 * double(i);
+    for (std::size_t i = 0; i < far_.size(); ++i)
+      far_[i].translation().x() += 5.0 * static_cast<double>(i);
   }
 
   int link(const char* name) const { return robot_.link_index(name); }
 
   std::vector<Eigen::Isometry3d> with(const char* name, const Eigen::Isometry3d& pose) const {
     std::vector<Eigen::Isometry3d> poses = far_;
-    poses[std::size_t(link(name))] = pose;
+    poses[link(name)] = pose;
     return poses;
   }
   std::vector<Eigen::Isometry3d> with(const char* name, double x, double y, double z) const {
@@ -166,7 +167,7 @@ TEST_F(CollisionWorldTest, AgreesWithBruteForceOverAllVoxels) {
   const std::vector<ConvexShape> shapes = this->shapes();
   int apart = 0, touching = 0;
   for (int i = 0; i < 1000; ++i) {
-    const std::size_t kind = std::size_t(i % 5);
+    const std::size_t kind = static_cast<std::size_t>(i % 5);
     const Eigen::Isometry3d pose = random_pose(random, 1.0);
     double expected = 0.5;
     for (const Eigen::Vector4d& leaf : leaves) {
@@ -268,12 +269,10 @@ TEST_F(CollisionWorldTest, SelfDistanceIsTheNearestPairOfLinks) {
     int first = -1, second = -1;
     for (const auto& [a, b] : robot_.self_collision_pairs()) {
       const auto shape = [&](int l) {
-        return shapes[std::size_t(
-            std::find(names_.begin(), names_.end(), robot_.links()[std::size_t(l)].name) -
-            names_.begin())];
+        return shapes[static_cast<std::size_t>(
+            std::find(names_.begin(), names_.end(), robot_.links()[l].name) - names_.begin())];
       };
-      const double d =
-          shape_distance(shape(a), poses[std::size_t(a)], shape(b), poses[std::size_t(b)]).distance;
+      const double d = shape_distance(shape(a), poses[a], shape(b), poses[b]).distance;
       if (d >= expected) continue;
       expected = d;
       first = a;
@@ -283,7 +282,7 @@ TEST_F(CollisionWorldTest, SelfDistanceIsTheNearestPairOfLinks) {
     EXPECT_NEAR(found.distance_m, expected, 1e-9);
     EXPECT_EQ(found.link, first);
     EXPECT_EQ(found.other_link, second);
-    EXPECT_EQ(found.what, second < 0 ? "" : robot_.links()[std::size_t(second)].name);
+    EXPECT_EQ(found.what, second < 0 ? "" : robot_.links()[second].name);
   }
 }
 

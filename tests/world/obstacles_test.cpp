@@ -200,8 +200,8 @@ double brute_force_distance(const Obstacle& obstacle, const Eigen::Vector3d& poi
           for (double side : {-0.5, 0.5}) {
             Eigen::Vector3d q;
             q[axis] = side * s[axis];
-            q[(axis + 1) % 3] = (double(i) / n - 0.5) * s[(axis + 1) % 3];
-            q[(axis + 2) % 3] = (double(j) / n - 0.5) * s[(axis + 2) % 3];
+            q[(axis + 1) % 3] = (static_cast<double>(i) / n - 0.5) * s[(axis + 1) % 3];
+            q[(axis + 2) % 3] = (static_cast<double>(j) / n - 0.5) * s[(axis + 2) % 3];
             add(q);
           }
   } else if (obstacle.shape == Obstacle::Shape::kSphere) {
@@ -218,7 +218,7 @@ double brute_force_distance(const Obstacle& obstacle, const Eigen::Vector3d& poi
       for (int i = 0; i <= n; ++i) {
         const double b = M_PI * j / n;
         const Eigen::Vector3d rim(s[0] * std::cos(b), s[0] * std::sin(b), 0);
-        add(rim + Eigen::Vector3d(0, 0, (double(i) / n - 0.5) * s[1]));
+        add(rim + Eigen::Vector3d(0, 0, (static_cast<double>(i) / n - 0.5) * s[1]));
         for (double side : {-0.5, 0.5}) add(rim * i / n + Eigen::Vector3d(0, 0, side * s[1]));
       }
   }

@@ -92,7 +92,8 @@ TEST(Octree, SurvivesSavingAndLoading) {
   const auto collect = [](const octomap::OcTree& t, std::set<std::array<int, 4>>& keys) {
     for (octomap::OcTree::leaf_iterator leaf = t.begin_leafs(); leaf != t.end_leafs(); ++leaf)
       if (t.isNodeOccupied(*leaf))
-        keys.insert({leaf.getKey()[0], leaf.getKey()[1], leaf.getKey()[2], int(leaf.getDepth())});
+        keys.insert({leaf.getKey()[0], leaf.getKey()[1], leaf.getKey()[2],
+                     static_cast<int>(leaf.getDepth())});
   };
   collect(*tree, before);
   collect(*loaded, after);

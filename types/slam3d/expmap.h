@@ -2,11 +2,11 @@
 /// Camera poses as bundle adjustment with g2o writes them: VERTEX_SE3:EXPMAP, the relative pose of
 /// two of them, and points projected into them.
 ///
-///     VertexSE3Expmap camera(world_from_camera);     // z looks ahead, x right, y down
+///     VertexSE3Expmap looking(world_from_camera);    // z looks ahead, x right, y down
 ///     EdgeProjectXYZ2UV pixel;
 ///     pixel.camera_number = 0;                       // PARAMS_CAMERAPARAMETERS 0 500 320 240 0
 ///     pixel.measurement = {310.0, 250.0};
-///     graph.add_edge(pixel, point, camera);
+///     graph.add_edge(pixel, point, graph.add_vertex(3, looking));
 ///
 /// Files hold world_from_camera. g2o inverts it when it reads and writes; here the state is what
 /// the file holds, and errors are written accordingly.

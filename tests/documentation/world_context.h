@@ -1,0 +1,33 @@
+#pragma once
+/// What the examples of world/ take for granted.
+
+#include <locograph/robots/robot.h>
+#include <locograph/world/collision_world.h>
+#include <locograph/world/convex_shape.h>
+#include <locograph/world/distance_field.h>
+#include <locograph/world/octree.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace locograph::documentation::in_world {
+
+extern const Robot robot;
+extern const std::vector<Obstacle> obstacles;
+extern const std::vector<Eigen::Isometry3d> world_from_link;
+extern const Eigen::Isometry3d world_from_arm, world_from_table, world_from_shape;
+extern const double time_s, margin_m;
+extern const std::shared_ptr<const octomap::OcTree> tree;
+extern const Eigen::Vector3d point, a_point, b_point;
+extern const int link;
+extern std::vector<ConvexShape> solids;
+extern const ConvexShape shape;
+extern const DistanceField field;
+extern const DistanceFieldOptions options;
+Eigen::Vector3d farthest_point_of_a(const Eigen::Vector3d& direction);
+Eigen::Vector3d farthest_point_of_b(const Eigen::Vector3d& direction);
+void report(const std::string& link, const std::string& what);
+void use(const ShapeDistance& nearest);
+
+}  // namespace locograph::documentation::in_world
