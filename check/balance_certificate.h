@@ -13,11 +13,11 @@
 /// at its lowest point along the contact's normal, a wheel at that of its disc. W is the robot's
 /// weight, J the contact Jacobian, g(q) what gravity asks for, s the margin. Largest s <= 1 with
 ///
-///     equilibrium      (sum J^T w)_base = g_base                     (floating base only)
-///     friction         n_k . f_t + s W / c <= mu cos(pi/facets) f_z  each force, c: corners
-///     pressing limit   f_z <= (1 - s) f_max                          of the whole contact
-///     rung             |component| <= (1 - s) limit                  of each force and moment
-///     torque limits    |g - sum J^T w| <= (1 - s) tau_max            each active joint
+///   equilibrium      (sum J^T w)_base = g_base                     (floating base only)
+///   friction         n_k . f_t + s W / c <= mu cos(pi/facets) f_z  each force, c: corners
+///   pressing limit   f_z <= (1 - s) f_max                          of the whole contact
+///   rung             |component| <= (1 - s) limit                  of each force and moment
+///   torque limits    |g - sum J^T w| <= (1 - s) tau_max            each active joint
 ///
 /// So a margin of 0.1 says: with one and the same wrenches, every limit is used to 90 % at most and
 /// every friction cone has a tenth of the weight in reserve (a surface as a whole; then its centre

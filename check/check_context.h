@@ -3,7 +3,7 @@
 ///
 ///     CheckContext context{robot, world, exact, motion, options, &shapes, sampler};
 ///     for (std::size_t i = 0; i < context.vertices(); ++i)
-///       for (const JudgedStance* stance : context.stances_at(int(i))) …
+///       for (const JudgedStance* stance : context.stances_at(int(i))) use(*stance);
 
 #include <locograph/check/check_report.h>
 #include <locograph/check/judged_stance.h>

@@ -12,37 +12,35 @@
 /// a motion with something violated, or with something that is required and not judged, is not
 /// feasible.
 ///
-///     not_finite             numbers of a vertex or its time that are not finite (count)
-///     configuration_size     |size - Robot::configuration_size()| (count)
-///     stance                 vertices that do not say where the robot stands, or steps (count)
-///     contact_claims         contacts that claim more than CheckOptions::known (count)
-///     base_orientation       | |quaternion| - 1 |
-///     time_order           * time between vertices must be positive (s)
-///     step_size            * samples a step needs, see CheckOptions (count)
-///     joint_limits           excess over a limit (rad, m)
-///     velocity_limits      * joint velocity over its limit (ratio)
-///     base_velocity        * of the base, linear or angular, over its limit (ratio)
-///     acceleration_limits  * joint acceleration over its limit (ratio)
-///     contact_position     + of a contact to its place, at vertices (m)
-///     contact_orientation  + of the directions that its kind holds, at vertices (rad)
-///     contact_between     *+ the worst of both between vertices; an angle counts as the length
-///     that
-///                            is the same share of its limit (m)
-///     contact_motion      *+ how far a held contact gets while it lasts, in total (m)
-///     contact_turn        *+ how far it turns; a locked wheel, about its joint (rad)
-///     contact_relabelled  *+ contacts whose place differs in stances that follow each other, and
-///                            stances of a plan of stances that follow their like (count)
-///     contact_on_surface   + of the contact to the surface it lies on, or outside its border (m)
-///     lateral_slip        *- across a wheel's heading, see wheel_rolling.h (m)
-///     longitudinal_slip   *- along it (m)
-///     obstacle_distance      to voxels and obstacles that the link does not touch (m)
-///     ground_penetration     into surfaces that the link does not touch, the ground is one (m)
-///     touching_depth         of links in what they touch (m)
-///     self_collision         see Robot::self_collision_pairs() (m)
-///     static_balance       + margin of balance_certificate.h, with the torque limits if they are
-///                            enforced, and with inertial forces where the motion has times (1)
-///     torque_limits        + largest |torque| / limit; of a motion: the least that balances
-///     (ratio)
+///   not_finite             numbers of a vertex or its time that are not finite (count)
+///   configuration_size     |size - Robot::configuration_size()| (count)
+///   stance                 vertices that do not say where the robot stands, or steps (count)
+///   contact_claims         contacts that claim more than CheckOptions::known (count)
+///   base_orientation       | |quaternion| - 1 |
+///   time_order           * time between vertices must be positive (s)
+///   step_size            * samples a step needs, see CheckOptions (count)
+///   joint_limits           excess over a limit (rad, m)
+///   velocity_limits      * joint velocity over its limit (ratio)
+///   base_velocity        * of the base, linear or angular, over its limit (ratio)
+///   acceleration_limits  * joint acceleration over its limit (ratio)
+///   contact_position     + of a contact to its place, at vertices (m)
+///   contact_orientation  + of the directions that its kind holds, at vertices (rad)
+///   contact_between     *+ the worst of both between vertices; an angle counts as the length that
+///                          is the same share of its limit (m)
+///   contact_motion      *+ how far a held contact gets while it lasts, in total (m)
+///   contact_turn        *+ how far it turns; a locked wheel, about its joint (rad)
+///   contact_relabelled  *+ contacts whose place differs in stances that follow each other, and
+///                          stances of a plan of stances that follow their like (count)
+///   contact_on_surface   + of the contact to the surface it lies on, or outside its border (m)
+///   lateral_slip        *- across a wheel's heading, see wheel_rolling.h (m)
+///   longitudinal_slip   *- along it (m)
+///   obstacle_distance      to voxels and obstacles that the link does not touch (m)
+///   ground_penetration     into surfaces that the link does not touch, the ground is one (m)
+///   touching_depth         of links in what they touch (m)
+///   self_collision         see Robot::self_collision_pairs() (m)
+///   static_balance       + margin of balance_certificate.h, with the torque limits if they are
+///                          enforced, and with inertial forces where the motion has times (1)
+///   torque_limits        + largest |torque| / limit; of a motion: the least that balances (ratio)
 ///
 /// A vertex with a number that is not finite, of the wrong size, or with a quaternion near zero is
 /// reported; nothing else is checked there and next to it. Configuration i is held against the

@@ -3,7 +3,8 @@
 ///
 ///     WheelSlip slip;
 ///     slip.add(wheel_step(contact, poses_before, poses));  // for each sample
-///     if (slip.lateral_m() > limits::kSlip_m) …
+///     if (slip.lateral_m() > limits::kSlip_m)
+///       std::cerr << "slips sideways by " << slip.lateral_m() << " m\n";
 ///
 /// a is the axle, n the plane's normal, c the centre, u the direction in the disc that is nearest
 /// to n, so that c - r u touches. The wheel's material there moves by s = dc + w x (-r u) while the

@@ -4,6 +4,7 @@
 ///     struct EdgeOnCircle : Edge<1, VertexXY> {
 ///       static constexpr ConstraintKind kConstraint = ConstraintKind::kEquality;   // error = 0
 ///       static constexpr double kTolerance = 1e-4;                                 // see edge.h
+///     };
 ///
 /// A trait of its type, then; types that hinge by themselves (kOneSided) are inequalities without
 /// saying so. For a single edge the graph may say otherwise, and files keep what it says:

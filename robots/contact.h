@@ -2,8 +2,8 @@
 /// Where a robot touches the world: end effectors, contacts and stances, as plain values.
 ///
 ///     EndEffector foot{.name = "left_foot", .link = "l_sole", .kind = ContactKind::kSurface,
-///                      .half_x_m = 0.08, .half_y_m = 0.04, .friction = 0.6, .max_force_N =
-///                      1000.0};
+///                      .half_x_m = 0.08, .half_y_m = 0.04, .friction = 0.6,
+///                      .max_force_N = 1000.0};
 ///     Contact standing{.effector = foot, .position = {0.0, 0.1, 0.0},
 ///                      .forward = Eigen::Vector3d::UnitX()};
 ///     Stance stance{.contacts = {standing}};
@@ -16,15 +16,15 @@
 /// surface into the robot; x is `forward` made normal to it; y completes them. Those of the contact
 /// are made of its own normal and forward in the world. A contact is closed when:
 ///
-///     surface   point, normal and forward of link and world coincide; without `forward`, yaw about
-///               the normal is free
-///     point     `point` is at `position`, or, with a radius (a ball), that far above it along the
-///               normal; the link may turn in any way
-///     rung      `point` is at `position` and the bar, normal × forward, has the world's direction;
-///               turning round the bar is free
-///     wheel     the disc of `radius_m` about `point`, normal to the axis of the joint above the
-///               link, touches the plane through `position` along `normal`, and the axle lies along
-///               that plane; the touching point may be anywhere in it
+///   surface   point, normal and forward of link and world coincide; without `forward`, yaw about
+///             the normal is free
+///   point     `point` is at `position`, or, with a radius (a ball), that far above it along the
+///             normal; the link may turn in any way
+///   rung      `point` is at `position` and the bar, normal × forward, has the world's direction;
+///             turning round the bar is free
+///   wheel     the disc of `radius_m` about `point`, normal to the axis of the joint above the
+///             link, touches the plane through `position` along `normal`, and the axle lies along
+///             that plane; the touching point may be anywhere in it
 ///
 /// While a stance is held its surfaces, points and rungs stay where they are. A wheel rolls: its
 /// touching point moves along its heading only, as far as the disc turns. A locked wheel does not

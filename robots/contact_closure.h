@@ -10,14 +10,14 @@
 /// Rows, with C the contact's axes in the world, F those of the end effector (contact.h), p the
 /// contact's place and c the end effector's point; along C:
 ///
-///     kind                  n  rows
-///     surface               6  c − p along x y z [m], rotation vector log(Cᵀ F) about x y z [rad]
-///     surface, yaw is free  5  c − p along x y z [m], tilt of the normal about x y [rad]
-///     point                 3  c − p − radius · normal along x y z [m]
-///     rung                  5  c − p along x y z [m], tilt of the bar about x z [rad]
-///     wheel                 2  height of the disc's lowest point above the plane,
-///                              n · (c − p) − r √(1 − (n · a)²) [m]; n · a, the sine of the tilt of
-///                              the axle a to the plane [1]
+///   kind                  n  rows
+///   surface               6  c − p along x y z [m], rotation vector log(Cᵀ F) about x y z [rad]
+///   surface, yaw is free  5  c − p along x y z [m], tilt of the normal about x y [rad]
+///   point                 3  c − p − radius · normal along x y z [m]
+///   rung                  5  c − p along x y z [m], tilt of the bar about x z [rad]
+///   wheel                 2  height of the disc's lowest point above the plane,
+///                            n · (c − p) − r √(1 − (n · a)²) [m]; n · a, the sine of the tilt of
+///                            the axle a to the plane [1]
 ///
 /// For the tilt see orientation_error.h. What is fixed is worked out by the constructor; error()
 /// and add_jacobian() do not allocate. Const functions may be shared between threads.

@@ -4,7 +4,7 @@
 ///
 ///     const Kernels& k = kernels();                             // chosen once, for this machine
 ///     k.dense.cholesky_in_place(panel, ld, rows, columns);
-///     kernels().level                                           // "v3"
+///     std::cout << k.level << '\n';                             // "v3"
 ///
 /// The levels are those of x86-64: v2 (two lanes), v3 (AVX2: four lanes, fused multiply-add), v4
 /// (AVX-512: eight lanes). For other processors there is one, "portable". The highest that the

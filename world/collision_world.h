@@ -9,8 +9,8 @@
 ///     CollisionWorld::Touch foot{.position = {0, 0.1, 0}, .surfaces = {0}, .links = {sole}};
 ///     CollisionWorld::Surroundings around =
 ///         exact.surroundings({.world_from_link = world_from_link, .touches = {&foot, 1}});
-///     // around.obstacle, around.surface: what no link touches; around.touched: how deep they
-///     touch
+///     // around.obstacle, around.surface: what no link touches
+///     // around.touched: how deep links touch
 ///
 /// Distances of spheres and capsules to each other and to boxes (voxels too) are closed forms; the
 /// others are certified to 1e-5 m, see convex_shape.h. A mesh (STL) counts as its convex hull, and

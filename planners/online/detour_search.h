@@ -9,7 +9,7 @@
 /// Here the whole window is moved sideways as it is, legs and heading as planned, by an offset for
 /// each of its configurations. Dynamic programming over (offset, change of offset) finds the
 /// offsets that minimise
-///     Σ w_lateral o² + w_step (Δo)² + w_turn (Δ²o)² + w_obstacle Σ_spheres max(0, margin + r − d)²
+///   Σ w_lateral o² + w_step (Δo)² + w_turn (Δ²o)² + w_obstacle Σ_spheres max(0, margin + r − d)²
 /// on a grid, Δ²o at most one grid step: the global optimum of that one-dimensional problem, left
 /// and right alike.
 

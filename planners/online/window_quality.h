@@ -1,9 +1,9 @@
 #pragma once
 /// How good the window of an online planner is, of two the better one.
 ///
-///     const WindowQuality had = window_quality(reader, steps, cost);
-///     …
-///     if (window_quality(reader, steps, cost).better_than(had)) keep();
+///     const WindowQuality had = window_quality(reader, step_of, steps, cost);
+///     cost = optimise();
+///     if (window_quality(reader, step_of, steps, cost).better_than(had)) keep();
 ///
 /// What comes next counts more than what comes later: of two windows that violate a constraint the
 /// better one holds for more steps, then violates less; of two that do not, it costs less.

@@ -3,7 +3,7 @@
 ///
 ///     Graph graph = read_graph("plan.g2o", types);
 ///     Plan plan = plan_of(graph);
-///     for (int slot : plan.slots) { … graph.state(slot) … }
+///     for (int slot : plan.slots) std::cout << "base height " << graph.state(slot)[2] << " m\n";
 ///     CheckReport report = Judge(plan.robot->robot, world).check(motion_of(graph, plan));
 
 #include <locograph/check/motion.h>

@@ -3,7 +3,9 @@
 /// share.
 ///
 ///     const ContactKind kind = read_contact_kind(xml, element);
-///     xml.allow(element, joined({"kind", "position"}, effector_attributes(kind)), {});
+///     std::set<std::string> allowed = effector_attributes(kind);
+///     allowed.insert({"kind", "position", "mu"});
+///     xml.allow(element, allowed, {});
 ///     EndEffector foot = read_effector(xml, element, kind);
 ///     foot.friction = xml.positive(element, "mu");
 

@@ -12,10 +12,10 @@
 /// the link its point [m], normal and forward; `at`: position [m], normal and forward in the world,
 /// `free` where it has no forward. KIND, with the components of its wrench:
 ///
-///     surface half_x half_y friction f_max   fx fy fz mx my mz   a rectangle about the point [m]
-///     point radius friction f_max            fx fy fz            a ball, or a bare point: radius 0
-///     rung f_max m_max                       fx fy fz mx mz      a bar along y, held by a grasp
-///     wheel radius friction f_max            fx fy fz
+///   surface half_x half_y friction f_max   fx fy fz mx my mz   a rectangle about the point [m]
+///   point radius friction f_max            fx fy fz            a ball, or a bare point: radius 0
+///   rung f_max m_max                       fx fy fz mx mz      a bar along y, held by a grasp
+///   wheel radius friction f_max            fx fy fz
 ///
 /// f_max [N] bounds fz, for a rung each |component| of the force; m_max [N m] each |moment| of a
 /// rung. Friction is a circular cone; `inner K` makes it the pyramid of K sides inside that cone,

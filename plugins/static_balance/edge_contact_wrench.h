@@ -6,13 +6,13 @@
 /// Error (n, the rows of all contacts one after the other): max(0, g) of each limit g ≤ 0, f and m
 /// being force and moment along the contact's axes (contact_parameter.h), X and Y the half sizes:
 ///
-///     surface, point,   −fz,   fz − f_max                                             [N]
-///    wheel               √(fx² + fy²) − μ fz,  or K sides: nₖ·(fx, fy) − μ_K fz         [N]
-///     surface           ±my − X fz,  ±mx − Y fz      centre of pressure in the rectangle [N m]
-///                       |Y fx − μ' mx| + |X fy − μ' my| − μ'(X + Y) fz − mz            [N m]
-///                       |Y fx + μ' mx| + |X fy + μ' my| − μ'(X + Y) fz + mz            [N m]
-///     rung              |fx| − f_max,  |fy| − f_max,  |fz| − f_max                     [N]
-///                       |mx| − m_max,  |mz| − m_max                                    [N m]
+///   surface, point,   −fz,   fz − f_max                                             [N]
+///   wheel             √(fx² + fy²) − μ fz,  or K sides: nₖ·(fx, fy) − μ_K fz         [N]
+///   surface           ±my − X fz,  ±mx − Y fz      centre of pressure in the rectangle [N m]
+///                     |Y fx − μ' mx| + |X fy − μ' my| − μ'(X + Y) fz − mz            [N m]
+///                     |Y fx + μ' mx| + |X fy + μ' my| − μ'(X + Y) fz + mz            [N m]
+///   rung              |fx| − f_max,  |fy| − f_max,  |fz| − f_max                     [N]
+///                     |mx| − m_max,  |mz| − m_max                                    [N m]
 ///
 /// The yaw limits, four rows each for the signs of their |·|, are Caron, Pham & Nakamura 2015,
 /// "Stability of surface contacts for humanoid robots: closed-form formulae of the contact wrench

@@ -59,5 +59,8 @@ extern LinearSolver& solver;
 namespace scratch_h {
 extern const int rows;
 }
+namespace violations_h {
+extern Optimiser optimiser;
+}
 
 }  // namespace locograph::documentation::in_core

@@ -1,13 +1,88 @@
 #pragma once
 /// What the examples of planners/ take for granted.
 
+#include <locograph/check/judge.h>
 #include <locograph/core/graph_file.h>
-#include <locograph/planners/plan/scenario.h>
+#include <locograph/planners/online/refine.h>
+#include <locograph/planners/plan/judging.h>
+#include <locograph/planners/plan/plan.h>
+#include <locograph/planners/posture/contacts_file.h>
+#include <locograph/planners/posture/posture_graph.h>
+#include <locograph/planners/posture/posture_solver.h>
+#include <locograph/planners/scenario/scenario.h>
+#include <locograph/robots/xml_file.h>
 
 #include <filesystem>
+#include <memory>
+#include <vector>
 
 namespace locograph::documentation::in_planners {
 
 extern const std::filesystem::path data_folder;
+extern Graph graph;
+extern const Plan plan;
+extern const std::vector<Eigen::VectorXd> planned;
+extern const Stance stance;
+extern const Robot robot;
+extern const World world;
+
+namespace offline_drive_wheel_motion_h {
+extern Eigen::VectorXd q;
+extern const Eigen::VectorXd before;
+}  // namespace offline_drive_wheel_motion_h
+namespace offline_drive_wheeled_plan_h {
+extern const std::shared_ptr<const RobotParameter> robot;
+extern const std::shared_ptr<const WorldParameter> world;
+extern const Motion motion;
+}  // namespace offline_drive_wheeled_plan_h
+namespace online_detour_search_h {
+extern const std::shared_ptr<const RobotParameter> robot;
+extern const DetourOptions options;
+extern const std::vector<const double*> window;
+extern const std::vector<double> times;
+extern const WorldDistance world;
+extern const double offset, slope;
+}  // namespace online_detour_search_h
+namespace online_local_planner_h {
+extern Graph plan_graph;
+extern const LocalPlannerOptions options;
+extern const WorldDistance world;
+}  // namespace online_local_planner_h
+namespace online_refine_h {
+extern const Judge judge;
+extern const CheckOptions limits;
+extern const WorldAt world_seen_at;
+}  // namespace online_refine_h
+namespace online_window_quality_h {
+extern const ConstraintReader reader;
+extern const std::vector<int> step_of;
+extern const int steps;
+extern double cost;
+double optimise();
+void keep();
+}  // namespace online_window_quality_h
+namespace plan_plan_h {
+extern const TypeRegistry types;
+}
+namespace plan_seen_world_h {
+extern const Judging judging;
+}
+namespace posture_posture_graph_h {
+extern const std::shared_ptr<const RobotParameter> robot;
+extern const std::shared_ptr<const WorldParameter> seen;
+extern const PostureProblem problem;
+extern const PostureOptions options;
+extern const std::vector<bool> coarse_pairs;
+extern const Workspace workspace;
+}  // namespace posture_posture_graph_h
+namespace posture_posture_solver_h {
+extern const std::filesystem::path urdf, srdf;
+extern const RobotOptions options;
+extern const Eigen::VectorXd home;
+}  // namespace posture_posture_solver_h
+namespace scenario_effector_element_h {
+extern const XmlFile xml;
+extern const XmlFile::Element element;
+}  // namespace scenario_effector_element_h
 
 }  // namespace locograph::documentation::in_planners

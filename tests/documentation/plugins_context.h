@@ -3,7 +3,7 @@
 
 #include <locograph/core/graph_file.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
-#include <locograph/plugins/configuration/wheels_edge.h>
+#include <locograph/plugins/contact/stance_parameter.h>
 #include <locograph/plugins/robot_types.h>
 #include <locograph/plugins/time_step/vertex_time_step.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits_timed.h>
@@ -35,19 +35,37 @@ extern const long dimension;
 namespace configuration_frame_parameter_h {
 extern const Robot model;
 }
+namespace configuration_path_field_h {
+extern std::filesystem::path map;
+extern FieldReader in;
+extern FieldWriter out;
+}  // namespace configuration_path_field_h
 namespace configuration_self_collision_shapes_h {
 extern const std::shared_ptr<const RobotParameter> robot;
 extern std::vector<int> first_capsules;
 }  // namespace configuration_self_collision_shapes_h
+namespace contact_edge_contact_h {
+extern const std::shared_ptr<const RobotParameter> robot;
+extern const Contact standing;
+extern const VertexId<VertexConfiguration> q;
+}  // namespace contact_edge_contact_h
 namespace frame_pose_edge_frame_pose_h {
 extern const Eigen::Matrix<double, 6, 1> weights;
 }
 namespace ground_distance_edge_ground_distance_h {
 extern const std::shared_ptr<const RobotParameter> robot;
 }
+namespace rolling_edge_rolling_h {
+extern const std::shared_ptr<const StanceParameter> stance;
+}
 namespace self_collision_nearest_points_h {
 extern const Eigen::Vector3d a_from, a_to, b_from, b_to;
 }
+namespace static_balance_static_rows_h {
+extern const ContactParameter contact;
+extern const double* components;
+extern double* row;
+}  // namespace static_balance_static_rows_h
 namespace time_step_edge_duration_h {
 extern const std::vector<VertexId<VertexTimeStep>> steps;
 }

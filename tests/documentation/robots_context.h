@@ -2,6 +2,7 @@
 /// What the examples of robots/ take for granted.
 
 #include <locograph/robots/capsule.h>
+#include <locograph/robots/contact.h>
 #include <locograph/robots/covering_capsules.h>
 #include <locograph/robots/robot.h>
 #include <locograph/robots/robot_state.h>
@@ -16,6 +17,7 @@ extern const Robot robot;
 extern RobotState state;
 extern const Link link;
 extern const Capsule capsule;
+extern const Contact contact;
 extern const TriangleTree mesh;
 extern const Eigen::Vector3d point;
 extern double worst, area;
@@ -25,5 +27,13 @@ extern const UrdfModel urdf;
 void report(const std::string& link, int count, double worst_m);
 void draw_sphere(const Eigen::Isometry3d& world_from_sphere, double radius_m);
 void use(const Eigen::Vector3d& point);
+
+namespace contact_closure_h {
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+}
+namespace orientation_error_h {
+extern const Eigen::Isometry3d world_from_target, world_from_frame;
+extern Eigen::Matrix<double, 6, 1> e;
+}  // namespace orientation_error_h
 
 }  // namespace locograph::documentation::in_robots

@@ -5,11 +5,13 @@
 #include <locograph/core/graph.h>
 #include <locograph/core/optimiser.h>
 #include <locograph/solvers/elimination_tree.h>
+#include <locograph/solvers/front_kernels.h>
 #include <locograph/solvers/linear_solvers.h>
 #include <locograph/solvers/ordering.h>
 #include <locograph/solvers/pcg_block_jacobi.h>
 #include <locograph/solvers/pcg_block_product.h>
 #include <locograph/solvers/pcg_options.h>
+#include <locograph/solvers/simd.h>
 
 #include <Eigen/SparseCore>
 #include <utility>
@@ -30,6 +32,12 @@ extern BlockJacobi preconditioner;
 namespace block_cholesky_h {
 extern ThreadPool threads;
 }
+namespace front_kernels_h {
+extern const long count;
+extern double* parent;
+extern const double* child;
+extern const FrontRun *runs, *last;
+}  // namespace front_kernels_h
 namespace item_graph_h {
 extern ThreadPool threads;
 extern const std::vector<std::pair<int, int>> dependencies;
@@ -39,6 +47,12 @@ double sum(int item, int chunk);
 }  // namespace item_graph_h
 namespace pcg_iteration_h {
 extern const PcgOptions options;
+}
+namespace pcg_kernels_h {
+extern const double* a;
+}
+namespace simd_h {
+using namespace simd_portable;
 }
 namespace supernodes_h {
 extern const BlockGraph graph;

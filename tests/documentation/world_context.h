@@ -6,6 +6,7 @@
 #include <locograph/world/convex_shape.h>
 #include <locograph/world/distance_field.h>
 #include <locograph/world/octree.h>
+#include <locograph/world/world.h>
 
 #include <memory>
 #include <string>
@@ -29,5 +30,13 @@ Eigen::Vector3d farthest_point_of_a(const Eigen::Vector3d& direction);
 Eigen::Vector3d farthest_point_of_b(const Eigen::Vector3d& direction);
 void report(const std::string& link, const std::string& what);
 void use(const ShapeDistance& nearest);
+
+namespace collision_world_h {
+extern const World world;
+extern const int sole;
+}  // namespace collision_world_h
+namespace distance_view_h {
+extern const World world;
+}
 
 }  // namespace locograph::documentation::in_world
