@@ -44,8 +44,8 @@ TEST(ContactWrenchCone, IsThatOfForcesAtTheCornersFacetByFacet) {
   for (int r = 0; r < 16; ++r) {
     EXPECT_LT(limits_of(contact, rays[r], cone).maxCoeff(), 1e-14);
     // All rows are linear here, so that the hinge can be undone.
-    values.col(r) = limits_of(contact, rays[r] + 1e3 * down, cone) -
-                    limits_of(contact, 1e3 * down, cone);
+    values.col(r) =
+        limits_of(contact, rays[r] + 1e3 * down, cone) - limits_of(contact, 1e3 * down, cone);
   }
   int facets = 0;
   for (int row = 0; row < 18; ++row) {
