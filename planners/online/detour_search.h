@@ -3,7 +3,7 @@
 /// graph optimiser can slide into a detour.
 ///
 ///     DetourSearch search(robot, options);
-///     std::vector<double> offsets = search.find(window, times, world, offset, slope);
+///     std::vector<double> offsets = search.find(first, window, times, world, offset, slope);
 ///
 /// A local optimiser cannot tell left from right when an obstacle lies square across the plan.
 /// Here the whole window is moved sideways as it is, legs and heading as planned, by an offset for
