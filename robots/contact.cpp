@@ -86,8 +86,8 @@ std::optional<ContactKind> contact_kind_of(const std::string& name) {
 
 Eigen::Matrix3d contact_axes(const std::string& contact, const Eigen::Vector3d& normal,
                              const Eigen::Vector3d& forward) {
-  // Neither overflows nor vanishes on the way. The last bits of Eigen's stableNorm() depend on where
-  // the vector lies in memory, and it may overlook NaN.
+  // Neither overflows nor vanishes on the way. The last bits of Eigen's stableNorm() depend on
+  // where the vector lies in memory, and it may overlook NaN.
   const double length = std::hypot(normal.x(), normal.y(), normal.z());
   const double way = std::hypot(forward.x(), forward.y(), forward.z());
   if (!(length > 0.0 && std::isfinite(length))) {

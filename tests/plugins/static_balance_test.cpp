@@ -258,7 +258,8 @@ TEST_P(StaticBalance, KeepsEveryBitInAFile) {
   Evaluated a(graph), b(again);
   for (std::size_t p = 0; p < graph.edge_pools().size(); ++p) {
     for (int k = 0; k < 4; ++k)
-      EXPECT_EQ(a.error(k, static_cast<int>(p)), b.error(k, static_cast<int>(p))) << graph.edge_pools()[p]->tag();
+      EXPECT_EQ(a.error(k, static_cast<int>(p)), b.error(k, static_cast<int>(p)))
+          << graph.edge_pools()[p]->tag();
   }
 }
 
