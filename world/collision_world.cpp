@@ -120,7 +120,7 @@ struct CollisionWorld::Parts {
 void CollisionWorld::Parts::take_robot(const Robot& robot) {
   for (const Link& link : robot.links()) {
     link_begin.push_back(bodies.size());
-    const int index = int(link_names.size());
+    const int index = static_cast<int>(link_names.size());
     for (const CollisionShape& shape : link.collision)
       bodies.push_back({index, link_solid(robot, shape), shape.link_from_shape});
     link_names.push_back(link.name);
@@ -250,7 +250,7 @@ struct CollisionWorld::Parts::Search {
   }
 
   void add(const Touch& touch, Touching::Bits bit) {
-    for (const int link : touch.links) touching.of_link[std::size_t(link)] |= bit;
+    for (const int link : touch.links) touching.of_link[static_cast<std::size_t>(link)] |= bit;
     const double plane = touch.normal.dot(touch.position);
     const auto out_of_plane = [&](const ConvexShape& shape, const Eigen::Isometry3d& pose) {
       Eigen::Vector3d where;
@@ -263,7 +263,8 @@ struct CollisionWorld::Parts::Search {
       if (out_of_plane(parts.obstacle_shapes[o], obstacle.world_from_obstacle) <= kTouchedHeight_m)
         touching.of_obstacle[o] |= bit;
     }
-    for (const int surface : touch.surfaces) touching.of_plate[std::size_t(surface)] |= bit;
+    for (const int surface : touch.surfaces)
+      touching.of_plate[static_cast<std::size_t>(surface)] |= bit;
     // Surfaces below the plane, as the sides of a box that a foot stands on.
     for (std::size_t p = 0; p < parts.plates.size(); ++p) {
       const Plate& plate = parts.plates[p];
@@ -303,7 +304,7 @@ struct CollisionWorld::Parts::Search {
       for (std::size_t b = 0; b < parts.bodies.size(); ++b) {
         const Body& body = parts.bodies[b];
         const Touching::Bits touches =
-            touching.of_link[std::size_t(body.link)] & touching.of_obstacle[o];
+            touching.of_link[static_cast<std::size_t>(body.link)] & touching.of_obstacle[o];
         const double nearest = touches != 0 ? 0.0 : found.obstacle.distance_m;
         if (sphere_bound(body.shape, world_from_body[b], shape, world_from_obstacle) >= nearest)
           continue;
@@ -323,10 +324,11 @@ struct CollisionWorld::Parts::Search {
       const Body& body = parts.bodies[b];
       VoxelTree::Query voxel{body.shape, world_from_body[b]};
       voxel.floor_z = parts.ground_z;
-      if (parts.ignores_floor[std::size_t(body.link)])
+      if (parts.ignores_floor[static_cast<std::size_t>(body.link)])
         voxel.floor_z = std::max(voxel.floor_z, parts.options.floor_z_m);
       for (std::size_t t = 0; t < query.touches.size(); ++t) {
-        if ((touching.of_link[std::size_t(body.link)] & Touching::bit(t)) == 0) continue;
+        if ((touching.of_link[static_cast<std::size_t>(body.link)] & Touching::bit(t)) == 0)
+          continue;
         const Touch& touch = query.touches[t];
         voxel.behind.push_back({touch.position, touch.normal, kTouchedHeight_m, kTouchedReach_m});
       }
@@ -344,7 +346,7 @@ struct CollisionWorld::Parts::Search {
       const Plate& plate = parts.plates[p];
       for (std::size_t b = 0; b < parts.bodies.size(); ++b) {
         const Touching::Bits touches =
-            touching.of_link[std::size_t(parts.bodies[b].link)] & touching.of_plate[p];
+            touching.of_link[static_cast<std::size_t>(parts.bodies[b].link)] & touching.of_plate[p];
         surface(plate, b, touches);
       }
     }

@@ -31,8 +31,9 @@ class RoundTrip : public testing::TestWithParam<std::string> {
     robot.wheels = original.wheels;
     for (std::size_t i = 0; i < robot.wheels.size(); ++i) {
       Contact& wheel = robot.wheels[i];
-      wheel.effector.radius_m += 1e-17 * double(i) + 0.001 / 3.0 * double(i);
-      wheel.position = {1.0 / 3.0, 0.1 * double(i), 1e-17};
+      wheel.effector.radius_m +=
+          1e-17 * static_cast<double>(i) + 0.001 / 3.0 * static_cast<double>(i);
+      wheel.position = {1.0 / 3.0, 0.1 * static_cast<double>(i), 1e-17};
       wheel.normal = {0.1, 1.0 / 7.0, 3.0};
       wheel.locked = i == 1;
       wheel.bears_load = i != 2;

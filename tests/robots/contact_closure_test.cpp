@@ -41,7 +41,7 @@ class Closure : public testing::TestWithParam<ClosureCase> {
     end.forward = {1.0, 0.2, 0.0};
     if (end.kind == ContactKind::kWheel) {
       end.link = "wheel_2";
-      const Joint& joint = robot.joints()[std::size_t(robot.joint_index("j_wheel_2"))];
+      const Joint& joint = robot.joints()[static_cast<std::size_t>(robot.joint_index("j_wheel_2"))];
       end.point = 0.02 * joint.axis;
     }
     end.half_x_m = end.half_y_m = 0.05;
@@ -134,7 +134,7 @@ class OneClosure : public testing::Test {
   }
   std::vector<double> rows(const Contact& contact) const {
     const ContactClosure closure(robot, contact);
-    std::vector<double> e(std::size_t(closure.rows()));
+    std::vector<double> e(static_cast<std::size_t>(closure.rows()));
     closure.error(state, e.data());
     return e;
   }
@@ -179,7 +179,7 @@ TEST_F(OneClosure, OfAWheelDoesNotChangeWhenItTurns) {
   wheel.normal = {0.1, 0.2, 1.0};
   const std::vector<double> before = rows(wheel);
   q[robot.base_configuration_size() +
-    robot.joints()[std::size_t(robot.joint_index("j_wheel_1"))].index] += 2.0;
+    robot.joints()[static_cast<std::size_t>(robot.joint_index("j_wheel_1"))].index] += 2.0;
   state.update(q.data());
   EXPECT_EQ(rows(wheel), before);
 }
