@@ -305,6 +305,7 @@ void LocalPlanner::raise_constraints(CycleReport& report, const Deadline& deadli
   ConstrainedOptions raising;
   raising.inner = optimiser_options(options_);
   raising.inner.deadline = deadline;
+  raising.inner.shorten_steps = true;
   // The first two find out what does not come down by itself.
   raising.max_rounds = options_.max_rounds + 2;
   raising.own_tolerances = true;

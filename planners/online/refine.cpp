@@ -29,12 +29,16 @@ std::string describe(const CheckReport& check) {
   return text.str();
 }
 
-/// The motion from one configuration of the plan to the next.
+/// The motion from one configuration of the plan to the next, and the step before it: only now is
+/// it known how the robot accelerates between the two.
 Motion step_of(const Graph& graph, const Plan& plan, int executed) {
   Plan step = plan;
-  const auto i = static_cast<std::size_t>(executed);
-  step.slots = {plan.slots[i], plan.slots[i + 1]};
-  step.stance_from = {plan.stance_from[i], plan.stance_from[i + 1]};
+  step.slots.clear();
+  step.stance_from.clear();
+  for (int i = std::max(0, executed - 1); i <= executed + 1; ++i) {
+    step.slots.push_back(plan.slots[static_cast<std::size_t>(i)]);
+    step.stance_from.push_back(plan.stance_from[static_cast<std::size_t>(i)]);
+  }
   return motion_of(graph, step);
 }
 

@@ -25,8 +25,9 @@ struct RefineOptions {
   /// Called after each cycle, e.g. to show progress; may be empty.
   std::function<void(const CycleReport&)> on_cycle;
   /// The independent verdict on the motion from the executed configuration to the next, before it
-  /// is executed: Judge::check() with what is known of the world. May be empty: then the local
-  /// planner's own view is all there is.
+  /// is executed: Judge::check() with what is known of the world. The motion begins one step
+  /// earlier: only now is it known how the robot accelerates between the two. May be empty: then
+  /// the local planner's own view is all there is.
   std::function<CheckReport(const Motion&)> verify;
 };
 

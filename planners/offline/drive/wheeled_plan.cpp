@@ -12,6 +12,8 @@
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 namespace locograph {
 namespace {
@@ -47,6 +49,27 @@ std::vector<int> contacts_at(const Stances& from, std::size_t i) {
     }
   }
   return numbers;
+}
+
+/// Keeps the joints that `turns` picks from turning by more than max_rad over dt_s, or by more than
+/// they do in `planned`, a tangent. Nothing where their velocity limits ask for as much.
+template <class Turns>
+std::optional<EdgeVelocityLimits> step_limit(const Robot& robot, const Eigen::VectorXd& planned,
+                                             double dt_s, double max_rad,
+                                             const PlanEdgeOptions& options, Turns&& turns) {
+  constexpr double kRoom = 1.01;  // a plan is not an error from the start
+  double fastest = 0.0;
+  EdgeVelocityLimits edge(robot, 1.0, 0.0, 0.0, 0.0);
+  for (int i = 0; i < robot.active_joint_count(); ++i) {
+    const double velocity = robot.active_joint(i).max_velocity;
+    if (!std::isfinite(velocity) || !turns(i)) continue;
+    edge.weights[i] = options.limit_weight;
+    fastest = std::max(fastest, velocity);
+    max_rad = std::max(max_rad, kRoom * std::abs(planned[robot.base_tangent_size() + i]));
+  }
+  edge.fraction = max_rad / (fastest * dt_s);
+  if (!(edge.fraction < options.velocity_fraction)) return std::nullopt;
+  return edge;
 }
 
 /// Keeps links apart that are apart in every one of the configurations.
@@ -126,6 +149,16 @@ void add_wheeled_plan(Graph& graph, const Motion& motion, const PlanEdgeOptions&
     graph.add_edge(EdgeVelocityLimits(model, options.velocity_fraction, options.base_linear_m_s,
                                       options.base_angular_rad_s, options.limit_weight),
                    ids[i - 1], ids[i]);
+    const double dt_s = motion.time_s[i] - motion.time_s[i - 1];
+    const auto steering = [&](int joint) { return steers(model, *from[i - 1], joint); };
+    const auto bending = [&](int joint) {
+      return !steering(joint) && !turns_wheel(*from[i - 1], joint);
+    };
+    for (const auto& limit :
+         {step_limit(model, step, dt_s, options.steering_step_rad, options, steering),
+          step_limit(model, step, dt_s, options.leg_step_rad, options, bending)}) {
+      if (limit) graph.add_edge(*limit, ids[i - 1], ids[i]);
+    }
     if (!from[i - 1]->wheels.empty()) {
       graph.add_edge(EdgeRolling(*from[i - 1], number_from[i - 1], options.constraint_weight),
                      ids[i - 1], ids[i]);

@@ -25,6 +25,9 @@ struct PlanEdgeOptions {
   int swept_samples = 4;  ///< between two configurations, see edge_swept_obstacle_distance.h
   double self_margin_m = 0.01;
   double joint_acceleration_rad_s2 = 10.0;
+  /// How far joints turn in one step [rad], or as far as the plan turns them: what closes contacts
+  /// and rolls at both ends of a step has to do so between them too.
+  double leg_step_rad = 0.07, steering_step_rad = 0.25;
 
   // Tracking, of the plan and of its steps. Falling behind weighs more than passing to the side:
   // a robot that stops in front of an obstacle is safe, but gets nowhere.
