@@ -19,7 +19,7 @@ std::vector<PostureProblem> random_problems(const PostureRobot& robot) {
   std::vector<PostureProblem> problems;
   for (int i = 0; i < kProblems; ++i) {
     const ContactSet set = sets.draw();
-    problems.push_back({set.contacts, placed_at(robot.model(), robot.home, set.contacts)});
+    problems.push_back({set.stance, placed_at(robot.model(), robot.home, set.stance)});
   }
   return problems;
 }
