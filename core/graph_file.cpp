@@ -26,7 +26,7 @@ struct Mark {
 
 Mark read_mark(FieldReader& in) {
   in.word();
-  const std::string name = in.word();
+  const std::string name = in.at_end() ? "" : in.word();
   const auto named = std::find_if(std::begin(kKinds), std::end(kKinds),
                                   [&name](const NamedKind& k) { return k.name == name; });
   if (named == std::end(kKinds)) {
