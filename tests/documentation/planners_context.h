@@ -42,6 +42,7 @@ extern const std::vector<const double*> window;
 extern const std::vector<double> times;
 extern const WorldDistance world;
 extern const double offset, slope;
+extern const int first;
 }  // namespace online_detour_search_h
 namespace online_local_planner_h {
 extern Graph plan_graph;
@@ -72,7 +73,7 @@ extern const std::shared_ptr<const RobotParameter> robot;
 extern const std::shared_ptr<const WorldParameter> seen;
 extern const PostureProblem problem;
 extern const PostureOptions options;
-extern const std::vector<bool> coarse_pairs;
+extern const PostureSolver::Shapes shapes;
 extern const Workspace workspace;
 }  // namespace posture_posture_graph_h
 namespace posture_posture_solver_h {

@@ -55,6 +55,10 @@ extern const Eigen::Matrix<double, 6, 1> weights;
 namespace ground_distance_edge_ground_distance_h {
 extern const std::shared_ptr<const RobotParameter> robot;
 }
+namespace ground_distance_edge_link_height_h {
+extern const Robot model;
+constexpr int kRobotNumber = 0;
+}  // namespace ground_distance_edge_link_height_h
 namespace rolling_edge_rolling_h {
 extern const std::shared_ptr<const StanceParameter> stance;
 }
