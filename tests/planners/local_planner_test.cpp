@@ -131,6 +131,7 @@ void add_fence(Graph& graph, double x_m) {
 }
 
 TEST(LocalPlanner, RaisesAConstraintOfAPlugInUntilItHolds) {
+  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
   Graph graph = drive();
   add_fence(graph, 1.0);
   LocalPlanner planner(graph, {});
@@ -145,6 +146,7 @@ TEST(LocalPlanner, RaisesAConstraintOfAPlugInUntilItHolds) {
 }
 
 TEST(LocalPlanner, SeesAConstraintThatAFixedConfigurationViolates) {
+  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
   Graph graph = drive();
   add_fence(graph, 3.0);
   const Plan plan = plan_of(graph);
