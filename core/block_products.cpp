@@ -1,17 +1,212 @@
 #include <locograph/core/block_products.h>
 
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+
 namespace locograph::detail {
 namespace {
 using Matrix = Eigen::Map<Eigen::MatrixXd>;
 using ConstMatrix = Eigen::Map<const Eigen::MatrixXd>;
 using ConstVector = Eigen::Map<const Eigen::VectorXd>;
 
-/// The entries other than zero of one row of a Jacobian.
-struct RowEntries {
-  int width;
-  int count;
-  int* column;
-  double* value;
+constexpr int kGroup = 8;    // rows added together
+constexpr int kNarrow = 12;  // rows of fewer entries are added one by one
+
+using Word = std::uint64_t;  // a bit for each column
+constexpr int kBits = 64;
+
+/// Of 8 numbers; -0 counts as a number.
+bool all_zero(const double* from) {
+  Word bits[8];
+  std::memcpy(bits, from, sizeof bits);
+  Word any = 0;
+  for (const Word one : bits) any |= one;
+  return any == 0;
+}
+
+/// sum (n) += Σ factor_r · row_r (n)
+template <int Rows>
+void add_rows_to(const double* const* rows, const double* factor, int n, double* __restrict sum) {
+  for (int k = 0; k < n; ++k) {
+    double all = sum[k];
+#pragma GCC unroll 8
+    for (int r = 0; r < Rows; ++r) all += factor[r] * rows[r][k];
+    sum[k] = all;
+  }
+}
+
+using AddRows = void (*)(const double* const*, const double*, int, double*);
+constexpr AddRows kAddRows[kGroup + 1] = {nullptr,        add_rows_to<1>, add_rows_to<2>,
+                                          add_rows_to<3>, add_rows_to<4>, add_rows_to<5>,
+                                          add_rows_to<6>, add_rows_to<7>, add_rows_to<8>};
+
+/// Adds the rows of one edge to H and b. Rows with few entries one by one; others, one after the
+/// other with mostly the same columns, as vectors.
+class RowSum {
+ public:
+  RowSum(const CompiledEdges& compiled, int k, double* const* jacobians, Scratch& scratch,
+         double* hessian, double* gradient)
+      : slots_(compiled.slots.data() + compiled.slot_begin[k]),
+        count_(compiled.slot_begin[k + 1] - compiled.slot_begin[k]),
+        blocks_(compiled.blocks.data() + compiled.block_begin[k]),
+        jacobians_(jacobians),
+        hessian_(hessian),
+        gradient_(gradient) {
+    width_ = scratch.array<int>(static_cast<std::size_t>(count_));
+    word_ = scratch.array<int>(static_cast<std::size_t>(count_) + 1);
+    word_[0] = 0;
+    int widest = 0;
+    for (int s = 0; s < count_; ++s) {
+      width_[s] = slots_[s].pool->dimension(slots_[s].vertex_index);
+      widest = std::max(widest, width_[s]);
+      const int words = jacobians_[s] == nullptr ? 0 : (width_[s] + kBits - 1) / kBits;
+      word_[s + 1] = word_[s] + words;
+    }
+    for (Word** mask : {&of_row_, &of_group_}) *mask = scratch.array<Word>(std::size_t(words()));
+    for (int** list : {&left_, &right_}) *list = scratch.array<int>(std::size_t(widest));
+  }
+
+  void add(int r, double weight, double error) {
+    const int entries = find_entries(r);
+    if (entries < kNarrow) {
+      add_one(r, weight, error);
+      return;
+    }
+    if (!belongs(entries)) flush();
+    for (int w = 0; w < words(); ++w)
+      of_group_[w] = rows_ == 0 ? of_row_[w] : of_group_[w] | of_row_[w];
+    row_[rows_] = r;
+    weight_[rows_] = weight;
+    error_[rows_++] = error;
+  }
+
+  void flush() {
+    if (rows_ > 0) add_group();
+    rows_ = 0;
+  }
+
+ private:
+  int words() const { return word_[count_]; }
+  const double* row(int s, int r) const {
+    return jacobians_[s] + static_cast<std::ptrdiff_t>(r) * width_[s];
+  }
+
+  int find_entries(int r) {
+    int entries = 0;
+    for (int s = 0; s < count_; ++s) {
+      const double* from = word_[s + 1] > word_[s] ? row(s, r) : nullptr;
+      for (int w = word_[s], c = 0; w < word_[s + 1]; ++w, c += kBits) {
+        const int end = std::min(width_[s] - c, kBits);
+        Word mask = 0;
+        for (int i = 0; i < end; ++i) {
+          if (i % 8 == 0 && end - i >= 8 && all_zero(from + c + i)) {
+            i += 7;
+            continue;
+          }
+          mask |= Word(from[c + i] != 0.0) << i;
+        }
+        of_row_[w] = mask;
+        entries += std::popcount(mask);
+      }
+    }
+    return entries;
+  }
+
+  /// Whether the row just looked at adds few columns to the group.
+  bool belongs(int entries) const {
+    if (rows_ == 0) return true;
+    if (rows_ == kGroup) return false;
+    int united = 0, group = 0;
+    for (int w = 0; w < words(); ++w) {
+      united += std::popcount(of_group_[w] | of_row_[w]);
+      group += std::popcount(of_group_[w]);
+    }
+    return 4 * united <= 5 * std::min(entries, group);
+  }
+
+  int columns(const Word* mask, int s, int* list) const {
+    int count = 0;
+    for (int w = word_[s], c = 0; w < word_[s + 1]; ++w, c += kBits) {
+      for (Word left = mask[w]; left != 0; left &= left - 1) {
+        list[count++] = c + std::countr_zero(left);
+      }
+    }
+    return count;
+  }
+
+  // Block (i, j) is width_[i] × width_[j], column-major; transposed where i comes later.
+  void add_one(int r, double weight, double error) {
+    const CompiledEdges::Block* block = blocks_;
+    for (int i = 0; i < count_; ++i) {
+      const int left = columns(of_row_, i, left_);
+      const double* own = left > 0 ? row(i, r) : nullptr;
+      double* g = gradient_ + slots_[i].gradient_offset;
+      for (int a = 0; a < left; ++a) g[left_[a]] += weight * error * own[left_[a]];
+      for (int j = i; j < count_; ++j, ++block) {
+        const int right = left == 0 ? 0 : columns(of_row_, j, right_);
+        if (right == 0) continue;
+        const bool transposed = (*block & 1) != 0;
+        const int row_step = transposed ? width_[j] : 1, column_step = transposed ? 1 : width_[i];
+        const double* other = row(j, r);
+        for (int b = 0; b < right; ++b) {
+          const double factor = weight * other[right_[b]];
+          double* column = hessian_ + (*block >> 1) + std::ptrdiff_t(right_[b]) * column_step;
+          for (int a = 0; a < left; ++a) column[left_[a] * row_step] += factor * own[left_[a]];
+        }
+      }
+    }
+  }
+
+  void add_group() {
+    const CompiledEdges::Block* block = blocks_;
+    const double* left[kGroup];
+    const double* right[kGroup];
+    double factor[kGroup];
+    const AddRows add = kAddRows[rows_];
+    for (int i = 0; i < count_; ++i) {
+      const int own = columns(of_group_, i, left_);
+      const int own_begin = own > 0 ? left_[0] : 0,
+                own_size = own > 0 ? left_[own - 1] + 1 - own_begin : 0;
+      for (int r = 0; r < rows_ && own > 0; ++r) {
+        left[r] = row(i, row_[r]) + own_begin;
+        factor[r] = weight_[r] * error_[r];
+      }
+      if (own > 0) add(left, factor, own_size, gradient_ + slots_[i].gradient_offset + own_begin);
+      for (int j = i; j < count_; ++j, ++block) {
+        const int other = own == 0 ? 0 : columns(of_group_, j, right_);
+        if (other == 0) continue;
+        double* h = hessian_ + (*block >> 1);
+        const int begin = right_[0], size = right_[other - 1] + 1 - begin;
+        for (int r = 0; r < rows_; ++r) right[r] = row(j, row_[r]) + begin;
+        if ((*block & 1) != 0) {
+          for (int a = 0; a < own; ++a) {
+            for (int r = 0; r < rows_; ++r) factor[r] = weight_[r] * left[r][left_[a] - own_begin];
+            add(right, factor, size, h + std::ptrdiff_t(left_[a]) * width_[j] + begin);
+          }
+        } else {
+          for (int b = 0; b < other; ++b) {
+            for (int r = 0; r < rows_; ++r) factor[r] = weight_[r] * right[r][right_[b] - begin];
+            add(left, factor, own_size, h + std::ptrdiff_t(right_[b]) * width_[i] + own_begin);
+          }
+        }
+      }
+    }
+  }
+
+  const CompiledEdges::Slot* slots_;
+  int count_;  ///< of slots
+  const CompiledEdges::Block* blocks_;
+  double* const* jacobians_;  ///< by slot, stored row by row; null where a slot has none
+  double* hessian_;
+  double* gradient_;
+  int* width_;  ///< of each slot
+  int* word_;   ///< first word of each slot in a mask
+  Word *of_row_, *of_group_;
+  int *left_, *right_;  ///< columns
+  int rows_ = 0, row_[kGroup] = {};
+  double weight_[kGroup] = {}, error_[kGroup] = {};
 };
 }  // namespace
 
@@ -47,50 +242,12 @@ void add_product(int n, int a, int b, const double* weighted, const double* jaco
 void add_rows(const CompiledEdges& compiled, int k, int n, const double* error,
               const double* weights, double w, bool one_sided, double* const* jacobians,
               Scratch& scratch, double* hessian, double* gradient) {
-  const CompiledEdges::Slot* slots = compiled.slots.data() + compiled.slot_begin[k];
-  const int count = compiled.slot_begin[k + 1] - compiled.slot_begin[k];
-  RowEntries* entries = scratch.array<RowEntries>(count);
-  for (int s = 0; s < count; ++s) {
-    const int width = slots[s].pool->dimension(slots[s].vertex_index);
-    entries[s] = {width, 0, scratch.array<int>(width), scratch.array<double>(width)};
-  }
+  RowSum sum(compiled, k, jacobians, scratch, hessian, gradient);
   for (int r = 0; r < n; ++r) {
     const double weight = w * weights[r];
-    if (weight == 0.0 || (one_sided && error[r] == 0.0)) continue;
-    for (int s = 0; s < count; ++s) {
-      RowEntries& row = entries[s];
-      row.count = 0;
-      if (jacobians[s] == nullptr) continue;
-      const double* from = jacobians[s] + static_cast<std::ptrdiff_t>(r) * row.width;
-      for (int c = 0; c < row.width; ++c) {
-        if (from[c] == 0.0) continue;
-        row.column[row.count] = c;
-        row.value[row.count++] = from[c];
-      }
-    }
-    const CompiledEdges::Block* block = compiled.blocks.data() + compiled.block_begin[k];
-    for (int i = 0; i < count; ++i) {
-      const RowEntries& left = entries[i];
-      double* g = gradient + slots[i].gradient_offset;
-      for (int a = 0; a < left.count; ++a) g[left.column[a]] += weight * error[r] * left.value[a];
-      for (int j = i; j < count; ++j, ++block) {
-        const RowEntries& right = entries[j];
-        if (left.count == 0 || right.count == 0) continue;
-        double* h = hessian + (*block >> 1);
-        // Block (i, j) is width[i] × width[j], column-major; transposed where i comes later.
-        const bool transposed = (*block & 1) != 0;
-        const int row_step = transposed ? right.width : 1;
-        const int column_step = transposed ? 1 : left.width;
-        for (int b = 0; b < right.count; ++b) {
-          const double factor = weight * right.value[b];
-          double* column = h + static_cast<std::ptrdiff_t>(right.column[b]) * column_step;
-          for (int a = 0; a < left.count; ++a) {
-            column[left.column[a] * row_step] += factor * left.value[a];
-          }
-        }
-      }
-    }
+    if (weight != 0.0 && !(one_sided && error[r] == 0.0)) sum.add(r, weight, error[r]);
   }
+  sum.flush();
 }
 
 }  // namespace locograph::detail

@@ -16,8 +16,9 @@ void bend_weighted(int n, int d, const double* information, const double* error,
 /// block (a × b) += W J, of W (a × n) and J (n × b); its transpose into (b × a) if asked.
 void add_product(int n, int a, int b, const double* weighted, const double* jacobian,
                  bool transposed, double* block);
-/// The same of edge k with diagonal Ω, row by row and over the entries that are not zero:
-/// H += w Ω_r gᵀg, b += w Ω_r e_r g, of the rows g of its Jacobians (n × d, stored row by row).
+/// The same of edge k with diagonal Ω, over the entries that are not zero: H += w Ω_r gᵀg,
+/// b += w Ω_r e_r g, of the rows g of its Jacobians (n × d, stored row by row). Rows one after the
+/// other that have nearly the same columns, as those of one foot, are added together.
 void add_rows(const CompiledEdges& compiled, int k, int n, const double* error,
               const double* weights, double w, bool one_sided, double* const* jacobians,
               Scratch& scratch, double* hessian, double* gradient);

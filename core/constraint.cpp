@@ -12,8 +12,8 @@ void constrain_error(const ConstraintRow* rows, int n, double* e) {
 void constrain_jacobian(const ConstraintRow* rows, int n, int d, const double* e, double* jacobian,
                         bool by_row, bool hinged) {
   for (int r = 0; r < n; ++r) {
-    const bool inside = rows[r].one_sided && e[r] == 0.0;
-    if (inside ? hinged : rows[r].scale == 1.0) continue;
+    const bool zero = e[r] == 0.0, inside = rows[r].one_sided && zero;
+    if (hinged ? zero : !inside && rows[r].scale == 1.0) continue;
     for (int c = 0; c < d; ++c) {
       double& entry = jacobian[by_row ? r * d + c : c * n + r];
       entry = inside ? 0.0 : entry * rows[r].scale;

@@ -87,10 +87,11 @@ class EdgeEvaluator {
          FixedSequence());
   }
 
-  /// jacobians: one data pointer for each slot; null for the slots nobody asks for.
-  void jacobians(double* const* jacobians) const {
+  /// jacobians: one data pointer for each slot; null for the slots nobody asks for. Given `active`,
+  /// one number for each row, the rows with a zero there may be left as they are.
+  void jacobians(double* const* jacobians, const double* active = nullptr) const {
     if constexpr (has_analytic()) {
-      call_analytic(jacobians, FixedSequence());
+      call_analytic(jacobians, active, FixedSequence());
     } else {
       each_slot([&]<class V>(std::type_identity<V>, int slot) {
         if (jacobians[slot] == nullptr) return;
@@ -198,19 +199,25 @@ class EdgeEvaluator {
  private:
   template <int I>
   Eigen::Map<JacobianMatrix<E, FixedVertex<E, I>::kDimension>> fixed_map(
-      double* const* jacobians) const {
+      double* const* jacobians, const double* active) const {
     using M = JacobianMatrix<E, FixedVertex<E, I>::kDimension>;
     const int d = vertex_of<FixedVertex<E, I>>(slots_[I]).dimension();
     double* data = jacobians[I];
     if (data == nullptr)
       data = x_.scratch->array<double>(static_cast<std::size_t>(dimension()) * d);
     Eigen::Map<M> map(data, dimension(), d);
-    if constexpr (kHasWeights<E>) map.setZero();
+    if constexpr (kHasWeights<E>) {
+      // Of hundreds of limits few are reached.
+      for (int r = 0; r < dimension(); ++r) {
+        if (active == nullptr || active[r] != 0.0) map.row(r).setZero();
+      }
+    }
     return map;
   }
 
   template <int... I>
-  void call_analytic(double* const* jacobians, std::integer_sequence<int, I...> sequence) const {
+  void call_analytic(double* const* jacobians, [[maybe_unused]] const double* active,
+                     std::integer_sequence<int, I...> sequence) const {
     if constexpr (E::kDynamicArity) {
       JacobianMap* maps = static_cast<JacobianMap*>(
           static_cast<void*>(x_.scratch->array<std::byte>(slots_.size() * sizeof(JacobianMap))));
@@ -232,7 +239,7 @@ class EdgeEvaluator {
       call(
           [&](auto&&... views) {
             edge_.jacobians(std::forward<decltype(views)>(views)...,
-                            FixedJacobian<I>(fixed_map<I>(jacobians))...);
+                            FixedJacobian<I>(fixed_map<I>(jacobians, active))...);
           },
           slots_, sequence);
     }

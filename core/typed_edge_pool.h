@@ -87,6 +87,7 @@ class TypedEdgePool final : public EdgePool {
       const ConstraintRow* rows = constraint_rows(compiled, k, x);
       if (rows != nullptr) {
         std::copy_n(e.data(), edge.dimension(), x.constraint_errors + compiled.constraint_row[k]);
+        if (kHinged && all_zero(e.data(), edge.dimension())) continue;
         constrain_error(rows, edge.dimension(), e.data());
       }
       const double chi2 = weighted_square(edge, e.data());
@@ -302,6 +303,11 @@ class TypedEdgePool final : public EdgePool {
     return doubles * sizeof(double) + own.size() * (sizeof(CompiledEdges::Slot) + 512) + 8192;
   }
 
+  /// Of a hinged type: inside all of its limits. It has no shifts (constraint.h), and its cost is 0.
+  static bool all_zero(const double* e, int n) {
+    return std::all_of(e, e + n, [](double row) { return row == 0.0; });
+  }
+
   static double weighted_square(const E& edge, const double* e) {
     const int n = edge.dimension();
     double sum = 0.0;
@@ -333,7 +339,9 @@ class TypedEdgePool final : public EdgePool {
     detail::LocalMatrix<Error> e = detail::make_local<Error>(n, 1, *x.scratch);
     const ConstraintRow* rows = constraint_rows(compiled, k, x);
     if (rows != nullptr) {
-      std::copy_n(x.constraint_errors + compiled.constraint_row[k], n, e.data());
+      const double* errors = x.constraint_errors + compiled.constraint_row[k];
+      if (kHinged && all_zero(errors, n)) return {};
+      std::copy_n(errors, n, e.data());
       constrain_error(rows, n, e.data());
     } else {
       evaluator.error(e);
@@ -355,7 +363,7 @@ class TypedEdgePool final : public EdgePool {
                     ? nullptr
                     : x.scratch->array<double>(static_cast<std::size_t>(n) * d);
     });
-    evaluator.jacobians(data);
+    evaluator.jacobians(data, kHinged ? e.data() : nullptr);
     if (rows != nullptr) {
       evaluator.each_slot([&]<class V>(std::type_identity<V>, int s) {
         if (data[s] == nullptr) return;

@@ -12,6 +12,7 @@
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/plugins/robot_types.h>
 #include <locograph/plugins/rolling/edge_rolling.h>
+#include <locograph/plugins/rolling/edge_steering_slip.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
 #include <locograph/plugins/static_balance/edge_balance.h>
 #include <locograph/plugins/static_balance/edge_contact_wrench.h>
@@ -56,6 +57,7 @@ void add_robot_types(TypeRegistry& types) {
   types.add_edge<EdgeRestAccelerationLimitsTimedSigned>();
   types.add_edge<EdgeRolling>();
   types.add_edge<EdgeSelfCollision>();
+  types.add_edge<EdgeSteeringSlip>();
   types.add_edge<EdgeSweptObstacleDistance>();
   types.add_edge<EdgeTimeStepLimits>();
   types.add_edge<EdgeTimeStepLimitsSigned>();

@@ -11,6 +11,7 @@
 #include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/plugins/rolling/edge_rolling.h>
+#include <locograph/plugins/rolling/edge_steering_slip.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
 #include <locograph/plugins/static_balance/edge_balance.h>
 #include <locograph/plugins/static_balance/edge_contact_wrench.h>
@@ -365,6 +366,14 @@ void Rolling(benchmark::State& run, bool linearise) {
 }
 BENCHMARK_CAPTURE(Rolling, error, false);
 BENCHMARK_CAPTURE(Rolling, linearise, true);
+
+void SteeringSlip(benchmark::State& run, bool linearise) {
+  Drive drive(true);
+  drive.add_binary(EdgeSteeringSlip(drive.stance(), kStance, 0.0, 1e4));
+  measure(run, drive, linearise);
+}
+BENCHMARK_CAPTURE(SteeringSlip, error, false);
+BENCHMARK_CAPTURE(SteeringSlip, linearise, true);
 
 void PlanTracking(benchmark::State& run, bool linearise) {
   Drive drive(true);

@@ -14,12 +14,14 @@ struct LocalPlanner::Multiplier {
 
 namespace {
 
+/// Constraints weigh up to 1e5 times as much as tracking: λ must begin far below either.
+constexpr double kLeastLambda = 1e-10;
+
 OptimiserOptions optimiser_options(const LocalPlannerOptions& options) {
   OptimiserOptions result;
   result.max_iterations = options.max_iterations;
   result.gain = options.gain;
-  // Constraints weigh up to 1e5 times as much as tracking: λ must begin far below either.
-  result.initial_lambda = 1e-10;
+  result.initial_lambda = kLeastLambda;
   return result;
 }
 
@@ -46,6 +48,8 @@ LocalPlanner::LocalPlanner(Graph& graph, const LocalPlannerOptions& options)
       reader_(workspace_),
       solver_(make_linear_solver("auto")),
       optimiser_(optimiser_options(options)),
+      lambda_(kLeastLambda),
+      lambda_aside_(kLeastLambda),
       detour_(plan_.robot, options.detour) {
   options.validate();
   for (const auto& stance : plan_.stance_from) {
@@ -58,8 +62,14 @@ LocalPlanner::LocalPlanner(Graph& graph, const LocalPlannerOptions& options)
   index_of_slot_.assign(static_cast<std::size_t>(graph_.vertex_slots()), -1);
   for (int i = 0; i < plan_size(); ++i) index_of_slot_[plan_.slots[i]] = i;
   unfinished_.resize(planned_.size());
-  // Builds the lists of edges of all vertices now rather than in the first cycle.
-  graph_.incident_edges(plan_.slots.front());
+  // Memory, the lists of edges and the order of elimination now rather than in the first cycle.
+  CycleReport first;
+  first.window = std::min(options_.horizon, plan_size() - 1);
+  if (first.window < 1) return;
+  compile(first);
+  workspace_.load_state();
+  optimiser_.start(workspace_, *solver_);
+  optimiser_.iterate();
 }
 
 LocalPlanner::~LocalPlanner() = default;
@@ -77,26 +87,45 @@ Eigen::Map<const Eigen::VectorXd> LocalPlanner::configuration(int index) const {
 void LocalPlanner::show(const WorldDistance& world) {
   plan_.world->now = world;
   detour_.forget();
+  detour_not_before_ = 0;
 }
 
-/// Configurations new to the window: as planned, moved along with the one before them.
+/// A configuration that goes on from the two before it: as the plan does, and away from it as they
+/// do, wheels rolling. Steered wheels cannot return to the plan at once.
+Eigen::VectorXd LocalPlanner::go_on(int i, const Eigen::VectorXd& last,
+                                    const Eigen::VectorXd* before_last) const {
+  const Robot& robot = *plan_.robot->robot;
+  Eigen::VectorXd step(robot.tangent_size()), planned(robot.tangent_size());
+  robot.difference(planned_[i - 1].data(), planned_[i].data(), step.data());
+  if (before_last != nullptr) {
+    Eigen::VectorXd made(robot.tangent_size());
+    robot.difference(planned_[i - 2].data(), planned_[i - 1].data(), planned.data());
+    robot.difference(before_last->data(), last.data(), made.data());
+    for (const int along_the_ground : {0, 1, 5}) {
+      step[along_the_ground] += made[along_the_ground] - planned[along_the_ground];
+    }
+  }
+  Eigen::VectorXd q(last.size());
+  robot.integrate(last.data(), step.data(), q.data());
+  WheelMotion(robot, plan_.stance_from[static_cast<std::size_t>(i) - 1]->stance).roll(last, q);
+  return q;
+}
+
 void LocalPlanner::enter(int executed, int last) {
-  const int base = plan_.robot->robot->base_configuration_size();
-  const auto move_along = [&](int i, const auto& before, auto& q) {
-    q.template head<3>() += before.template head<3>() - planned_[i - 1].head<3>();
-    q.tail(q.size() - base) += before.tail(q.size() - base) - planned_[i - 1].tail(q.size() - base);
-  };
   for (int i = std::max(entered_, executed) + 1; i <= last; ++i) {
     if (is_fixed(i)) continue;
-    Eigen::Map<Eigen::VectorXd> q = configuration(i);
-    move_along(i, Eigen::VectorXd(configuration(i - 1)), q);
+    const Eigen::VectorXd before = configuration(i - 1);
+    const Eigen::VectorXd before_that = configuration(std::max(0, i - 2));
+    configuration(i) = go_on(i, before, i > 1 ? &before_that : nullptr);
   }
   entered_ = std::max(entered_, last);
   if (unfinished_end_ <= executed + 1) unfinished_end_ = 0;
   for (; unfinished_end_ > 0 && unfinished_end_ <= last; ++unfinished_end_) {
     const int i = unfinished_end_;
-    unfinished_[i] = planned_[i];
-    if (!is_fixed(i)) move_along(i, unfinished_[i - 1], unfinished_[i]);
+    const Eigen::VectorXd before_that =
+        i - 2 > executed ? unfinished_[i - 2] : configuration(std::max(0, i - 2));
+    unfinished_[i] =
+        is_fixed(i) ? planned_[i] : go_on(i, unfinished_[i - 1], i > 1 ? &before_that : nullptr);
   }
 }
 
@@ -190,8 +219,12 @@ WindowQuality LocalPlanner::read(double cost) const {
   return window_quality(reader_, step_of_, steps_, cost);
 }
 
-/// Of the state that was evaluated last.
+/// Of the state that was evaluated last. Whether it is the best window so far.
 bool LocalPlanner::take_if_better(const WindowQuality& quality) {
+  if (nearest_state_.empty() || quality.worst.ratio < nearest_.worst.ratio) {
+    nearest_ = quality;
+    nearest_state_ = workspace_.state();
+  }
   if (!best_state_.empty() && !quality.better_than(best_)) return false;
   best_ = quality;
   best_state_ = workspace_.state();
@@ -204,20 +237,54 @@ void LocalPlanner::store_best() {
   workspace_.store_state();
 }
 
+/// A cycle goes on near where the last one was: a step that was refused there will be here.
+void LocalPlanner::learn_lambda(double& lambda) {
+  constexpr double kChange = 10.0;
+  const OptimiserResult& result = optimiser_.result();
+  if (result.statistics.empty()) return;
+  const IterationStatistics& first = result.statistics.front();
+  diagonal_.resize(workspace_.step().size());
+  workspace_.diagonal(diagonal_);
+  const double unit = *std::max_element(diagonal_.begin(), diagonal_.end());
+  if (result.iterations == 0 && result.reason == OptimiserResult::Reason::kDeadline) {
+    lambda = std::max(kChange * lambda, optimiser_.options().refused_lambda);
+  } else {
+    lambda = std::max(kLeastLambda, first.refusals > 0 ? first.lambda / unit : lambda / kChange);
+  }
+}
+
+/// The last iteration; one that took no step gained much: nobody knows yet.
+bool LocalPlanner::gained_little() const {
+  const OptimiserResult& result = optimiser_.result();
+  const std::vector<IterationStatistics>& steps = result.statistics;
+  if (result.iterations == 0 || steps.empty()) return false;
+  const double before = steps.size() > 1 ? steps[steps.size() - 2].cost : result.initial.robust;
+  return before - steps.back().cost <= options_.feasible_gain * before;
+}
+
+/// Whether the last iteration left a feasible window and gained little.
+bool LocalPlanner::good_enough() const {
+  return gained_little() && read(optimiser_.result().final.robust).feasible();
+}
+
 /// From the state of the workspace; whether it ends in a better window than the best one so far.
 /// The state it begins with counts as well.
-bool LocalPlanner::optimise(CycleReport& report, const Deadline& deadline) {
+bool LocalPlanner::optimise(CycleReport& report, const Deadline& deadline, double& lambda) {
   Stopwatch watch;
+  optimiser_.options().initial_lambda = lambda;
   optimiser_.start(workspace_, *solver_);
   bool better = take_if_better(read(optimiser_.result().initial.robust));
-  // However little time there is, a cycle makes one step.
-  optimiser_.options().deadline = first_iteration_ && deadline.passed() ? Deadline() : deadline;
+  // However little time there is, a cycle makes one step, or tries to.
+  constexpr double kOneStep_s = 1e-4;
+  optimiser_.options().deadline =
+      first_iteration_ && deadline.passed() ? Deadline::after(kOneStep_s) : deadline;
   const bool more = optimiser_.iterate();
   first_iteration_ = false;
   optimiser_.options().deadline = deadline;
-  while (more && optimiser_.iterate()) {
+  while (more && !good_enough() && optimiser_.iterate()) {
   }
   const OptimiserResult& result = optimiser_.result();
+  learn_lambda(lambda);
   cut_short_ = result.reason == OptimiserResult::Reason::kDeadline;
   report.iterations += result.iterations;
   for (const IterationStatistics& step : result.statistics) {
@@ -294,12 +361,14 @@ void LocalPlanner::search_detour(CycleReport& report, const Deadline& deadline) 
     cut_short_ = true;
     return;
   }
-  if (!found || !optimise(report, deadline) || cut_short_) {
-    detour_not_before_ = report.executed + 1 + options_.detour_pause;
-  }
+  if (!found || !optimise(report, deadline, lambda_aside_) || cut_short_) wait_with_detours(report);
 }
 
-/// Goes on from the best window with what it violates raised.
+void LocalPlanner::wait_with_detours(const CycleReport& report) {
+  detour_not_before_ = report.executed + 1 + options_.detour_pause;
+}
+
+/// Goes on from the window that violates least, however early, with what it violates raised.
 void LocalPlanner::raise_constraints(CycleReport& report, const Deadline& deadline) {
   const Stopwatch watch;
   ConstrainedOptions raising;
@@ -312,16 +381,17 @@ void LocalPlanner::raise_constraints(CycleReport& report, const Deadline& deadli
   raising.tolerance = ViolationOptions().tolerance;
   raising.growth = options_.raise;
   raising.max_penalty = options_.max_raise;
-  workspace_.state() = best_state_;
+  workspace_.state() = nearest_state_;
   const ConstrainedResult result = optimise_constrained(workspace_, raising, *solver_, true);
   cut_short_ = result.inner.reason == OptimiserResult::Reason::kDeadline;
   report.iterations += result.iterations;
   report.rounds = result.rounds;
-  if (take_if_better(read(result.inner.final.robust)) || cut_short_) keep_multipliers();
+  take_if_better(read(result.inner.final.robust));
+  keep_multipliers();
   report.time_optimise += watch.seconds();
 }
 
-/// What the last cycle had no time to finish: from there, rather than from what it handed out.
+/// What the last cycle could not finish: from there, rather than from what it handed out.
 void LocalPlanner::load_unfinished(const CycleReport& report) {
   if (unfinished_end_ == 0) return;
   take_if_better(read(workspace_.evaluate(workspace_.state()).robust));
@@ -333,7 +403,11 @@ void LocalPlanner::load_unfinished(const CycleReport& report) {
 
 void LocalPlanner::keep_unfinished(const CycleReport& report) {
   unfinished_end_ = 0;
-  if (!cut_short_ || workspace_.state() == best_state_) return;
+  if (!cut_short_) {
+    if (best_.feasible()) return;
+    workspace_.state() = nearest_state_;
+  }
+  if (workspace_.state() == best_state_) return;
   workspace_.store_state();
   unfinished_end_ = report.executed + report.window + 1;
   for (int i = report.executed + 1; i < unfinished_end_; ++i) unfinished_[i] = configuration(i);
@@ -352,6 +426,7 @@ CycleReport LocalPlanner::cycle(int executed) {
   const int last = std::min(executed + options_.horizon, plan_size() - 1);
   report.window = last - executed;
   best_state_.clear();
+  nearest_state_.clear();
   first_iteration_ = true;
 
   const Stopwatch watch;
@@ -360,23 +435,25 @@ CycleReport LocalPlanner::cycle(int executed) {
   workspace_.load_state();
   report.time_compile = watch.seconds();
 
+  const bool goes_on = unfinished_end_ > 0;
   load_unfinished(report);
-  if (detour_due_ && executed >= detour_not_before_) {
+  if (detour_due_) {
     cut_short_ = false;
     take_if_better(read(workspace_.evaluate(workspace_.state()).robust));
     search_detour(report, deadline);
   } else {
-    optimise(report, deadline);
-    detour_due_ = cut_short_ && !best_.feasible();
+    optimise(report, deadline, goes_on ? lambda_aside_ : lambda_);
+    if (cut_short_ && goes_on) wait_with_detours(report);  // it may take some cycles more
+    detour_due_ = cut_short_ && !goes_on && !best_.feasible();
   }
   if (!cut_short_) {
     store_best();
-    const bool blocked = executed >= detour_not_before_ && behind_m(last) > options_.blocked_m;
-    if (!report.detour && (!best_.feasible() || blocked) && !deadline.passed()) {
-      search_detour(report, deadline);
-    }
+    const bool wanted = !best_.feasible() || behind_m(last) > options_.blocked_m;
+    const bool waits = executed < detour_not_before_ && (goes_on || best_.feasible());
+    if (!report.detour && wanted && !waits && !deadline.passed()) search_detour(report, deadline);
     if (!cut_short_ && !best_.feasible() && options_.max_rounds > 0 && !deadline.passed()) {
       raise_constraints(report, deadline);
+      wait_with_detours(report);
     }
   }
   keep_unfinished(report);

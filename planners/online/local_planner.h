@@ -12,14 +12,14 @@
 /// belong to them alone, and holds the rest: what was executed is seen through the edges that reach
 /// back to it (rolling, velocity, acceleration), what lies behind the window is not. A few
 /// Levenberg-Marquardt steps start from the last cycle's result; a configuration that enters the
-/// window is moved along with the one before it. If constraints are still violated, or the window
+/// window goes on from those before it. If constraints are still violated, or the window
 /// falls behind the plan, a detour is searched (detour_search.h) and optimised from there. What
 /// then is violated is raised by the augmented Lagrangian of core, whose multipliers stay with
 /// their edges from cycle to cycle.
 ///
 /// Constraints are whatever the edges of the graph say (core/violations.h), those of plug-ins too.
 /// The graph only ever gets a window that is better than the one it had (window_quality.h), at a
-/// deadline as well: what a deadline cut short is gone on with in the next cycle, aside. A cycle
+/// deadline as well: what is not better yet is gone on with in the next cycle, aside. A cycle
 /// ends at most one iteration after its deadline. Constraints that cannot be met are reported, with
 /// place and size; nothing is handed out as feasible that is not.
 ///
@@ -38,14 +38,15 @@ namespace locograph {
 
 struct LocalPlannerOptions {
   int horizon = 20;
-  double deadline_s = 0.0;  ///< for one cycle; 0: none
-  int max_iterations = 15;  ///< of one optimisation
-  int max_rounds = 3;       ///< of the augmented Lagrangian, after the first optimisation
-  double raise = 10.0;      ///< growth of a penalty from round to round
-  double max_raise = 1e4;   ///< to which they grow, in all cycles together
-  double gain = 1e-4;       ///< see OptimiserOptions
-  double blocked_m = 0.05;  ///< behind the plan at the end of the window: look for a detour
-  int detour_pause = 4;     ///< cycles to wait after a detour that did not help, unless violated
+  double deadline_s = 0.0;      ///< for one cycle; 0: none
+  int max_iterations = 15;      ///< of one optimisation
+  int max_rounds = 3;           ///< of the augmented Lagrangian, after the first optimisation
+  double raise = 10.0;          ///< growth of a penalty from round to round
+  double max_raise = 1e4;       ///< to which they grow, in all cycles together
+  double gain = 1e-3;           ///< see OptimiserOptions
+  double feasible_gain = 0.03;  ///< of one iteration that ends in a feasible window: enough
+  double blocked_m = 0.05;      ///< behind the plan at the end of the window: look for a detour
+  int detour_pause = 4;         ///< cycles to wait after a detour that did not help at once
   DetourOptions detour;
 
   void validate() const;
@@ -97,6 +98,11 @@ class LocalPlanner {
  private:
   struct Multiplier;
 
+  Eigen::VectorXd go_on(int i, const Eigen::VectorXd& last,
+                        const Eigen::VectorXd* before_last) const;
+  bool gained_little() const;
+  bool good_enough() const;
+  void learn_lambda(double& lambda);
   void enter(int executed, int last);
   void gather_window(int executed, int last);
   int configuration_of(int slot) const;
@@ -106,8 +112,9 @@ class LocalPlanner {
   WindowQuality read(double cost) const;
   bool take_if_better(const WindowQuality& quality);
   void store_best();
-  bool optimise(CycleReport& report, const Deadline& deadline);
+  bool optimise(CycleReport& report, const Deadline& deadline, double& lambda);
   void search_detour(CycleReport& report, const Deadline& deadline);
+  void wait_with_detours(const CycleReport& report);
   bool apply_detour(const CycleReport& report, const Deadline& deadline);
   void raise_constraints(CycleReport& report, const Deadline& deadline);
   void load_unfinished(const CycleReport& report);
@@ -129,15 +136,18 @@ class LocalPlanner {
   ConstraintReader reader_;
   std::unique_ptr<LinearSolver> solver_;
   Optimiser optimiser_;
+  double lambda_;        ///< that a cycle begins with, in units of the largest diagonal entry
+  double lambda_aside_;  ///< the same for what is not handed out yet
+  std::vector<double> diagonal_;
   DetourSearch detour_;
   std::vector<int> window_, held_;
-  std::vector<int> step_of_;  ///< of the constraints, see window_quality()
-  int steps_ = 0;             ///< of the window
-  WindowQuality best_;
-  std::vector<double> best_state_;
+  std::vector<int> step_of_;      ///< of the constraints, see window_quality()
+  int steps_ = 0;                 ///< of the window
+  WindowQuality best_, nearest_;  ///< of this cycle: what is handed out; what violates least
+  std::vector<double> best_state_, nearest_state_;
   bool cut_short_ = false;                   ///< the last optimisation, by the deadline
   bool first_iteration_ = true;              ///< of the cycle: no deadline prevents it
-  std::vector<Eigen::VectorXd> unfinished_;  ///< what a deadline cut short, by index in the plan
+  std::vector<Eigen::VectorXd> unfinished_;  ///< what was worse than what was handed out, by index
   int unfinished_end_ = 0;                   ///< one behind its last configuration; 0: none
   std::vector<Multiplier> multipliers_;      ///< by edge slot, ascending
 };

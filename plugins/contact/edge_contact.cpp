@@ -18,6 +18,13 @@ void EdgeContact::jacobians(const ConfigurationState& q, JacobianRef<EdgeContact
   contact->closure.add_jacobian(q.kinematics, j.data(), j.outerStride());
 }
 
+double EdgeContact::row_tolerance(int row) const {
+  const bool angle = contact->kind() == ContactKind::kWheel
+                         ? row > 0
+                         : contact->closure.held()[static_cast<std::size_t>(row)] >= 3;
+  return angle ? kAngleTolerance : kPositionTolerance;
+}
+
 RowLabel EdgeContact::row_label(int row) const {
   const std::string& name = contact->contact.name();
   if (contact->kind() == ContactKind::kWheel) {

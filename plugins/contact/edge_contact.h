@@ -19,7 +19,8 @@ namespace locograph {
 struct EdgeContact : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
   static constexpr std::string_view kTag = "EDGE_CONTACT";
   static constexpr ConstraintKind kConstraint = ConstraintKind::kEquality;
-  static constexpr double kTolerance = 3e-5;  ///< m, rad; the judge allows 1e-4 m and 1e-3 rad
+  /// m, rad; the judge allows 1e-4 m and 1e-3 rad.
+  static constexpr double kPositionTolerance = 3e-5, kAngleTolerance = 3e-4;
   int contact_number = 0;
   std::shared_ptr<const ContactParameter> contact;  ///< looked up by bind()
   auto fields() { return std::tie(contact_number); }
@@ -33,6 +34,7 @@ struct EdgeContact : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
 
   void error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const ConfigurationState& q, JacobianRef<EdgeContact, 0> j) const;
+  double row_tolerance(int row) const;
   RowLabel row_label(int row) const;
 };
 LOCOGRAPH_REGISTER_EDGE(EdgeContact::kTag, EdgeContact)

@@ -1,4 +1,5 @@
 #include <locograph/plugins/rolling/edge_rolling.h>
+#include <locograph/plugins/rolling/rolling_step.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,42 +22,6 @@ struct RollingPose : WheelPose {
         upright(q.kinematics.world_from_link(wheel.carrier).linear() * wheel.upright_in_carrier),
         pitch(std::atan2(normal.cross(upright).dot(axle), normal.dot(upright))),
         spin(wheel.joint < 0 ? 0.0 : q.joint(wheel.joint)) {}
-};
-
-Eigen::Vector3d in_plane(const Eigen::Vector3d& v, const Eigen::Vector3d& normal) {
-  return v - normal.dot(v) * normal;
-}
-
-/// What the two poses of a wheel have between them.
-struct WheelStep {
-  Eigen::Vector3d moved;     ///< of the centre, in the plane
-  Eigen::Vector3d from, to;  ///< the axles' parts in the plane
-  Eigen::Vector3d axle;      ///< midway between them, unit
-  double length;             ///< of the sum of `from` and `to`; 0: opposite, they have no middle
-  double turned;             ///< the angle between them about the normal; 0 up to a quarter turn
-  double lateral;            ///< moved · axle
-  double beyond_quarter_turn;
-
-  WheelStep(const RollingPose& a, const RollingPose& b, const Eigen::Vector3d& normal)
-      : moved(in_plane(b.centre - a.centre, normal)),
-        from(in_plane(a.axle, normal)),
-        to(in_plane(b.axle, normal)) {
-    const Eigen::Vector3d sum = from + to;
-    length = sum.norm();
-    constexpr double kOpposite = 1e-6;
-    if (length < kOpposite) length = 0.0;
-    axle = length > 0.0 ? Eigen::Vector3d(sum / length) : normal.cross(from).stableNormalized();
-    const double cosine = from.dot(to);
-    turned = cosine < 0.0 ? std::atan2(normal.dot(from.cross(to)), cosine) : 0.0;
-    lateral = moved.dot(axle);
-    beyond_quarter_turn = std::max(0.0, std::abs(turned) - 0.5 * std::numbers::pi);
-  }
-
-  /// The derivative of v · axle by either axle.
-  Eigen::Vector3d by_axle(const Eigen::Vector3d& v) const {
-    if (length == 0.0) return Eigen::Vector3d::Zero();
-    return (v - axle.dot(v) * axle) / length;
-  }
 };
 
 double nearest_turn(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
@@ -105,16 +70,15 @@ void EdgeRolling::error(const ConfigurationState& a, const ConfigurationState& b
     const Wheel& wheel = standing.wheel;
     const Eigen::Vector3d& normal = standing.normal;
     const RollingPose from(a, wheel, normal), to(b, wheel, normal);
-    const WheelStep step(from, to, normal);
-    const double along = step.moved.dot(step.axle.cross(normal));
+    const RollingStep step(from, to, normal);
     const double spun = to.spin - from.spin;
     e[row++] =
         step.lateral + std::copysign(wheel.radius_m * step.beyond_quarter_turn, step.lateral);
     if (standing.locked) {
-      e[row++] = along;
+      e[row++] = step.way;
       e[row++] = wheel.radius_m * spun;
     } else {
-      e[row++] = along - wheel.radius_m * (spun + nearest_turn(to.pitch - from.pitch));
+      e[row++] = step.way - wheel.radius_m * (spun + nearest_turn(to.pitch - from.pitch));
     }
   }
 }
@@ -126,11 +90,8 @@ void EdgeRolling::jacobians(const ConfigurationState& a, const ConfigurationStat
     const Wheel& wheel = standing.wheel;
     const Eigen::Vector3d& normal = standing.normal;
     const RollingPose from(a, wheel, normal), to(b, wheel, normal);
-    const WheelStep step(from, to, normal);
-    const Eigen::Vector3d heading = step.axle.cross(normal);
-    // Δc · (ā × n) = ā · (n × Δc)
-    const Eigen::Vector3d along = step.by_axle(step.moved),
-                          across = step.by_axle(normal.cross(step.moved));
+    const RollingStep step(from, to, normal);
+    const Eigen::Vector3d along = step.by_axle(step.moved);
     const double flip =
         step.beyond_quarter_turn > 0.0
             ? std::copysign(1.0, step.lateral) * std::copysign(wheel.radius_m, step.turned)
@@ -142,13 +103,9 @@ void EdgeRolling::jacobians(const ConfigurationState& a, const ConfigurationStat
       kinematics.add_point_gradient(wheel.carrier, pose.centre, step.axle, sign, lateral);
       kinematics.add_axis_gradient(wheel.carrier, pose.axle, along, 1.0, lateral);
       if (flip != 0.0) {
-        // An angle θ about n of a vector a in the plane changes by (n × a) · da / |a|².
-        const Eigen::Vector3d flat = in_plane(pose.axle, normal);
-        kinematics.add_axis_gradient(wheel.carrier, pose.axle, normal.cross(flat),
-                                     sign * flip / flat.squaredNorm(), lateral);
+        add_turn_gradient(kinematics, wheel, pose, normal, sign * flip, lateral);
       }
-      kinematics.add_point_gradient(wheel.carrier, pose.centre, heading, sign, longitudinal);
-      kinematics.add_axis_gradient(wheel.carrier, pose.axle, across, 1.0, longitudinal);
+      step.add_way_gradient(kinematics, wheel, pose, normal, sign, 1.0, longitudinal);
       const int joint = q.model().base_tangent_size() + wheel.joint;
       if (standing.locked) {
         if (wheel.joint >= 0) (longitudinal + stride)[joint] += sign * wheel.radius_m;

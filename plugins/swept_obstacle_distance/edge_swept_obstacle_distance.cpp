@@ -56,11 +56,13 @@ struct Worst {
 /// √(ρ² + h²) and its derivative, for a way relative to what is to be avoided.
 struct Padding {
   double value;
+  double to_last_sample;  ///< from the middle of the way
   Eigen::Vector3d slope;
 
   Padding(double rho, const Eigen::Vector3d& way, double turn, int samples) {
     const double length = way.norm(), half_gap = (length + turn) / (2.0 * samples);
     value = std::sqrt(rho * rho + half_gap * half_gap);
+    to_last_sample = 0.5 * (length + turn) - half_gap;
     slope.setZero();
     if (length > 0.0) slope = half_gap / (2.0 * samples * value * length) * way;
   }
@@ -115,8 +117,12 @@ class Step {
     const Eigen::Vector3d way = b_.sphere_centres[sphere] - from;
     const Padding at_rest(rho, way, 0.0, samples_);
     if (world_.map && !world_.map->empty()) {
-      try_samples(from, way, at_rest, worst,
-                  [&](const Eigen::Vector3d& point, double) { return world_.map->sample(point); });
+      const auto sample = [&](const Eigen::Vector3d& point, double) {
+        return world_.map->sample(point);
+      };
+      if (!keeps_away(world_.map->distance(from + 0.5 * way), at_rest)) {
+        try_samples(from, way, at_rest, worst, sample);
+      }
     }
     for (const Obstacle& obstacle : world_.obstacles) {
       const auto sample = [&](const Eigen::Vector3d& point, double fraction) {
@@ -130,6 +136,11 @@ class Step {
       }
     }
     return worst;
+  }
+
+  /// No sample can be nearer than that, from the distance in the middle of the way.
+  static bool keeps_away(double in_middle, const Padding& padding) {
+    return in_middle - padding.to_last_sample >= padding.value;
   }
 
   template <class Sample>

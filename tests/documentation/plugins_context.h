@@ -62,6 +62,14 @@ constexpr int kRobotNumber = 0;
 namespace rolling_edge_rolling_h {
 extern const std::shared_ptr<const StanceParameter> stance;
 }
+namespace rolling_edge_steering_slip_h {
+extern const std::shared_ptr<const StanceParameter> stance;
+}
+namespace rolling_rolling_step_h {
+extern const ConfigurationState a, b;
+extern const Wheel wheel;
+extern const Eigen::Vector3d normal;
+}  // namespace rolling_rolling_step_h
 namespace self_collision_nearest_points_h {
 extern const Eigen::Vector3d a_from, a_to, b_from, b_to;
 }

@@ -175,6 +175,12 @@ const BadLine kBadLines[] = {
      "EDGE_ROLLING with n = 1, expected n = 2"},
     {"RollingWithTooManyRows", "EDGE_ROLLING 0 1 3 5 scalar 1",
      "EDGE_ROLLING with n = 3, expected n = 2"},
+    {"SteeringSlipOnAContact", "EDGE_STEERING_SLIP 0 1 1 3 0.002 scalar 1",
+     "parameter 3 is a PARAMS_CONTACT"},
+    {"SteeringSlipWithTooManyRows", "EDGE_STEERING_SLIP 0 1 2 5 0.002 scalar 1",
+     "EDGE_STEERING_SLIP with n = 2, expected n = 1"},
+    {"SteeringSlipBelowNothing", "EDGE_STEERING_SLIP 0 1 1 5 -0.002 scalar 1",
+     "expected 0 m or more"},
     {"RollingWithAMisspeltWord", "EDGE_ROLLING 0 1 2 5 Diagonal 1 1",
      "weights begin with 'Diagonal'"},
     // EDGE_PLAN_TRACKING

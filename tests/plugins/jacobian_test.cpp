@@ -158,6 +158,7 @@ TEST_P(WheelJacobianOf, RollingIsThatOfNumericDifferences) {
   for (Contact& wheel : robot.wheels) wheel.normal = Eigen::Vector3d(0, 0, 3) + random.direction();
   robot.wheels[2].locked = true;
   compare_pairs(rolling_of(graph_of(robot)), 0.5, 0.8, 0.4);
+  compare_pairs(steering_slip_of(graph_of(robot), 0.0), 0.5, 0.8, 0.4);
 }
 
 void compare_distances(const RobotCase& robot, const WorldDistance& now, unsigned seed) {

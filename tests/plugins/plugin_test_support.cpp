@@ -140,6 +140,10 @@ EdgeContact wheel_contact(const Graph& graph, int wheel) {
 
 EdgeRolling rolling_of(const Graph& graph) { return EdgeRolling(*stance_of(graph), kStance, 1.0); }
 
+EdgeSteeringSlip steering_slip_of(const Graph& graph, double max_slip_m) {
+  return EdgeSteeringSlip(*stance_of(graph), kStance, max_slip_m, 1.0);
+}
+
 VertexId<VertexConfiguration> add_configuration(Graph& graph, const RobotCase& robot, int id,
                                                 double time_s, const Eigen::VectorXd& q) {
   return graph.add_vertex(id, VertexConfiguration(kRobot, robot.robot, time_s, q));

@@ -19,6 +19,7 @@
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/plugins/robot_types.h>
 #include <locograph/plugins/rolling/edge_rolling.h>
+#include <locograph/plugins/rolling/edge_steering_slip.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
 #include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
@@ -111,6 +112,7 @@ inline std::shared_ptr<const StanceParameter> stance_of(const Graph& graph) {
 EdgeContact wheel_contact(const Graph& graph, int wheel);
 /// Rolling on all of them.
 EdgeRolling rolling_of(const Graph& graph);
+EdgeSteeringSlip steering_slip_of(const Graph& graph, double max_slip_m);
 
 /// A wheel on the ground.
 Contact wheel_on_ground(const std::string& link, double radius_m);

@@ -86,12 +86,26 @@ TEST_F(RobotParameters, GiveEveryConfigurationItsKinematicsSpheresAndTime) {
 
 TEST_F(RobotParameters, AreAllRegisteredUnderTheirTags) {
   const std::vector<std::string> tags = robot_types().tags();
-  for (const char* tag :
-       {"PARAMS_ROBOT", "PARAMS_WORLD", "PARAMS_PLAN", "PARAMS_SCENARIO", "PARAMS_CONTACTS",
-        "PARAMS_CONTACT", "PARAMS_STANCE", "VERTEX_CONFIGURATION", "PARAMS_FRAME",
-        "EDGE_ACCELERATION_LIMITS", "EDGE_COM", "EDGE_CONTACT", "EDGE_FRAME_POSE",
-        "EDGE_JOINT_LIMITS", "EDGE_VELOCITY_LIMITS", "EDGE_OBSTACLE_DISTANCE", "EDGE_ROLLING",
-        "EDGE_PLAN_TRACKING", "EDGE_VELOCITY_TRACKING"}) {
+  for (const char* tag : {"PARAMS_ROBOT",
+                          "PARAMS_WORLD",
+                          "PARAMS_PLAN",
+                          "PARAMS_SCENARIO",
+                          "PARAMS_CONTACTS",
+                          "PARAMS_CONTACT",
+                          "PARAMS_STANCE",
+                          "VERTEX_CONFIGURATION",
+                          "PARAMS_FRAME",
+                          "EDGE_ACCELERATION_LIMITS",
+                          "EDGE_COM",
+                          "EDGE_CONTACT",
+                          "EDGE_FRAME_POSE",
+                          "EDGE_JOINT_LIMITS",
+                          "EDGE_VELOCITY_LIMITS",
+                          "EDGE_OBSTACLE_DISTANCE",
+                          "EDGE_ROLLING",
+                          "EDGE_PLAN_TRACKING",
+                          "EDGE_STEERING_SLIP",
+                          "EDGE_VELOCITY_TRACKING"}) {
     EXPECT_NE(std::find(tags.begin(), tags.end(), tag), tags.end()) << tag;
   }
   for (const char* tag : {"PARAMS_WHEELS", "EDGE_WHEEL_CONTACT"}) {

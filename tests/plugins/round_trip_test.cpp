@@ -90,6 +90,7 @@ class RoundTrip : public testing::TestWithParam<std::string> {
           ids[i - 1], ids[i]);
       if (!robot.wheels.empty()) {
         add(graph, random, i, rolling_of(graph), ids[i - 1], ids[i]);
+        add(graph, random, i, steering_slip_of(graph, 0.002), ids[i - 1], ids[i]);
       }
     }
     return graph;
@@ -152,6 +153,9 @@ class RoundTrip : public testing::TestWithParam<std::string> {
         a, b, [](const auto& x, const auto& y) { return x.contact_number == y.contact_number; });
     expect_same_edges<EdgeRolling>(
         a, b, [](const auto& x, const auto& y) { return x.stance_number == y.stance_number; });
+    expect_same_edges<EdgeSteeringSlip>(a, b, [](const auto& x, const auto& y) {
+      return x.stance_number == y.stance_number && x.max_slip_m == y.max_slip_m;
+    });
     expect_same_edges<EdgeVelocityLimits>(a, b, [](const auto& x, const auto& y) {
       return x.fraction == y.fraction && x.base_linear_m_s == y.base_linear_m_s &&
              x.base_angular_rad_s == y.base_angular_rad_s;

@@ -123,6 +123,7 @@ TEST_F(RowLabels, OfContactsAndTasksNameFramesWheelsAndCoordinates) {
             Labels({"wheel lateral [m]", "wheel longitudinal [m]"}));
   EXPECT_EQ(labels("EDGE_ROLLING 0 1 3 11 scalar 1"),
             Labels({"wheel lateral [m]", "wheel longitudinal [m]", "wheel turned [m]"}));
+  EXPECT_EQ(labels("EDGE_STEERING_SLIP 0 1 1 10 0.002 scalar 1"), Labels({"wheel half-way [m]"}));
   const Labels tangent = {"base x [m]",         "base y [m]",         "base z [m]",
                           "base about x [rad]", "base about y [rad]", "base about z [rad]",
                           "arm_joint [rad]",    "lift_joint [m]",     "wheel_joint [rad]"};

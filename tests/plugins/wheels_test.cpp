@@ -334,6 +334,36 @@ TEST_F(Wheels, ThatAreLockedNeitherMoveNorTurn) {
   EXPECT_EQ(held.weights.size(), 9);
 }
 
+/// A way straight on, all wheels steered evenly: what slips sideways adds up until half-way and is
+/// taken back behind.
+TEST_F(Wheels, ThatSteerWhileTheyRollSlipHalfWay) {
+  const double way = 0.2, steered = 0.3;
+  const auto at_fraction = [&](double t) {
+    Eigen::VectorXd q = shifted(home(robot), way * t, 0.0);
+    for (int w = 0; w < 4; ++w) q[at("ankle_yaw_", w)] += steered * (t - 0.5);
+    return q;
+  };
+  const auto slip = [&](int from, int to) {
+    Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+    for (int k = from; k < to; ++k) {
+      const Eigen::VectorXd e =
+          error_between(robot, rolling, at_fraction(0.01 * k), at_fraction(0.01 * (k + 1)));
+      for (int w = 0; w < 4; ++w) sum[w] += lateral(e, w);
+    }
+    return sum;
+  };
+  const Eigen::Vector4d half = slip(0, 50), whole = slip(0, 100);
+  const EdgeSteeringSlip edge = steering_slip_of(graph_of(robot), 0.002);
+  const Eigen::VectorXd e = error_between(robot, edge, at_fraction(0.0), at_fraction(1.0));
+  ASSERT_EQ(e.size(), 4);
+  for (int w = 0; w < 4; ++w) {
+    EXPECT_NEAR(whole[w], 0.0, 1e-6);
+    EXPECT_GT(std::abs(half[w]), 0.007);
+    EXPECT_NEAR(e[w] + 0.002, std::abs(half[w]), 1e-4);
+  }
+  EXPECT_EQ(error_between(robot, edge, at_fraction(0.4), at_fraction(0.6)).norm(), 0.0);
+}
+
 TEST_F(Wheels, AreNotSteeredHalfRoundUnnoticed) {
   for (const double steer : {0.5, 2.0, 3.1}) {
     Eigen::VectorXd to = home(robot);

@@ -3,9 +3,9 @@
 #include <locograph/plugins/acceleration_limits/edge_acceleration_limits.h>
 #include <locograph/plugins/contact/edge_contact.h>
 #include <locograph/plugins/joint_limits/edge_joint_limits.h>
-#include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/plugins/rolling/edge_rolling.h>
+#include <locograph/plugins/rolling/edge_steering_slip.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
 #include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
@@ -135,9 +135,6 @@ void add_wheeled_plan(Graph& graph, const Motion& motion, const PlanEdgeOptions&
   for (std::size_t i = 0; i < ids.size(); ++i) {
     graph.add_edge(EdgePlanTracking(configurations[i], i + 1 < ids.size() ? track : goal), ids[i]);
     graph.add_edge(EdgeJointLimits(model, options.joint_margin_rad, options.limit_weight), ids[i]);
-    graph.add_edge(
-        EdgeObstacleDistance(*robot, kWorldNumber, options.obstacle_margin_m, options.limit_weight),
-        ids[i]);
     for (const int number : contacts_at(from, i)) {
       const auto contact = graph.parameters().get<ContactParameter>(number);
       graph.add_edge(EdgeContact(*contact, number, options.constraint_weight), ids[i]);
@@ -162,6 +159,9 @@ void add_wheeled_plan(Graph& graph, const Motion& motion, const PlanEdgeOptions&
     if (!from[i - 1]->wheels.empty()) {
       graph.add_edge(EdgeRolling(*from[i - 1], number_from[i - 1], options.constraint_weight),
                      ids[i - 1], ids[i]);
+      const EdgeSteeringSlip slip(*from[i - 1], number_from[i - 1], options.steering_slip_m,
+                                  options.constraint_weight);
+      if (slip.dimension() > 0) graph.add_edge(slip, ids[i - 1], ids[i]);
     }
     graph.add_edge(EdgeSweptObstacleDistance(*robot, kWorldNumber, options.obstacle_margin_m,
                                              options.swept_samples, options.limit_weight),

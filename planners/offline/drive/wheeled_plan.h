@@ -26,8 +26,11 @@ struct PlanEdgeOptions {
   double self_margin_m = 0.01;
   double joint_acceleration_rad_s2 = 10.0;
   /// How far joints turn in one step [rad], or as far as the plan turns them: what closes contacts
-  /// and rolls at both ends of a step has to do so between them too.
-  double leg_step_rad = 0.07, steering_step_rad = 0.25;
+  /// at both ends of a step has to do so between them too.
+  double leg_step_rad = 0.035, steering_step_rad = 0.25;
+  /// How far a wheel may slip half-way of a step. The judge allows 5 mm within any 0.1 m of its
+  /// way, and two steps may slip in opposite directions.
+  double steering_slip_m = 0.0018;
 
   // Tracking, of the plan and of its steps. Falling behind weighs more than passing to the side:
   // a robot that stops in front of an obstacle is safe, but gets nowhere.
@@ -38,7 +41,8 @@ struct PlanEdgeOptions {
 };
 
 /// Adds the stances, the configurations, the first one fixed, and all edges: every contact of a
-/// stance at the configurations at both ends of its steps, rolling on the steps. Parameters
+/// stance at the configurations at both ends of its steps, rolling and distances to the world on
+/// the steps, their ends included. Parameters
 /// kRobotNumber and kWorldNumber (plan.h) must be set. Pairs of links that the shapes of
 /// EDGE_SELF_COLLISION see too near to each other in the motion already have no weight there.
 /// Joints that steer (a carrier of a wheel turns about them) and wheels are not tracked: rolling

@@ -1,0 +1,75 @@
+#pragma once
+/// How a wheel moves and steers from one configuration to another: what edges on wheels share.
+///
+///     const WheelPose from(a.kinematics, wheel), to(b.kinematics, wheel);
+///     const RollingStep step(from, to, normal);
+///     const double slip = step.lateral;
+
+#include <locograph/plugins/contact/stance_parameter.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace locograph {
+
+/// The part of a vector in the plane that the wheel rolls on.
+inline Eigen::Vector3d rolling_part(const Eigen::Vector3d& v, const Eigen::Vector3d& normal) {
+  return v - normal.dot(v) * normal;
+}
+
+/// What the two poses of a wheel have between them.
+struct RollingStep {
+  Eigen::Vector3d moved;     ///< of the centre, in the plane
+  Eigen::Vector3d from, to;  ///< the axles' parts in the plane
+  Eigen::Vector3d axle;      ///< midway between them, unit
+  double length;             ///< of the sum of `from` and `to`; 0: opposite, they have no middle
+  double turned;             ///< the angle between them about the normal
+  double lateral;            ///< moved · axle
+  double way;                ///< moved · (axle × normal), along the mean heading
+  double beyond_quarter_turn;
+
+  RollingStep(const WheelPose& a, const WheelPose& b, const Eigen::Vector3d& normal)
+      : moved(rolling_part(b.centre - a.centre, normal)),
+        from(rolling_part(a.axle, normal)),
+        to(rolling_part(b.axle, normal)) {
+    const Eigen::Vector3d sum = from + to;
+    length = sum.norm();
+    constexpr double kOpposite = 1e-6;
+    if (length < kOpposite) length = 0.0;
+    axle = length > 0.0 ? Eigen::Vector3d(sum / length) : normal.cross(from).stableNormalized();
+    turned = std::atan2(normal.dot(from.cross(to)), from.dot(to));
+    lateral = moved.dot(axle);
+    way = moved.dot(axle.cross(normal));
+    beyond_quarter_turn = std::max(0.0, std::abs(turned) - 0.5 * std::numbers::pi);
+  }
+
+  /// The derivative of v · axle by either axle.
+  Eigen::Vector3d by_axle(const Eigen::Vector3d& v) const {
+    if (length == 0.0) return Eigen::Vector3d::Zero();
+    return (v - axle.dot(v) * axle) / length;
+  }
+  /// row += scale · d(way) by the configuration of one pose; sign: -1 for the first, 1 for the
+  /// second.
+  void add_way_gradient(const RobotState& kinematics, const Wheel& wheel, const WheelPose& pose,
+                        const Eigen::Vector3d& normal, double sign, double scale,
+                        double* row) const {
+    kinematics.add_point_gradient(wheel.carrier, pose.centre, axle.cross(normal), sign * scale,
+                                  row);
+    // moved · (axle × normal) = axle · (normal × moved)
+    kinematics.add_axis_gradient(wheel.carrier, pose.axle, by_axle(normal.cross(moved)), scale,
+                                 row);
+  }
+};
+
+/// row += scale · dθ, θ the angle of the axle about the normal: a vector a in the plane turns by
+/// (n × a) · da / |a|².
+inline void add_turn_gradient(const RobotState& kinematics, const Wheel& wheel,
+                              const WheelPose& pose, const Eigen::Vector3d& normal, double scale,
+                              double* row) {
+  const Eigen::Vector3d flat = rolling_part(pose.axle, normal);
+  kinematics.add_axis_gradient(wheel.carrier, pose.axle, normal.cross(flat),
+                               scale / flat.squaredNorm(), row);
+}
+
+}  // namespace locograph
