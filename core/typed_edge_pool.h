@@ -303,7 +303,8 @@ class TypedEdgePool final : public EdgePool {
     return doubles * sizeof(double) + own.size() * (sizeof(CompiledEdges::Slot) + 512) + 8192;
   }
 
-  /// Of a hinged type: inside all of its limits. It has no shifts (constraint.h), and its cost is 0.
+  /// Of a hinged type: inside all of its limits. It has no shifts (constraint.h), and its cost is
+  /// 0.
   static bool all_zero(const double* e, int n) {
     return std::all_of(e, e + n, [](double row) { return row == 0.0; });
   }
