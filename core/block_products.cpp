@@ -64,8 +64,10 @@ class RowSum {
       const int words = jacobians_[s] == nullptr ? 0 : (width_[s] + kBits - 1) / kBits;
       word_[s + 1] = word_[s] + words;
     }
-    for (Word** mask : {&of_row_, &of_group_}) *mask = scratch.array<Word>(std::size_t(words()));
-    for (int** list : {&left_, &right_}) *list = scratch.array<int>(std::size_t(widest));
+    for (Word** mask : {&of_row_, &of_group_})
+      *mask = scratch.array<Word>(static_cast<std::size_t>(words()));
+    for (int** list : {&left_, &right_})
+      *list = scratch.array<int>(static_cast<std::size_t>(widest));
   }
 
   void add(int r, double weight, double error) {
@@ -105,7 +107,7 @@ class RowSum {
             i += 7;
             continue;
           }
-          mask |= Word(from[c + i] != 0.0) << i;
+          mask |= static_cast<Word>(from[c + i] != 0.0) << i;
         }
         of_row_[w] = mask;
         entries += std::popcount(mask);
@@ -152,7 +154,8 @@ class RowSum {
         const double* other = row(j, r);
         for (int b = 0; b < right; ++b) {
           const double factor = weight * other[right_[b]];
-          double* column = hessian_ + (*block >> 1) + std::ptrdiff_t(right_[b]) * column_step;
+          double* column =
+              hessian_ + (*block >> 1) + static_cast<std::ptrdiff_t>(right_[b]) * column_step;
           for (int a = 0; a < left; ++a) column[left_[a] * row_step] += factor * own[left_[a]];
         }
       }
@@ -183,12 +186,13 @@ class RowSum {
         if ((*block & 1) != 0) {
           for (int a = 0; a < own; ++a) {
             for (int r = 0; r < rows_; ++r) factor[r] = weight_[r] * left[r][left_[a] - own_begin];
-            add(right, factor, size, h + std::ptrdiff_t(left_[a]) * width_[j] + begin);
+            add(right, factor, size, h + static_cast<std::ptrdiff_t>(left_[a]) * width_[j] + begin);
           }
         } else {
           for (int b = 0; b < other; ++b) {
             for (int r = 0; r < rows_; ++r) factor[r] = weight_[r] * right[r][right_[b] - begin];
-            add(left, factor, own_size, h + std::ptrdiff_t(right_[b]) * width_[i] + own_begin);
+            add(left, factor, own_size,
+                h + static_cast<std::ptrdiff_t>(right_[b]) * width_[i] + own_begin);
           }
         }
       }
