@@ -16,21 +16,21 @@ void each_rolling_wheel(const StanceParameter& stance, F&& f) {
   }
 }
 
-int rows_of(const StanceParameter& stance) {
+int rolling_rows(const StanceParameter& stance) {
   int rows = 0;
   each_rolling_wheel(stance, [&](Eigen::Index, const auto&) { ++rows; });
   return rows;
 }
 
 /// Of |s Δθ| / 8.
-constexpr double kShare = 0.125;
+constexpr double kHalfWayShare = 0.125;
 
 }  // namespace
 
 EdgeSteeringSlip::EdgeSteeringSlip(const StanceParameter& some, int number, double max_slip,
                                    double weight)
     : stance_number(number), max_slip_m(max_slip) {
-  weights.setConstant(rows_of(some), weight);
+  weights.setConstant(rolling_rows(some), weight);
 }
 
 void EdgeSteeringSlip::bind(const Parameters& parameters) {
@@ -38,11 +38,11 @@ void EdgeSteeringSlip::bind(const Parameters& parameters) {
     throw locograph::Error("max_slip " + std::to_string(max_slip_m), "0 m or more");
   }
   stance = parameters.get<StanceParameter>(stance_number);
-  if (rows_of(*stance) == 0) {
+  if (rolling_rows(*stance) == 0) {
     throw locograph::Error(std::string(kTag) + " on a stance without wheels that roll",
                            "a stance with such wheels");
   }
-  require_rows(kTag, dimension(), rows_of(*stance));
+  require_rows(kTag, dimension(), rolling_rows(*stance));
 }
 
 void EdgeSteeringSlip::error(const ConfigurationState& a, const ConfigurationState& b,
@@ -52,7 +52,7 @@ void EdgeSteeringSlip::error(const ConfigurationState& a, const ConfigurationSta
   each_rolling_wheel(*stance, [&](Eigen::Index row, const auto& standing) {
     const RollingStep step({a.kinematics, standing.wheel}, {b.kinematics, standing.wheel},
                            standing.normal);
-    e[row] = std::max(0.0, kShare * std::abs(step.way * step.turned) - max_slip_m);
+    e[row] = std::max(0.0, kHalfWayShare * std::abs(step.way * step.turned) - max_slip_m);
   });
 }
 
@@ -64,8 +64,8 @@ void EdgeSteeringSlip::jacobians(const ConfigurationState& a, const Configuratio
     const Eigen::Vector3d& normal = standing.normal;
     const WheelPose from(a.kinematics, wheel), to(b.kinematics, wheel);
     const RollingStep step(from, to, normal);
-    if (kShare * std::abs(step.way * step.turned) <= max_slip_m) return;
-    const double slope = std::copysign(kShare, step.way * step.turned);
+    if (kHalfWayShare * std::abs(step.way * step.turned) <= max_slip_m) return;
+    const double slope = std::copysign(kHalfWayShare, step.way * step.turned);
     const auto add = [&](const RobotState& kinematics, const WheelPose& pose, double sign,
                          double* entries) {
       step.add_way_gradient(kinematics, wheel, pose, normal, sign, slope * step.turned, entries);
