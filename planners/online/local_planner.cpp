@@ -87,7 +87,6 @@ Eigen::Map<const Eigen::VectorXd> LocalPlanner::configuration(int index) const {
 void LocalPlanner::show(const WorldDistance& world) {
   plan_.world->now = world;
   detour_.forget();
-  detour_not_before_ = 0;
 }
 
 /// A configuration that goes on from the two before it: as the plan does, and away from it as they

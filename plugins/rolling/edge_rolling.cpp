@@ -1,7 +1,6 @@
 #include <locograph/plugins/rolling/edge_rolling.h>
 #include <locograph/plugins/rolling/rolling_step.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 

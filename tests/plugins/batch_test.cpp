@@ -47,7 +47,8 @@ Graph plan_with_everything(const RobotCase& robot, const WorldDistance& now, boo
     const auto a = ids[swap ? i : i - 1], b = ids[swap ? i - 1 : i];
     graph.add_edge(dress(EdgeSweptObstacleDistance(*robot.robot, kWorld, 0.1, 3, 1.0)), a, b);
     graph.add_edge(dress(rolling_of(graph)), a, b);
-    graph.add_edge(dress(steering_slip_of(graph, 0.0)), a, b);
+    // From far enough away that it counts.
+    graph.add_edge(dress(steering_slip_of(graph, 0.0)), ids[swap ? i : 0], ids[swap ? 0 : i]);
     graph.add_edge(
         dress(EdgeVelocityTracking(random.vector(tangent, 0.1), Eigen::VectorXd::Ones(tangent))), a,
         b);
@@ -87,7 +88,7 @@ TEST_P(Batch, IsTheSumOverItsEdgesOneByOne) {
         workspace.error(static_cast<int>(p), static_cast<int>(k), e.data());
         squared += e.squaredNorm();
       }
-      EXPECT_GT(squared, 1e-4) << graph.edge_pools()[p]->tag();
+      EXPECT_GT(squared, 1e-3) << graph.edge_pools()[p]->tag();
     }
   }
 }
