@@ -3,11 +3,13 @@
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_file.h>
+#include <locograph/apps/progress.h>
 #include <locograph/common/deadline.h>
 
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,12 +24,14 @@ struct CommandOptions {
   double clearance_m = 0.0, until_s = kNotGiven;
   std::vector<std::string> plugins;
   int threads = 1;
-  bool json = false;
+  bool all = false, json = false;
 };
 
 ExitCode check(const CommandOptions& options) {
   const Stopwatch total;
+  std::optional<Progress> progress("reading " + options.input);
   const PlanFile file = load_plan(options.input, options.plugins);
+  progress.emplace("checking " + options.input);
   Judging judging = judging_of(file, options.world);
   judging.options.min_clearance_m = options.clearance_m;
   if (!options.torques.empty()) {
@@ -35,6 +39,7 @@ ExitCode check(const CommandOptions& options) {
   }
   if (options.until_s != kNotGiven) judging.options.until_s = options.until_s;
   const CheckReport report = check_plan(file, judging);
+  progress.reset();
   // Vertices are named by their id in the file.
   const VertexIds ids = [&](int vertex) {
     return file.graph.vertex_record(file.plan.slots.at(static_cast<std::size_t>(vertex))).id;
@@ -42,13 +47,15 @@ ExitCode check(const CommandOptions& options) {
   if (options.json) {
     Json json = check_json(report, ids);
     json["stances_only"] = file.plan.stances_only;
+    json["incomplete"] = file.plan.incomplete;
     json["time"] = {{"total", total.seconds()}};
     print_result(json, true);
   } else {
     print_text(file.name + ": " + (report.feasible ? "feasible" : "NOT feasible") + ", " +
                counted(report.configurations, "configuration", "configurations") +
-               (file.plan.stances_only ? " of a plan of stances" : "") + '\n' +
-               check_text(report, ids));
+               (file.plan.stances_only ? " of a plan of stances" : "") +
+               (file.plan.incomplete ? ", the first part of an incomplete plan" : "") + '\n' +
+               check_text(report, ids, options.all));
   }
   return report.feasible ? kDone : kNo;
 }
@@ -78,6 +85,7 @@ Command add_check(OptionParser& app) {
       .positive()
       .show_default();
   add_plugin_option(parser, o.plugins);
+  parser.add_flag("--all", o.all, "List every constraint, also those that hold");
   parser.add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] { return check(*options); }};
 }

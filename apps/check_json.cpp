@@ -1,6 +1,9 @@
 #include <locograph/apps/check_json.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace locograph {
 namespace {
@@ -9,6 +12,61 @@ std::string list(const std::vector<std::string>& items) {
   std::string text;
   for (const std::string& item : items) text += (text.empty() ? "" : "; ") + item;
   return text;
+}
+
+/// "joint_limits, worst 0.1 rad (limit 0 rad) at vertex 7"
+std::string judged_text(const Violation& v, const VertexIds& ids) {
+  const std::string unit = v.unit == "1" ? "" : ' ' + v.unit;
+  return v.constraint + ", worst " + short_number(v.worst) + unit + " (limit " +
+         short_number(v.limit) + unit + ") at vertex " + std::to_string(ids(v.at_vertex));
+}
+
+/// A line for each reason why something was not judged.
+std::string not_judged_text(const CheckReport& report) {
+  std::vector<std::pair<std::string, std::string>> by_reason;
+  for (const Violation& v : report.violations) {
+    if (v.judged) continue;
+    const auto found = std::find_if(by_reason.begin(), by_reason.end(),
+                                    [&v](const auto& group) { return group.first == v.why_not; });
+    if (found == by_reason.end()) {
+      by_reason.emplace_back(v.why_not, v.constraint);
+    } else {
+      found->second += ", " + v.constraint;
+    }
+  }
+  std::string text;
+  for (const auto& [reason, constraints] : by_reason) {
+    text += "not judged: " + constraints + ", because " + reason + '\n';
+  }
+  return text;
+}
+
+std::string holding_text(const CheckReport& report, const VertexIds& ids, bool all) {
+  std::string lines;
+  long count = 0;
+  for (const Violation& v : report.violations) {
+    if (!v.judged || v.violated) continue;
+    ++count;
+    lines += "holds: " + judged_text(v, ids) + '\n';
+  }
+  if (all || count == 0) return lines;
+  return counted(count, "constraint holds", "constraints hold") + " (--all lists each)\n";
+}
+
+/// How close to the limits: one line.
+std::string extremes_text(const CheckReport& report) {
+  std::string text;
+  const auto told = [&text](const char* what, const std::optional<double>& value, const char* unit,
+                            double scale = 1.0) {
+    if (value) text += (text.empty() ? "" : ", ") + (what + short_number(scale * *value)) + unit;
+  };
+  told("clearance ", report.min_clearance_m, " m");
+  told("to itself ", report.min_self_clearance_m, " m");
+  told("velocities up to ", report.max_velocity_ratio, " % of their limits", 100.0);
+  told("contacts within ", report.max_contact_error_m, " m");
+  told("balanced with a margin of ", report.min_balance_margin, "");
+  told("torques up to ", report.max_torque_ratio, " % of their limits", 100.0);
+  return text.empty() ? "" : text + '\n';
 }
 
 }  // namespace
@@ -56,28 +114,13 @@ Json check_json(const CheckReport& report, const VertexIds& ids) {
           {"trusted", report.trusted}};
 }
 
-std::string check_text(const CheckReport& report, const VertexIds& ids) {
+std::string check_text(const CheckReport& report, const VertexIds& ids, bool all) {
   std::string text;
-  for (const Violation& v : report.violations) {
-    if (!v.judged || !v.violated) continue;
-    text += "violated: " + v.constraint + ", worst " + short_number(v.worst) + " " + v.unit +
-            " (limit " + short_number(v.limit) + ") at vertex " + std::to_string(ids(v.at_vertex)) +
-            ", " + counted(v.count, "vertex", "vertices") + (v.what.empty() ? "" : ": " + v.what) +
-            '\n';
+  for (const Violation* v : report.violated()) {
+    text += "violated: " + judged_text(*v, ids) + ", " + counted(v->count, "vertex", "vertices") +
+            (v->what.empty() ? "" : ": " + v->what) + '\n';
   }
-  for (const Violation& v : report.violations) {
-    if (!v.judged) text += "not judged: " + v.constraint + ", because " + v.why_not + '\n';
-  }
-  const auto told = [&](const char* what, const std::optional<double>& value, const char* unit,
-                        double scale = 1.0) {
-    if (value) text += what + short_number(scale * *value) + unit;
-  };
-  told("clearance ", report.min_clearance_m, " m\n");
-  told("to itself ", report.min_self_clearance_m, " m\n");
-  told("velocities up to ", report.max_velocity_ratio, " % of their limits\n", 100.0);
-  told("contacts within ", report.max_contact_error_m, " m\n");
-  told("balanced with a margin of ", report.min_balance_margin, "\n");
-  told("torques up to ", report.max_torque_ratio, " % of their limits hold the robot\n", 100.0);
+  text += not_judged_text(report) + holding_text(report, ids, all) + extremes_text(report);
   if (!report.trusted.empty()) text += "on trust: " + list(report.trusted) + '\n';
   return text;
 }

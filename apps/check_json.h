@@ -22,9 +22,10 @@ Json violations_json(const CheckReport& report, const VertexIds& ids);
 /// All of a report: `feasible`, `violations`, the extreme values, `trusted`.
 Json check_json(const CheckReport& report, const VertexIds& ids);
 
-/// A line for each constraint that is violated, and for each that was not judged; then the extreme
-/// values, and what was taken on trust.
-std::string check_text(const CheckReport& report, const VertexIds& ids);
+/// What matters first: a line for each constraint that is violated, the worst first, then what was
+/// not judged and why, then the number of those that hold, then the extreme values, and what was
+/// taken on trust. all: a line for each that holds.
+std::string check_text(const CheckReport& report, const VertexIds& ids, bool all = false);
 
 /// The number, null where there is none or it is not finite.
 Json number_json(double value);

@@ -1,9 +1,12 @@
 #include <fcntl.h>
 #include <locograph/apps/child_process.h>
-#include <locograph/common/atomic_file.h>
 #include <locograph/common/deadline.h>
+#include <locograph/common/error.h>
+#include <locograph/common/input_file.h>
+#include <locograph/common/stop_signals.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -37,6 +40,20 @@ struct SpawnSettings {
     posix_spawnattr_destroy(&attributes);
   }
 };
+
+constexpr std::string_view kScratchName = "locograph-scratch-";
+
+/// Folders whose programs were killed: nobody holds their locks.
+void remove_abandoned(const std::filesystem::path& parent) {
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(parent, ignored)) {
+    if (!entry.path().filename().string().starts_with(kScratchName)) continue;
+    const FileDescriptor folder(
+        ::open(entry.path().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+    if (!folder.is_open() || ::flock(folder.get(), LOCK_EX | LOCK_NB) != 0) continue;
+    std::filesystem::remove_all(entry.path(), ignored);
+  }
+}
 
 }  // namespace
 
@@ -81,13 +98,15 @@ ProcessResult run_process(const std::filesystem::path& program,
     throw Error(program.string(), 0, "cannot be started", "an executable program");
   }
   ProcessResult result;
+  const FinishOnSignal finish;
   const Deadline deadline = Deadline::after(timeout_s);
   int status = 0;
   while (::waitpid(child, &status, WNOHANG) == 0) {
-    if (deadline.passed()) {
+    if (deadline.passed() || stop_requested()) {
       result.timed_out = true;
       ::kill(-child, SIGKILL);
       ::waitpid(child, &status, 0);
+      if (stop_requested()) throw Interrupted();
       break;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -99,12 +118,18 @@ ProcessResult run_process(const std::filesystem::path& program,
 
 ScratchFolder::ScratchFolder() {
   std::error_code failed;
-  std::string pattern =
-      (std::filesystem::temp_directory_path(failed) / "locograph_XXXXXX").string();
-  if (failed || ::mkdtemp(pattern.data()) == nullptr) {
-    throw Error(pattern, 0, "no temporary folder can be made", "a writable folder TMPDIR");
-  }
-  path_ = pattern;
+  const std::filesystem::path parent = std::filesystem::temp_directory_path(failed);
+  remove_abandoned(parent);
+  do {
+    std::string pattern = (parent / kScratchName).string() + "XXXXXX";
+    if (failed || ::mkdtemp(pattern.data()) == nullptr) {
+      throw Error(pattern, 0, "no temporary folder can be made", "a writable folder TMPDIR");
+    }
+    path_ = pattern;
+    lock_ = FileDescriptor(::open(pattern.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    // Somebody who removes abandoned folders may have come before the lock.
+  } while (lock_.is_open() && ::flock(lock_.get(), LOCK_EX) == 0 &&
+           !std::filesystem::is_directory(path_));
 }
 
 ScratchFolder::~ScratchFolder() {

@@ -6,6 +6,8 @@
 ///       if (result.exit_code != 0) throw Error("gnuplot: " + result.last_line());
 ///     }
 
+#include <locograph/common/file_descriptor.h>
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -25,11 +27,12 @@ struct ProcessResult {
 };
 
 /// Waits for the program; after timeout_s it is killed with all its children. Its standard input is
-/// empty. Throws Error when it cannot be started.
+/// empty. Throws Error when it cannot be started, Interrupted when Ctrl-C ended it.
 ProcessResult run_process(const std::filesystem::path& program,
                           const std::vector<std::string>& arguments, double timeout_s);
 
-/// A fresh folder that is removed with all that is in it.
+/// A fresh folder that is removed with all that is in it, by the next one made if the program is
+/// killed.
 class ScratchFolder {
  public:
   /// Throws Error when there is no temporary folder to make it in.
@@ -42,6 +45,7 @@ class ScratchFolder {
 
  private:
   std::filesystem::path path_;
+  FileDescriptor lock_;  ///< shows others that somebody uses the folder
 };
 
 }  // namespace locograph

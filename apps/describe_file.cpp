@@ -1,21 +1,19 @@
 #include <locograph/apps/describe.h>
+#include <locograph/apps/progress.h>
 #include <locograph/common/error.h>
+#include <locograph/common/input_file.h>
+#include <locograph/types/bundle/bal_file.h>
 
-#include <fstream>
 #include <string>
 
 namespace locograph {
 namespace {
 
 std::string beginning(const std::filesystem::path& path) {
-  if (std::filesystem::is_directory(path)) throw Error(path.string(), 0, "is a folder", "a file");
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw Error(path.string(), 0, "cannot be opened", "a readable file");
-  std::string text(64 * 1024, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
+  const std::string text = file_beginning(path, 64 * 1024, "a readable file");
   if (text.empty()) {
-    throw Error(path.string(), 0, "is empty", "a graph, robot, map or obstacles file");
+    throw Error(path.string(), 0, "is empty",
+                "a graph, robot, map, scenario, obstacles, contacts or BAL file");
   }
   return text;
 }
@@ -33,26 +31,36 @@ std::string root_element(const std::string& text) {
   return "";
 }
 
+Json describe_xml(const std::filesystem::path& path, const std::string& text) {
+  const std::string root = root_element(text);
+  const Progress progress("reading " + path.string());
+  if (root == "obstacles") return describe_obstacles(path);
+  if (root == "scenario") return describe_scenario(path);
+  if (root == "contacts") return describe_contacts(path);
+  if (root == "robot" && path.extension() == ".srdf") {
+    throw Error(path.string(), 0, "is an SRDF", "the URDF it belongs to");
+  }
+  if (root == "robot" || path.extension() == ".urdf") return describe_robot(path);
+  throw Error(path.string(), 0, "is XML with root element '" + root + "'",
+              "a <robot> (URDF), <scenario>, <contacts> or <obstacles> file");
+}
+
 }  // namespace
 
 Json describe_file(const std::filesystem::path& path, const TypeRegistry& types) {
   const std::string text = beginning(path);
   const std::string extension = path.extension().string();
-  if (extension == ".g2o") return describe_graph(path, types);
-  if (extension == ".urdf") return describe_robot(path);
-  if (extension == ".bt" || extension == ".ot" || text.starts_with("# Octomap")) {
-    return describe_map(path);
-  }
   const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
-  if (first == std::string::npos || text[first] != '<') return describe_graph(path, types);
-  const std::string root = root_element(text);
-  if (root == "obstacles") return describe_obstacles(path);
-  if (root == "robot" && extension == ".srdf") {
-    throw Error(path.string(), 0, "is an SRDF", "the URDF it belongs to");
+  if (first != std::string::npos && text[first] == '<') return describe_xml(path, text);
+  if (extension != ".g2o") {
+    const Progress progress("reading " + path.string());
+    if (extension == ".urdf") return describe_robot(path);
+    if (extension == ".bt" || extension == ".ot" || text.starts_with("# Octomap")) {
+      return describe_map(path);
+    }
+    if (extension == ".bal" || looks_like_bal(text)) return describe_bal(path);
   }
-  if (root == "robot") return describe_robot(path);
-  throw Error(path.string(), 0, "is XML with root element '" + root + "'",
-              "a <robot> (URDF) or <obstacles> file");
+  return describe_graph(path, types);
 }
 
 }  // namespace locograph

@@ -1,7 +1,9 @@
 #include <locograph/apps/describe.h>
+#include <locograph/apps/progress.h>
 #include <locograph/apps/violations_json.h>
 #include <locograph/core/connectivity.h>
 #include <locograph/core/graph_file.h>
+#include <locograph/types/bundle/bal_file.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -51,28 +53,49 @@ Json edges_json(const Graph& graph) {
   return json;
 }
 
-}  // namespace
-
-Json describe_graph(const std::filesystem::path& path, const TypeRegistry& types) {
-  ReadReport report;
-  Graph graph = read_graph(path, types, {.lenient = true}, &report);
-  if (graph.vertex_count() == 0 && !report.unknown.empty()) {
-    throw Error(path.string(), 0,
-                "no line is a known vertex or edge; the first: " + report.unknown.front(), "");
-  }
+/// What there is in a graph, whichever file it comes from.
+Json content_json(const Graph& graph) {
   const std::vector<Component> parts = components(graph);
-  Json json = {{"file", path.string()}, {"kind", "graph"}};
-  json["vertices"] = vertices_json(graph);
-  json["vertices_from_edges"] = report.vertices_from_edges;
-  json["edges"] = edges_json(graph);
   std::map<std::string, int> parameters;
   for (const auto& [number, parameter] : graph.parameters().all()) {
     ++parameters[std::string(parameter->tag())];
   }
-  json["parameters"] = parameters;
-  json["connected_parts"] = parts.size();
-  json["parts_held_in_place"] =
-      std::count_if(parts.begin(), parts.end(), [](const Component& c) { return c.anchored; });
+  return {{"vertices", vertices_json(graph)},
+          {"edges", edges_json(graph)},
+          {"parameters", parameters},
+          {"connected_parts", parts.size()},
+          {"parts_held_in_place", std::count_if(parts.begin(), parts.end(),
+                                                [](const Component& c) { return c.anchored; })}};
+}
+
+}  // namespace
+
+Json describe_bal(const std::filesystem::path& path) {
+  const Graph graph = read_bal(path);
+  Json json = {{"file", path.string()}, {"kind", "bundle adjustment"}};
+  Json content = content_json(graph);
+  const Json& counts = content["vertices"]["by_tag"];
+  json["cameras"] = counts.value("VERTEX_CAMERA_BAL", 0);
+  json["points"] = counts.value("VERTEX_TRACKXYZ", 0);
+  json["observations"] = content["edges"]["count"];
+  json["dimension"] = content["vertices"]["dimension"];
+  json["connected_parts"] = content["connected_parts"];
+  return json;
+}
+
+Json describe_graph(const std::filesystem::path& path, const TypeRegistry& types) {
+  ReadReport report;
+  Progress progress("reading " + path.string());
+  Graph graph = read_graph(
+      path, types, {.lenient = true, .progress = [&progress](double read) { progress.show(read); }},
+      &report);
+  if (graph.vertex_count() == 0 && !report.unknown.empty()) {
+    throw Error(path.string(), 0,
+                "no line is a known vertex or edge; the first: " + report.unknown.front(), "");
+  }
+  Json json = {{"file", path.string()}, {"kind", "graph"}};
+  json.update(content_json(graph));
+  json["vertices_from_edges"] = report.vertices_from_edges;
   json["indefinite_information"] = report.indefinite_information;
   if (report.indefinite_information > 0) {
     json["first_indefinite_line"] = report.first_indefinite_line;

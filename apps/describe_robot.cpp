@@ -78,6 +78,15 @@ Json describe_robot(const std::filesystem::path& path) {
     limits[robot.active_joint(i).name] = joint_json(robot.active_joint(i));
   }
   json["limits"] = limits;
+  Json mimics = Json::object();
+  for (const Joint& joint : robot.joints()) {
+    if (joint.mimics < 0) continue;
+    mimics[joint.name] = {{"leader", robot.joints()[static_cast<std::size_t>(joint.mimics)].name},
+                          {"multiplier", joint.multiplier},
+                          {"offset", joint.offset}};
+  }
+  if (!mimics.empty()) json["mimic_joints"] = mimics;
+  if (!robot.urdf_warnings().empty()) json["warnings"] = robot.urdf_warnings();
   json["approximation"] = approximation_json(robot);
   return json;
 }

@@ -2,8 +2,10 @@
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/info_command.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace locograph {
@@ -12,15 +14,33 @@ Command add_info(OptionParser& app) {
   struct Options {
     std::string file;
     std::vector<std::string> plugins;
-    bool json = false;
+    bool json = false, pairs = false;
+    LinkPairOptions sampling;
   };
   const auto options = std::make_shared<Options>();
-  OptionParser parser =
-      app.add_subcommand("info", "What is in a graph, robot, map or obstacles file");
-  parser.add_option("FILE", options->file, "A .g2o, .urdf, .bt, .ot or .xml file").required();
+  OptionParser parser = app.add_subcommand(
+      "info", "What is in a graph, robot, map, scenario, obstacles, contacts or BAL file");
+  parser
+      .add_option("FILE", options->file,
+                  "A graph (.g2o), robot (.urdf), map (.bt, .ot), scenario, obstacles or contacts "
+                  "file (.xml), or bundle adjustment in the large (.txt, .bal)")
+      .required();
   add_plugin_option(parser, options->plugins);
+  options->sampling.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  parser.add_flag("--pairs", options->pairs,
+                  "Of a robot: which pairs of links meet in random postures, and which are off");
+  parser.add_option("--samples", options->sampling.samples, "Postures of --pairs")
+      .positive()
+      .show_default();
+  parser.add_option("--seed", options->sampling.seed, "Of the postures").show_default();
+  parser.add_option("--threads", options->sampling.threads, "Threads to use (all cores)")
+      .positive();
   parser.add_flag("--json", options->json, "Print one JSON object");
   return {parser, [options] {
+            if (options->pairs) {
+              print_result(describe_link_pairs(options->file, options->sampling), options->json);
+              return kDone;
+            }
             print_result(describe_file(options->file, graph_types(options->plugins)),
                          options->json);
             return kDone;

@@ -1,12 +1,11 @@
-#include <locograph/apps/data_folder.h>
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/list_command.h>
 #include <locograph/apps/output.h>
+#include <locograph/common/data_folder.h>
 #include <locograph/core/robust_kernel.h>
 #include <locograph/planners/scenario/scenario.h>
 #include <locograph/solvers/linear_solvers.h>
 
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,22 +13,12 @@
 namespace locograph {
 namespace {
 
-std::vector<std::string> robot_names() {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(data_folder() / "robots/models")) {
-    if (entry.is_directory()) names.push_back(entry.path().filename().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 std::vector<std::string> names_of(const std::string& what,
                                   const std::vector<std::string>& plugins) {
   if (what == "types") return graph_types(plugins).tags();
   if (what == "solvers") return linear_solver_names();
   if (what == "kernels") return RobustKernel::names();
-  if (what == "robots") return robot_names();
-  if (what == "scenarios") return scenario_names(data_folder());
+  if (what == "robots") return robot_names(data_folder());
   return scenario_names(data_folder());
 }
 

@@ -11,6 +11,7 @@
 #include <locograph/apps/refine_command.h>
 #include <locograph/apps/view_command.h>
 #include <locograph/common/error.h>
+#include <locograph/common/stop_signals.h>
 #include <locograph/solvers/kernels.h>
 
 #include <vector>
@@ -18,27 +19,53 @@
 namespace locograph {
 namespace {
 
-int run(int argc, char** argv) {
-  OptionParser app("Hyper-graph optimisation and loco-manipulation planning", "locograph");
-  app.add_version("locograph " LOCOGRAPH_VERSION);
-  const std::vector<Command> commands = {add_optimize(app), add_plan(app), add_refine(app),
-                                         add_check(app),    add_info(app), add_list(app),
-                                         add_view(app),     add_plot(app), add_posture(app)};
-  if (!app.parse(argc, argv)) return kDone;
+/// A tag that nobody knows may be a plug-in's, or of no interest.
+std::string advice(const std::string& what, const OptionParser& parser) {
+  if (what.find("unknown tag '") == std::string::npos) return "";
+  std::string text;
+  if (parser.has_option("--plugin")) text += "; --plugin LIB.so loads more types";
+  if (parser.has_option("--lenient")) text += ", --lenient leaves out unknown lines";
+  return text;
+}
+
+ExitCode run_chosen(const std::vector<Command>& commands) {
   for (const Command& command : commands) {
     if (!command.parser.chosen()) continue;
     kernels();  // a wrong LOCOGRAPH_SIMD is told before any work is done
-    return command.run();
+    try {
+      return command.run();
+    } catch (const Error& error) {
+      print_error(error.what() + advice(error.what(), command.parser));
+      return kBadInput;
+    }
   }
   return kBadInput;
+}
+
+int run(int argc, char** argv) {
+  OptionParser app("Hyper-graph optimisation and loco-manipulation planning", "locograph");
+  app.add_version("locograph " LOCOGRAPH_VERSION);
+  std::vector<Command> commands = {add_optimize(app), add_plan(app), add_refine(app),
+                                   add_check(app),    add_info(app), add_list(app),
+                                   add_view(app),     add_plot(app), add_posture(app)};
+  bool quiet = false;
+  for (Command& command : commands) {
+    command.parser.add_flag("--quiet", quiet, "Neither progress nor warnings on stderr");
+  }
+  if (!app.parse(argc, argv)) return kDone;
+  if (quiet) be_quiet();
+  return run_chosen(commands);
 }
 
 }  // namespace
 }  // namespace locograph
 
 int main(int argc, char** argv) {
+  locograph::take_stop_signals();
   try {
     return locograph::run(argc, argv);
+  } catch (const locograph::Interrupted&) {
+    locograph::end_by_stop_signal();
   } catch (const locograph::UsageError& error) {
     locograph::print_error(error.what());
   } catch (const locograph::Error& error) {

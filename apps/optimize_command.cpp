@@ -6,6 +6,7 @@
 #include <locograph/apps/progress.h>
 #include <locograph/apps/violations_json.h>
 #include <locograph/common/deadline.h>
+#include <locograph/common/stop_signals.h>
 #include <locograph/core/graduated_non_convexity.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/core/initial_guess.h>
@@ -14,6 +15,7 @@
 #ifdef LOCOGRAPH_WITH_CERES_BACKEND
 #include <locograph/solvers/ceres_backend.h>
 #endif
+#include <locograph/types/best_guess.h>
 #include <locograph/types/bundle/bal_file.h>
 #include <locograph/types/chordal_guess.h>
 #include <locograph/types/doubtful_closures.h>
@@ -37,7 +39,7 @@ struct OptimizeOptions {
   std::string algorithm = "lm";
   std::string linear_solver = "auto";
   std::string kernel = "none";
-  std::string initial_guess = "none";
+  std::string initial_guess = "auto";
   OptimiserOptions optimiser;
   int threads = 1;
   std::vector<std::string> plugins;
@@ -48,13 +50,29 @@ struct OptimizeOptions {
 };
 
 struct Times {
-  double load = 0.0, compile = 0.0, optimize = 0.0, total = 0.0;
+  double load = 0.0, guess = 0.0, compile = 0.0, optimize = 0.0, total = 0.0;
+};
+
+/// The graph compiled, and what its first values are.
+struct Start {
+  Problem problem;
+  Workspace workspace;
+  std::string guess;         ///< as --initial-guess names it, never auto
+  std::vector<int> doubted;  ///< loop closures that nothing confirms, left out of the guess
 };
 
 const std::map<std::string, Algorithm> kAlgorithms = {
     {"lm", Algorithm::kLevenbergMarquardt},
     {"gn", Algorithm::kGaussNewton},
     {"dogleg", Algorithm::kDogleg},
+};
+
+/// What the values that --initial-guess names are.
+const std::map<std::string, std::string> kStarts = {
+    {"none", "the values of the file"},
+    {"odometry", "odometry"},
+    {"spanning-tree", "a spanning tree"},
+    {"chordal", "the chordal guess"},
 };
 
 /// By its extension, or by its first line.
@@ -72,8 +90,10 @@ bool is_bal_file(const std::string& path) {
 }
 
 Graph load(const OptimizeOptions& options, ReadReport& report) {
+  Progress progress("reading " + options.input_name());
   if (options.bal) return read_bal(options.input);
-  const ReadOptions read = {.lenient = options.lenient};
+  const ReadOptions read = {.lenient = options.lenient,
+                            .progress = [&progress](double read) { progress.show(read); }};
   const TypeRegistry types = graph_types(options.plugins);
   Graph graph;
   if (options.input == "-") {
@@ -96,24 +116,34 @@ Graph load(const OptimizeOptions& options, ReadReport& report) {
   return graph;
 }
 
-/// Returns the loop closures that were left out because nothing confirms them: none without a
-/// kernel or graduation to bring them back.
-std::vector<int> guess(Graph& graph, const OptimizeOptions& options, LinearSolver& solver) {
+/// Fills start.guess and start.doubted; there is none without a kernel or graduation to bring the
+/// doubted closures back.
+void guess(Graph& graph, const OptimizeOptions& options, const ReadReport& report,
+           LinearSolver& solver, Start& start) {
+  // What graduation starts from is trusted odometry, and its cost counts the wrong closures in
+  // full.
+  start.guess = options.initial_guess != "auto"    ? options.initial_guess
+                : options.bal || options.graduated ? "none"
+                                                   : "auto";
+  const bool chordal = start.guess == "auto" || start.guess == "chordal";
+  if (chordal && (options.graduated || options.kernel != "none")) {
+    start.doubted = doubtful_closures(graph, odometry_edges(graph));
+  }
   int unreached = 0;
-  std::vector<int> doubted;
-  if (options.initial_guess == "odometry") unreached = guess_from_odometry(graph);
-  if (options.initial_guess == "spanning-tree") unreached = guess_from_spanning_tree(graph);
-  if (options.initial_guess == "chordal") {
-    if (options.graduated || options.kernel != "none") {
-      doubted = doubtful_closures(graph, odometry_edges(graph));
-    }
-    unreached = guess_chordal(graph, solver, doubted);
+  if (start.guess == "odometry") unreached = guess_from_odometry(graph);
+  if (start.guess == "spanning-tree") unreached = guess_from_spanning_tree(graph);
+  if (start.guess == "chordal") unreached = guess_chordal(graph, solver, start.doubted);
+  if (start.guess == "auto") {
+    const BestGuess best =
+        take_best_guess(start.workspace, solver,
+                        {.use_present = !report.vertices_from_edges, .left_out = start.doubted});
+    start.guess = best.taken;
+    unreached = best.unreached;
   }
   if (unreached > 0) {
     print_warning(counted(unreached, "vertex", "vertices") +
                   " cannot be predicted from any edge: first values kept");
   }
-  return doubted;
 }
 
 /// Scalar unknowns of the graph.
@@ -126,15 +156,15 @@ int unknowns(const Graph& graph) {
 }
 
 OptimiserResult run_graduated(Graph& graph, const OptimizeOptions& options, LinearSolver& solver,
-                              const std::vector<int>& doubted, int& rejected, Times& times) {
+                              const Start& start, int& rejected, Times& times) {
   const Stopwatch watch;
   ThreadPool threads(options.threads);
   solver.use_threads(&threads);
   GraduationOptions graduation;
   graduation.optimiser = options.optimiser;
-  graduation.for_all = options.initial_guess == "chordal";
+  graduation.for_all = start.guess == "chordal";
   GraduationResult result =
-      optimise_graduated(graph, graduation, solver, odometry_edges(graph), doubted, &threads);
+      optimise_graduated(graph, graduation, solver, odometry_edges(graph), start.doubted, &threads);
   solver.use_threads(nullptr);
   times.optimize = watch.seconds();
   rejected = result.rejected;
@@ -142,29 +172,27 @@ OptimiserResult run_graduated(Graph& graph, const OptimizeOptions& options, Line
   return result.optimiser;
 }
 
-OptimiserResult run(Graph& graph, const OptimizeOptions& options, LinearSolver& solver,
+OptimiserResult run(Start& start, const OptimizeOptions& options, LinearSolver& solver,
                     Times& times) {
   Stopwatch watch;
   ThreadPool threads(options.threads);
-  Problem problem;
-  problem.compile(graph);
-  Workspace workspace;
-  workspace.allocate(problem);
+  Workspace& workspace = start.workspace;
   workspace.use_threads(&threads);
   workspace.load_state();
   solver.use_threads(&threads);
   Optimiser optimiser(options.optimiser);
   optimiser.start(workspace, solver);
-  times.compile = watch.lap();
-  Progress progress;
+  times.compile += watch.lap();
+  Progress progress("optimising " + options.input_name());
   while (optimiser.iterate()) {
-    progress.show([&] {
+    progress.show({}, [&] {
       const OptimiserResult& so_far = optimiser.result();
       return "iteration " + std::to_string(so_far.iterations) + ", chi2 " +
              short_number(so_far.final.chi2);
     });
   }
   workspace.store_state();
+  workspace.use_threads(nullptr);
   solver.use_threads(nullptr);
   times.optimize = watch.seconds();
   return optimiser.result();
@@ -188,7 +216,7 @@ OptimiserResult run_ceres([[maybe_unused]] Graph& graph,
 bool calls_for_diagnosis(const OptimiserResult& result) {
   using Reason = OptimiserResult::Reason;
   return result.reason == Reason::kNotFinite || result.reason == Reason::kSingular ||
-         (result.singular_vertex >= 0 && !result.converged);
+         result.reason == Reason::kNoProgress || (result.singular_vertex >= 0 && !result.converged);
 }
 
 Json iterations_json(const OptimiserResult& result) {
@@ -209,6 +237,7 @@ Json iterations_json(const OptimiserResult& result) {
 }
 
 std::string reason(const OptimiserResult& result, const Graph& graph) {
+  if (result.reason == OptimiserResult::Reason::kStopped) return "interrupted";
   std::string text = result.reason_text();
   if (result.reason == OptimiserResult::Reason::kSingular && result.singular_vertex >= 0) {
     text += " at vertex " + std::to_string(graph.vertex_record(result.singular_vertex).id);
@@ -228,6 +257,7 @@ void print_summary(const OptimizeOptions& options, const Json& result) {
                      counted(result["edges"], "edge", "edges") + ", " +
                      counted(result["dimension"], "unknown", "unknowns") + ", " +
                      result["gauge"].get<std::string>() + '\n';
+  text += "starts from " + kStarts.at(result["initial_guess"].get<std::string>()) + '\n';
   text += "chi2 " + number("initial_chi2") + " -> " + number("final_chi2");
   if (options.kernel != "none") {
     text += ", robust cost " + number("initial_cost") + " -> " + number("final_cost") + " (" +
@@ -257,7 +287,7 @@ void print_summary(const OptimizeOptions& options, const Json& result) {
 }
 
 ExitCode optimize(const OptimizeOptions& options) {
-  if (!options.output.empty()) check_writable(options.output);
+  if (!options.output.empty()) check_output(options.output, options.json);
   options.optimiser.validate();
   const bool ceres = options.linear_solver == "ceres";
   if (ceres && options.graduated) throw Error("Ceres does not graduate", "--gnc without ceres");
@@ -278,13 +308,20 @@ ExitCode optimize(const OptimizeOptions& options) {
     gauge = hold_gauge(graph, options.input_name(), options.lenient);
     mark_points_for_elimination(graph);
   }
-  const std::vector<int> doubted = guess(graph, options, *solver);
+  Stopwatch watch;
+  Start start;
+  start.problem.compile(graph);
+  start.workspace.allocate(start.problem);
+  times.compile = watch.lap();
+  guess(graph, options, report, *solver, start);
+  times.guess = watch.lap();
   const int dimension = unknowns(graph);
   int rejected = 0;
+  const FinishOnSignal finish;
   const OptimiserResult result =
       ceres               ? run_ceres(graph, options, times)
-      : options.graduated ? run_graduated(graph, options, *solver, doubted, rejected, times)
-                          : run(graph, options, *solver, times);
+      : options.graduated ? run_graduated(graph, options, *solver, start, rejected, times)
+                          : run(start, options, *solver, times);
   Json diagnosis;
   std::string diagnosis_text;
   if (options.diagnose || calls_for_diagnosis(result)) {
@@ -310,11 +347,13 @@ ExitCode optimize(const OptimizeOptions& options) {
       {"iterations", result.iterations},
       {"converged", result.converged},
       {"reason", reason(result, graph)},
+      {"initial_guess", start.guess},
       {"algorithm", options.algorithm},
       {"linear_solver", ceres ? "ceres" : solver->name()},
       {"threads", options.threads},
       {"time",
        {{"load", times.load},
+        {"guess", times.guess},
         {"compile", times.compile},
         {"optimize", times.optimize},
         {"total", times.total}}},
@@ -327,6 +366,7 @@ ExitCode optimize(const OptimizeOptions& options) {
     json["diagnosis_text"] = diagnosis_text;
   }
   if (!options.output.empty() && std::isfinite(result.final.robust)) {
+    const Progress progress("writing " + options.output);
     write_graph(graph, options.output);
     json["output"] = options.output;
   }
@@ -349,7 +389,8 @@ Command add_optimize(OptionParser& app) {
                   "Graph file (.g2o) or bundle adjustment in the large (.txt, .bal); - reads "
                   "standard input")
       .required();
-  parser.add_option("-o,--output", o.output, "Where to write the optimised graph");
+  parser.add_option("-o,--output", o.output,
+                    "Where to write the optimised graph; - is standard output");
   parser.add_option("--algorithm", o.algorithm, "lm, gn or dogleg")
       .one_of({"lm", "gn", "dogleg"})
       .show_default();
@@ -364,9 +405,11 @@ Command add_optimize(OptionParser& app) {
       .show_default();
   parser
       .add_option("--initial-guess", o.initial_guess,
-                  "none, odometry, spanning-tree or chordal; chordal with --gnc or --kernel does "
-                  "without the loop closures that no short cycle confirms")
-      .one_of({"none", "odometry", "spanning-tree", "chordal"})
+                  "auto (the one of least cost; chordal only where the others are poor; with --gnc "
+                  "none), none (the values of the file), odometry, spanning-tree or chordal; "
+                  "chordal with --gnc or --kernel does without the loop closures that no short "
+                  "cycle confirms")
+      .one_of({"auto", "none", "odometry", "spanning-tree", "chordal"})
       .show_default();
   parser.add_flag(
       "--gnc", o.graduated,
@@ -384,18 +427,27 @@ Command add_optimize(OptionParser& app) {
   add_plugin_option(parser, o.plugins);
   parser.add_flag("--lenient", o.lenient,
                   "Leave out unknown tags, project indefinite information, hold unconnected parts");
-  parser.add_flag("--diagnose", o.diagnose,
-                  "Tell what the measurements leave free and which matrices are not positive; "
-                  "done unasked when the system is singular");
+  parser.add_flag(
+      "--diagnose", o.diagnose,
+      "Tell what the measurements leave free, which matrices are not positive and which "
+      "Jacobians not the derivatives of their errors; done unasked when the system is "
+      "singular or no step lowers the cost");
   parser.add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] {
-            options->optimiser.algorithm = kAlgorithms.at(options->algorithm);
+            OptimiserOptions& optimiser = options->optimiser;
             options->bal = options->input != "-" && is_bal_file(options->input);
             if (options->bal) {
               // Rotations, pixels and distortions have no common unit.
-              options->optimiser.scale_by_diagonal = true;
-              options->optimiser.initial_lambda = 1e-4;
+              optimiser.scale_by_diagonal = true;
+              optimiser.initial_lambda = 1e-4;
+            } else if (!options->graduated) {
+              OptimiserOptions any = OptimiserOptions::for_any_start();
+              any.max_iterations = optimiser.max_iterations;
+              any.gain = optimiser.gain;
+              optimiser = any;
             }
+            optimiser.algorithm = kAlgorithms.at(options->algorithm);
+            optimiser.on_iteration = [](const OptimiserResult&) { return !stop_requested(); };
             return optimize(*options);
           }};
 }

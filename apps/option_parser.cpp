@@ -1,9 +1,44 @@
 #include <locograph/apps/option_parser.h>
+#include <locograph/common/suggestion.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 
 namespace locograph {
+namespace {
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+std::vector<std::string> subcommand_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* subcommand : app.get_subcommands({}))
+    names.push_back(subcommand->get_name());
+  return names;
+}
+
+/// What is wrong with the first word that an app did not understand; "" if it understood all.
+std::string not_understood(const CLI::App& app) {
+  const std::vector<std::string> words = app.remaining();
+  if (words.empty()) return "";
+  std::string word = words.front();
+  if (word.starts_with('-')) {
+    word = word.substr(0, word.find('='));
+    return "unknown option '" + word + "'" + did_you_mean(word, option_names(app));
+  }
+  const std::vector<std::string> commands = subcommand_names(app);
+  if (commands.empty() || !app.get_subcommands().empty()) return "unexpected '" + word + "'";
+  return "unknown command '" + word + "', expected one of " + joined_names(commands) +
+         did_you_mean(word, commands);
+}
+
+}  // namespace
 
 ParserOption& ParserOption::required() { return option_->required(), *this; }
 ParserOption& ParserOption::positive() { return option_->check(CLI::PositiveNumber), *this; }
@@ -20,7 +55,12 @@ ParserOption& ParserOption::between(double least, double most) {
 }
 
 ParserOption& ParserOption::one_of(const std::vector<std::string>& values) {
-  return option_->check(CLI::IsMember(values)), *this;
+  const std::string all = '{' + CLI::detail::join(values, ",") + '}';
+  const auto wrong = [values, all](std::string& value) -> std::string {
+    if (std::find(values.begin(), values.end(), value) != values.end()) return "";
+    return '\'' + value + "' is not in " + all + did_you_mean(value, values);
+  };
+  return option_->check(CLI::Validator(wrong, all)), *this;
 }
 
 ParserOption& ParserOption::separated_by(char delimiter) {
@@ -75,14 +115,22 @@ bool OptionParser::parse(int argc, const char* const* argv) {
   } catch (const CLI::Success& help_or_version) {
     return app_->exit(help_or_version), false;
   } catch (const CLI::ParseError& usage) {
+    // What is not understood comes first: it may be why something else is missing.
     const std::vector<CLI::App*> chosen = app_->get_subcommands();
-    throw UsageError(std::string(usage.what()) + " (see: " + name() + ' ' +
+    std::string why = chosen.empty() ? "" : not_understood(*chosen.front());
+    if (why.empty()) why = not_understood(*app_);
+    if (why.empty()) why = usage.what();
+    throw UsageError(why + " (see: " + name() + ' ' +
                      (chosen.empty() ? "" : chosen.front()->get_name() + ' ') + "--help)");
   }
   return true;
 }
 
 bool OptionParser::chosen() const { return app_->parsed(); }
+
+bool OptionParser::has_option(const std::string& name) const {
+  return app_->get_option_no_throw(name) != nullptr;
+}
 
 std::string OptionParser::name() const { return app_->get_name(); }
 

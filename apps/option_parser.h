@@ -68,10 +68,12 @@ class OptionParser {
   OptionParser add_subcommand(const std::string& name, const std::string& description);
 
   /// Whether to go on: false when help or the version was asked for, which is then printed.
-  /// Throws UsageError.
+  /// Throws UsageError; of a name that does not exist it says which one may be meant.
   bool parse(int argc, const char* const* argv);
   /// Whether this is the subcommand that was named.
   bool chosen() const;
+  /// Whether it has this option, e.g. "--lenient".
+  bool has_option(const std::string& name) const;
   std::string name() const;
 
  private:

@@ -1,4 +1,5 @@
 #include <locograph/apps/output.h>
+#include <locograph/common/atomic_file.h>
 #include <locograph/common/error.h>
 #include <unistd.h>
 
@@ -10,6 +11,10 @@
 
 namespace locograph {
 namespace {
+
+/// check_output() was told so: then nothing else goes to standard output.
+bool output_is_a_file = false;
+bool silenced = false;
 
 std::string one_line(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
@@ -34,9 +39,17 @@ bool is_flat(const Json& value) {
 std::pair<std::string, std::string> label_and_unit(const std::string& key, const Json& value) {
   const bool numeric =
       value.is_number() || (value.is_array() && !value.empty() && value.front().is_number());
-  for (const std::string unit : {"mm", "m", "kg", "s", "rad"}) {
-    if (numeric && key.ends_with("_" + unit)) {
-      return {key.substr(0, key.size() - unit.size() - 1), ' ' + unit};
+  struct Unit {
+    std::string_view suffix, text;
+  };
+  // Longer ones first: a speed in m_s is no time in s.
+  static constexpr Unit kUnits[] = {{"_rad_s2", " rad/s2"}, {"_rad_s", " rad/s"}, {"_m_s", " m/s"},
+                                    {"_1_m", " 1/m"},       {"_mm", " mm"},       {"_m", " m"},
+                                    {"_kg", " kg"},         {"_s", " s"},         {"_rad", " rad"},
+                                    {"_Nm", " Nm"},         {"_N", " N"}};
+  for (const Unit& unit : kUnits) {
+    if (numeric && key.ends_with(unit.suffix)) {
+      return {key.substr(0, key.size() - unit.suffix.size()), std::string(unit.text)};
     }
   }
   return {key, ""};
@@ -85,8 +98,11 @@ void write_value(std::ostream& out, const Json& value, const std::string& unit,
 }  // namespace
 
 void print_text(const std::string& text) {
-  std::cout << text << std::flush;
-  if (!std::cout) throw Error("standard output", 0, "cannot be written", "an open stream");
+  if (output_is_a_file) {
+    std::cerr << text << std::flush;
+  } else {
+    write_to_descriptor(STDOUT_FILENO, text, "standard output");
+  }
 }
 
 void print_result(const Json& result, bool as_json) {
@@ -104,7 +120,12 @@ void print_result(const Json& result, bool as_json) {
   print_text(text.str());
 }
 
+void be_quiet() { silenced = true; }
+bool is_quiet() { return silenced; }
+
 void print_warning(const std::string& text) {
+  if (silenced) return;
+  if (::isatty(STDERR_FILENO) != 0) std::cerr << "\r\033[K";  // over a line of progress
   std::cerr << "locograph: warning: " << one_line(text) << '\n';
 }
 
@@ -112,15 +133,15 @@ void print_error(const std::string& what) {
   std::cerr << "locograph: " << one_line(what) << std::endl;
 }
 
-void check_writable(const std::filesystem::path& path) {
-  const std::filesystem::path parent = path.parent_path();
-  const std::filesystem::path folder = parent.empty() ? "." : parent;
-  if (path.filename().empty() || std::filesystem::is_directory(path)) {
-    throw Error(path.string(), 0, "is a folder", "the name of a file to write");
+void check_output(const std::filesystem::path& path, bool json) {
+  if (is_standard_output(path)) {
+    if (json || output_is_a_file) {
+      throw Error(path.string(), 0, "two results on standard output",
+                  json ? "a file, or no --json" : "one of the two in a file");
+    }
+    output_is_a_file = true;
   }
-  if (!std::filesystem::is_directory(folder) || ::access(folder.c_str(), W_OK) != 0) {
-    throw Error(path.string(), 0, "cannot be written", "an existing, writable folder");
-  }
+  check_output_path(path);
 }
 
 std::string short_number(double value) {

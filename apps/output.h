@@ -6,8 +6,8 @@
 ///     print_warning("3 meshes are missing");
 ///
 /// With --json standard output is one JSON object and nothing else. Without, the same object is
-/// printed as indented lines `key: value unit`, the unit taken from the key's suffix (_m, _mm, _kg,
-/// _s, _rad); long lists are cut.
+/// printed as indented lines `key: value unit`, the unit taken from the key's suffix (_m, _kg, _s,
+/// _rad_s, _N, …); long lists are cut.
 
 #include <exception>
 #include <filesystem>
@@ -20,14 +20,20 @@ using Json = nlohmann::ordered_json;
 
 /// Throws Error when standard output cannot be written.
 void print_result(const Json& result, bool as_json);
+/// Goes to stderr where standard output is a file that the command writes: check_output().
 void print_text(const std::string& text);
 void print_warning(const std::string& text);
+
+/// From now on there are neither warnings nor progress on stderr; errors there are.
+void be_quiet();
+bool is_quiet();
 
 /// `locograph: FILE:LINE: what, expected` on one line of stderr.
 void print_error(const std::string& what);
 
-/// Throws Error when a file could not be created at this path: asked before a long job, not after.
-void check_writable(const std::filesystem::path& path);
+/// Throws Error when a file could not be written at this path: asked before a long job, not after.
+/// Also when that is standard output (`-`), and json or another file is to go there as well.
+void check_output(const std::filesystem::path& path, bool json = false);
 
 /// Six significant digits.
 std::string short_number(double value);

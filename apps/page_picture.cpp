@@ -2,6 +2,7 @@
 #include <locograph/apps/output.h>
 #include <locograph/apps/page_picture.h>
 #include <locograph/common/atomic_file.h>
+#include <locograph/common/input_file.h>
 
 #include <cctype>
 #include <string>

@@ -1,12 +1,15 @@
-#include <locograph/apps/data_folder.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_command.h>
+#include <locograph/apps/progress.h>
+#include <locograph/common/data_folder.h>
 #include <locograph/common/deadline.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
 #include <locograph/planners/plan/judging.h>
 
+#include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace locograph {
@@ -20,56 +23,84 @@ struct PlanOptions {
   bool json = false;
 };
 
-ExitCode plan_scenario(const PlanOptions& options) {
-  check_writable(options.output);
-  const Stopwatch total;
-  const Scenario scenario = load_scenario(options.scenario, data_folder());
+/// What became of a scenario.
+struct Planned {
+  std::optional<Graph> graph;  ///< nothing: out of time
+  std::size_t configurations = 0;
+  double duration_s = 0.0, whole_body_s = 0.0, judge_s = 0.0;
+  bool success = false;
+  std::string reason = "the time allowed is used up";
+};
+
+Planned plan_and_judge(const Scenario& scenario, const PlanOptions& options,
+                       const JobControl& job) {
+  Planned planned;
   Stopwatch watch;
-  Graph graph = plan_wheeled_drive(scenario);
-  const double whole_body_s = watch.seconds();
-  const Plan plan = plan_of(graph);
-  const Motion motion = motion_of(graph, plan);
-  watch.lap();
-  Judging judging = judging_of(graph, plan, {.data_folder = data_folder()});
+  planned.graph = plan_wheeled_drive(scenario, job);
+  planned.whole_body_s = watch.lap();
+  if (!planned.graph) return planned;
+  const Plan plan = plan_of(*planned.graph);
+  const Motion motion = motion_of(*planned.graph, plan);
+  planned.configurations = motion.configurations.size();
+  planned.duration_s = motion.time_s.back() - motion.time_s.front();
+  Judging judging = judging_of(*planned.graph, plan, {.data_folder = data_folder()});
   if (!options.torques.empty()) {
     judging.options.enforce_torque_limits = options.torques == "enforce";
   }
-  const CheckReport report = judged(graph, plan, judging);
-  const double judge_s = watch.lap();
-  const bool in_time = options.timeout_s <= 0.0 || total.seconds() <= options.timeout_s;
-  const bool success = in_time && report.feasible;
-  const std::string reason = !report.feasible ? "refused: " + violation_text(report.worst())
-                             : !in_time       ? "the time allowed is used up"
-                                              : "planned";
-  if (success) write_graph(graph, options.output);
+  const std::optional<CheckReport> report = judged(motion, plan, judging, job);
+  planned.judge_s = watch.lap();
+  if (!report || job.deadline.passed()) return planned;
+  planned.success = report->feasible;
+  planned.reason = report->feasible ? "planned" : "refused: " + violation_text(report->worst());
+  return planned;
+}
+
+ExitCode plan_scenario(const PlanOptions& options) {
+  check_output(options.output, options.json);
+  const Stopwatch total;
+  const Scenario scenario = load_scenario(options.scenario, data_folder());
+  Planned planned;
+  {
+    Progress progress("planning " + options.scenario);
+    JobControl job;
+    if (options.timeout_s > 0.0) job.deadline = Deadline::after(options.timeout_s);
+    job.report = [&](std::string_view what, double fraction) {
+      progress.show(fraction, [&] { return std::string(what); });
+    };
+    planned = plan_and_judge(scenario, options, job);
+  }
+  if (planned.success) {
+    const Progress progress("writing " + options.output);
+    write_graph(*planned.graph, options.output);
+  }
   const Json json = {
-      {"success", success},
-      {"reason", reason},
+      {"success", planned.success},
+      {"reason", planned.reason},
       {"seed", options.seed},
       {"stances", 1},
       {"vertices_in_tree", 0},
       {"iterations", 0},
-      {"configurations", motion.configurations.size()},
-      {"duration_s", motion.time_s.back() - motion.time_s.front()},
+      {"configurations", planned.configurations},
+      {"duration_s", planned.duration_s},
       {"time",
        {{"stance_planner", 0.0},
         {"transitions", 0.0},
-        {"whole_body", whole_body_s},
+        {"whole_body", planned.whole_body_s},
         {"timing", 0.0},
-        {"judge", judge_s},
+        {"judge", planned.judge_s},
         {"total", total.seconds()}}},
   };
   if (options.json) {
     print_result(json, true);
-  } else if (success) {
+  } else if (planned.success) {
     print_text(scenario.name + ": " +
                counted(json["configurations"], "configuration", "configurations") + " in " +
                short_number(json["duration_s"]) + " s, planned in " +
                short_number(total.seconds()) + " s\nwritten: " + options.output + '\n');
   } else {
-    print_text(scenario.name + ": no plan: " + reason + '\n');
+    print_text(scenario.name + ": no plan: " + planned.reason + '\n');
   }
-  return success ? kDone : kNo;
+  return planned.success ? kDone : kNo;
 }
 
 }  // namespace
@@ -81,7 +112,8 @@ Command add_plan(OptionParser& app) {
       app.add_subcommand("plan", "Plan a scenario offline and emit the plan's graph");
   parser.add_option("SCENARIO", o.scenario, "File, or a name that `locograph list scenarios` gives")
       .required();
-  parser.add_option("-o,--output", o.output, "Plan file to write (.g2o)").required();
+  parser.add_option("-o,--output", o.output, "Plan file to write (.g2o); - is standard output")
+      .required();
   parser.add_option("--seed", o.seed, "Of everything random (a drive has nothing random)")
       .show_default();
   parser.add_option("--timeout", o.timeout_s, "Seconds the planner may take; 0: no limit")

@@ -1,7 +1,7 @@
-#include <locograph/apps/data_folder.h>
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/plan_file.h>
 #include <locograph/check/judge.h>
+#include <locograph/common/data_folder.h>
 
 #include <memory>
 

@@ -1,6 +1,7 @@
 #include <locograph/apps/child_process.h>
 #include <locograph/apps/plot.h>
 #include <locograph/common/atomic_file.h>
+#include <locograph/common/input_file.h>
 
 namespace locograph {
 namespace {

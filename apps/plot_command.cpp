@@ -2,6 +2,7 @@
 #include <locograph/apps/output.h>
 #include <locograph/apps/plot.h>
 #include <locograph/apps/plot_command.h>
+#include <locograph/apps/progress.h>
 
 #include <memory>
 #include <string>
@@ -16,8 +17,11 @@ struct CommandOptions {
 };
 
 ExitCode plot(const CommandOptions& options) {
-  check_writable(options.output);
-  plot_result(options.input, options.plugins).write(options.output);
+  check_output(options.output);
+  {
+    const Progress progress("drawing " + options.input);
+    plot_result(options.input, options.plugins).write(options.output);
+  }
   print_text("written: " + options.output + '\n');
   return kDone;
 }
@@ -32,7 +36,8 @@ Command add_plot(OptionParser& app) {
       .add_option("RESULT", o.input,
                   "JSON of optimize, refine or check, a plan (.g2o) or a table (.csv)")
       .required();
-  parser.add_option("-o,--output", o.output, "Diagram to write (.svg)").required();
+  parser.add_option("-o,--output", o.output, "Diagram to write (.svg); - is standard output")
+      .required();
   add_plugin_option(parser, o.plugins);
   return {parser, [options] { return plot(*options); }};
 }

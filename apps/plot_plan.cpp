@@ -127,7 +127,7 @@ PlotScript plot_plan(const std::filesystem::path& file, const std::vector<std::s
   plot.line("set xlabel 'time [s]'");
   plot.line("set xrange [" + short_number(motion.time_s.front()) + ":" +
             short_number(motion.time_s.back()) + "]");
-  plot.line("set title 'joint positions (-1 lower limit, 1 upper limit)'");
+  plot.line("set title 'joint positions (-1 lower limit, 1 upper limit; far from both is better)'");
   plot.line("set ylabel 'position'");
   plot.line("set yrange [-1.1:1.1]");
   limit_line(plot, 1, -1.0);
@@ -137,7 +137,7 @@ PlotScript plot_plan(const std::filesystem::path& file, const std::vector<std::s
   const std::vector<Series> speeds = velocities(robot, motion);
   double fastest = 1.0;
   for (const Series& series : speeds) fastest = std::max(fastest, series.peak);
-  plot.line("set title 'joint velocities (1 at the limit)'");
+  plot.line("set title 'joint velocities (1 at the limit; lower is better)'");
   plot.line("set ylabel '|velocity| / limit'");
   plot.line("set yrange [0:" + short_number(1.1 * fastest) + "]");
   add_lines(plot, "velocity", motion.time_s, speeds);

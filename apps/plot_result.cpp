@@ -1,7 +1,7 @@
 #include <locograph/apps/output.h>
 #include <locograph/apps/plot.h>
 #include <locograph/apps/statistics.h>
-#include <locograph/common/atomic_file.h>
+#include <locograph/common/input_file.h>
 
 #include <algorithm>
 #include <cmath>
@@ -42,7 +42,7 @@ PlotScript convergence(const Json& result) {
                                              ", " + result.value("linear_solver", "") + ", " +
                                              result.value("reason", "")));
   plot.line("set xlabel 'iteration'");
-  plot.line("set ylabel 'chi2'");
+  plot.line("set ylabel 'chi2 (lower is better)'");
   plot.line("set logscale y");
   plot.line("set format y '%.3g'");
   plot.line("set xrange [-0.5:" + short_number(std::max(1.0, iteration) + 0.5) + "]");
@@ -77,7 +77,7 @@ PlotScript cycle_times(const Json& result) {
             PlotScript::label(
                 "Cycle time: " + counted(static_cast<long>(times_ms.size()), "cycle", "cycles") +
                 ", horizon " + result.value("horizon", Json("?")).dump()));
-  plot.line("set xlabel 'cycle time [ms]'");
+  plot.line("set xlabel 'cycle time [ms] (lower is better)'");
   plot.line("set ylabel 'cycles'");
   plot.line("set boxwidth " + short_number(0.92 * width) + " absolute");
   plot.line("set yrange [0:*]");
@@ -108,7 +108,15 @@ struct Bar {
   bool violated;
 };
 
-/// Bars of one unit, its own axis: worst value and limit of each constraint.
+/// Where values are allowed, as seen from the limit: 1 above, -1 below; 0 where the numbers do not
+/// tell.
+double allowed_side(const Bar& bar) {
+  if (bar.worst == bar.limit) return 0.0;
+  return (bar.worst > bar.limit) == bar.violated ? -1.0 : 1.0;
+}
+
+/// Bars of one unit, its own axis: worst value and limit of each constraint, and the side of the
+/// limit that is allowed.
 void add_panel(PlotScript& plot, const std::string& unit, const std::vector<Bar>& bars, int panel) {
   // Lengths of a few millimetres and sizes of metres on one axis: small units read better.
   const bool metres = unit == "m";
@@ -131,11 +139,18 @@ void add_panel(PlotScript& plot, const std::string& unit, const std::vector<Bar>
               " left offset 0.5,0 font ',11' noenhanced");
   }
   const double room = 0.18 * std::max(highest - lowest, 1e-9);
+  std::string arrows;
+  for (int i = 0; i < count; ++i) {
+    const Bar& bar = bars[static_cast<std::size_t>(i)];
+    arrows += short_number(scale * bar.limit) + ' ' + std::to_string(count - i) + ' ' +
+              short_number(0.4 * room * allowed_side(bar)) + '\n';
+  }
   const std::string id = std::to_string(panel);
   // An empty block is no block to gnuplot: NaN draws nothing.
   plot.data("good" + id, good.empty() ? "NaN NaN NaN\n" : good);
   plot.data("bad" + id, bad.empty() ? "NaN NaN NaN\n" : bad);
   plot.data("limit" + id, limits);
+  plot.data("allowed" + id, arrows);
   std::string tics;
   for (int i = 0; i < count; ++i) {
     tics += (i > 0 ? ", " : "") + PlotScript::label(bars[static_cast<std::size_t>(i)].name) + ' ' +
@@ -143,14 +158,16 @@ void add_panel(PlotScript& plot, const std::string& unit, const std::vector<Bar>
   }
   plot.line("set ytics (" + tics + ")");
   plot.line("set yrange [0.4:" + short_number(count + 0.6) + "]");
-  plot.line("set xrange [" + short_number(lowest - (lowest < 0.0 ? room : 0.0)) + ":" +
+  plot.line("set xrange [" + short_number(lowest - (lowest < 0.0 ? room : 0.5 * room)) + ":" +
             short_number(highest + room) + "]");
   plot.line("set xlabel " + PlotScript::label(metres ? "mm" : unit) + " offset 0,0.5");
   plot.line("plot $good" + id + " using 1:2:3:(0.32) with boxxyerror linecolor " + kBlue +
             " notitle, $bad" + id + " using 1:2:3:(0.32) with boxxyerror linecolor " + kRed +
             " notitle, $limit" + id +
             " using 1:($2-0.42):(0):(0.84) with vectors nohead linewidth 2.5 linecolor '#202428' "
-            "notitle");
+            "notitle, $allowed" +
+            id + " using 1:($2+0.3):3:(0) with vectors head filled size screen 0.008,20 " +
+            "linewidth 1.8 linecolor " + kGreen + " notitle");
   for (int i = 0; i < count; ++i) plot.line("unset label " + std::to_string(i + 1));
 }
 
@@ -176,8 +193,8 @@ PlotScript constraints(const Json& result) {
   const bool feasible = result.value("feasible", false);
   plot.line("set multiplot title " +
             PlotScript::label(std::string(feasible ? "Feasible" : "NOT feasible") +
-                              ": worst value of each constraint (bar; red: violated) "
-                              "against its limit (black mark)"));
+                              ": worst value of each constraint (bar; red: violated), its limit "
+                              "(black) and where it holds (green)"));
   plot.line("set lmargin screen 0.30");
   plot.line("set rmargin screen 0.96");
   double top = height - head_px + 14.0;
@@ -193,6 +210,28 @@ PlotScript constraints(const Json& result) {
   return plot;
 }
 
+int line_of(const std::string& text, std::size_t at) {
+  const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(at, text.size()));
+  return 1 + static_cast<int>(std::count(text.begin(), end, '\n'));
+}
+
+Json parsed(const std::filesystem::path& file, const std::string& expected) {
+  const std::string text = read_file(file, kMostInputBytes, expected);
+  try {
+    return Json::parse(text);
+  } catch (const Json::parse_error& failure) {
+    const std::size_t at = failure.byte > 0 ? failure.byte - 1 : 0;
+    throw Error(file.string(), line_of(text, at), "is not JSON", expected);
+  } catch (const Json::out_of_range& failure) {
+    // "number overflow parsing '1e400'", without a place.
+    const std::string message = failure.what();
+    const std::size_t begin = message.find('\'') + 1, end = message.rfind('\'');
+    const std::string number = begin < end ? message.substr(begin, end - begin) : "a number";
+    throw Error(file.string(), line_of(text, text.find(number)), "'" + number + "' is not finite",
+                "finite numbers");
+  }
+}
+
 }  // namespace
 
 PlotScript plot_result(const std::filesystem::path& result,
@@ -201,12 +240,7 @@ PlotScript plot_result(const std::filesystem::path& result,
   if (result.extension() == ".csv") return plot_table(result);
   const std::string expected =
       "JSON that optimize, refine or check printed with --json, a plan (.g2o) or a table (.csv)";
-  Json json;
-  try {
-    json = Json::parse(read_file(result));
-  } catch (const Json::parse_error& failure) {
-    throw Error(result.string(), 0, "is not JSON", expected);
-  }
+  const Json json = parsed(result, expected);
   const auto has = [&json](const char* key) {
     return json.is_object() && json.contains(key) && json[key].is_array();
   };

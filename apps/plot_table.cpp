@@ -1,7 +1,7 @@
 #include <locograph/apps/output.h>
 #include <locograph/apps/plot.h>
 #include <locograph/apps/statistics.h>
-#include <locograph/common/atomic_file.h>
+#include <locograph/common/input_file.h>
 
 #include <charconv>
 #include <cmath>
@@ -17,6 +17,7 @@ namespace {
 struct Table {
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;
+  std::vector<int> lines;  ///< of the rows
 
   int column(const std::string& name) const {
     const auto found = std::find(header.begin(), header.end(), name);
@@ -43,7 +44,7 @@ std::vector<std::string> fields(std::string line) {
 }
 
 Table read_table(const std::filesystem::path& file) {
-  std::istringstream text(read_file(file));
+  std::istringstream text(read_file(file, kMostInputBytes, "a table (.csv)"));
   Table table;
   int number = 0;
   for (std::string line; std::getline(text, line);) {
@@ -59,6 +60,7 @@ Table read_table(const std::filesystem::path& file) {
                   std::to_string(table.header.size()) + " as in the header");
     }
     table.rows.push_back(std::move(row));
+    table.lines.push_back(number);
   }
   if (table.rows.empty()) {
     throw Error(file.string(), 0, "holds no rows", "a header line and one line for each run");
@@ -66,12 +68,16 @@ Table read_table(const std::filesystem::path& file) {
   return table;
 }
 
-std::optional<double> number(const std::string& text) {
+/// Nothing for a field that is empty or a word.
+std::optional<double> number(const std::string& text, const std::filesystem::path& file, int line) {
   double value = 0.0;
   const std::from_chars_result parsed =
       std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole = parsed.ec == std::errc() && parsed.ptr == text.data() + text.size();
-  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+  if (parsed.ptr != text.data() + text.size() || text.empty()) return std::nullopt;
+  if (parsed.ec != std::errc() || !std::isfinite(value)) {
+    throw Error(file.string(), line, "'" + text + "' is not finite", "a finite number");
+  }
+  return value;
 }
 
 bool is_yes(const std::string& text) { return text == "true" || text == "1" || text == "yes"; }
@@ -81,11 +87,14 @@ bool is_time(const std::string& name) {
 }
 
 /// The numbers of a column, sorted; of the successful runs only when the table tells.
-std::vector<double> column_values(const Table& table, std::size_t column, int success) {
+std::vector<double> column_values(const Table& table, std::size_t column, int success,
+                                  const std::filesystem::path& file) {
   std::vector<double> values;
-  for (const std::vector<std::string>& row : table.rows) {
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const std::vector<std::string>& row = table.rows[i];
     if (success >= 0 && !is_yes(row[static_cast<std::size_t>(success)])) continue;
-    if (const std::optional<double> value = number(row[column])) values.push_back(*value);
+    const std::optional<double> value = number(row[column], file, table.lines[i]);
+    if (value) values.push_back(*value);
   }
   std::sort(values.begin(), values.end());
   return values;
@@ -101,7 +110,7 @@ PlotScript plot_table(const std::filesystem::path& file) {
   double highest = 0.0;
   for (std::size_t c = 0; c < table.header.size(); ++c) {
     if (!is_time(table.header[c])) continue;
-    const std::vector<double> values = column_values(table, c, success);
+    const std::vector<double> values = column_values(table, c, success, file);
     if (values.empty()) continue;
     // Candlesticks: x, lower quartile, minimum, p95, upper quartile, median.
     boxes += std::to_string(++count);
@@ -140,7 +149,7 @@ PlotScript plot_table(const std::filesystem::path& file) {
     plot.line("set rmargin screen 0.22");
     plot.line("set yrange [0:" + std::to_string(runs) + "]");
     plot.line("set xrange [-0.8:1.8]");
-    plot.line("set ylabel 'runs'");
+    plot.line("set ylabel 'runs (more solved is better)'");
     plot.line("set boxwidth 0.7");
     plot.line("set xtics ('solved' 0, 'failed' 1)");
     plot.data("solved", "0 " + std::to_string(solved) + '\n');
@@ -155,7 +164,7 @@ PlotScript plot_table(const std::filesystem::path& file) {
   plot.line("set rmargin screen 0.97");
   plot.line("set xrange [0.3:" + short_number(count + 0.7) + "]");
   plot.line("set yrange [0:" + short_number(highest > 0.0 ? 1.1 * highest : 1.0) + "]");
-  plot.line("set ylabel 'time [s]'");
+  plot.line("set ylabel 'time [s] (lower is better)'");
   plot.line("set xtics (" + tics + ")");
   plot.line("set boxwidth 0.4");
   plot.line("set key above horizontal right");

@@ -1,15 +1,17 @@
 #include <locograph/apps/check_json.h>
-#include <locograph/apps/data_folder.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/posture_command.h>
+#include <locograph/apps/progress.h>
 #include <locograph/apps/robot_files.h>
 #include <locograph/common/deadline.h>
+#include <locograph/common/stop_signals.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/planners/posture/contacts_file.h>
 #include <locograph/planners/posture/posture_solver.h>
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -122,9 +124,10 @@ void print_summary(const Robot& robot, const PostureResult& result, const Comman
 }
 
 ExitCode posture(const CommandOptions& options) {
-  if (!options.output.empty()) check_writable(options.output);
+  if (!options.output.empty()) check_output(options.output, options.json);
   const Stopwatch total;
-  const RobotFiles files = robot_files(options.robot, options.srdf, data_folder());
+  std::optional<Progress> progress("finding a posture of " + options.robot);
+  const RobotFiles files = robot_files(options.robot, options.srdf);
   const auto robot = std::make_shared<const RobotParameter>(
       files.urdf, files.srdf, RobotOptions{.active_joints = {}, .lenient_srdf = true});
   PostureProblem problem;
@@ -149,10 +152,13 @@ ExitCode posture(const CommandOptions& options) {
   solving.enforce_torque_limits = solving.check.enforce_torque_limits =
       options.torques == "enforce";
   if (options.deadline_ms > 0.0) solving.deadline = Deadline::after(1e-3 * options.deadline_ms);
+  solving.stop = &stop_flag();
+  const FinishOnSignal finish;
   const PostureResult result = about(files.urdf, [&] { return solver.solve(problem, solving); });
   if (result.success && !options.output.empty()) {
     write_graph(solver.graph(problem, result, solving), options.output);
   }
+  progress.reset();
   if (options.json) {
     print_result(result_json(model, problem, result, options, load_s, total.seconds()), true);
   } else {
@@ -177,7 +183,7 @@ Command add_posture(OptionParser& app) {
                     "Group state of the SRDF to stay near (home, else standing, else neutral)");
   parser.add_option("--map", o.map, "OctoMap of what is around");
   parser.add_option("--obstacles", o.obstacles, "Obstacle file (.xml); may go with --map");
-  parser.add_option("-o,--output", o.output, "Graph file to write (.g2o)");
+  parser.add_option("-o,--output", o.output, "Graph file to write (.g2o); - is standard output");
   parser.add_option("--seed", o.seed, "Of the restarts").show_default();
   parser.add_option("--restarts", o.restarts, "Most restarts").not_negative().show_default();
   parser.add_option("--deadline-ms", o.deadline_ms, "Time to find it in; 0: no limit")

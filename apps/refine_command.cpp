@@ -1,14 +1,16 @@
-#include <locograph/apps/data_folder.h>
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_file.h>
 #include <locograph/apps/progress.h>
 #include <locograph/apps/refine_command.h>
 #include <locograph/apps/statistics.h>
+#include <locograph/common/data_folder.h>
+#include <locograph/common/stop_signals.h>
 #include <locograph/planners/online/refine.h>
 #include <locograph/planners/plan/seen_world.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -98,13 +100,15 @@ double require_feasible(const PlanFile& file, RefineReport& report) {
 }
 
 ExitCode refine_plan(const CommandOptions& options) {
-  check_writable(options.output);
+  check_output(options.output, options.json);
   RefineOptions refine_options;
   refine_options.planner.horizon = options.horizon;
   refine_options.planner.deadline_s = 1e-3 * options.deadline_ms;
   refine_options.goal_tolerance_m = options.goal_tolerance_m;
   refine_options.goal_tolerance_rad = options.goal_tolerance_rad;
   refine_options.planner.validate();
+  refine_options.stop = &stop_flag();
+  std::optional<Progress> progress("reading " + options.input);
   PlanFile file = load_plan(options.input, options.plugins);
   if (!file.plan.world) throw Error(file.name, 0, "the plan has no world", "a PARAMS_WORLD line");
   const Judging judging = judging_of(file, options.world);
@@ -115,18 +119,20 @@ ExitCode refine_plan(const CommandOptions& options) {
   if (options.world.given()) file.plan.world->set_files(options.world.map, options.world.obstacles);
 
   refine_options.verify = step_check(file, judging);
-  Progress progress;
+  const double configurations = static_cast<double>(file.plan.slots.size());
+  progress.emplace("refining " + options.input);
   refine_options.on_cycle = [&](const CycleReport& cycle) {
-    progress.show([&] {
-      return "configuration " + std::to_string(cycle.executed + 1) + " of " +
-             std::to_string(file.plan.slots.size());
-    });
+    progress->show((cycle.executed + 1) / configurations);
   };
+  const FinishOnSignal finish;
   RefineReport report = refine(
       file.graph, [&seen](int executed) { return executed == 0 ? &seen : nullptr; },
       refine_options);
+  progress.emplace("judging " + options.input);
   const double judge_s = require_feasible(file, report);
+  progress.emplace("writing " + options.output);
   write_graph(file.graph, options.output);
+  progress.reset();
 
   const Json json = report_json(report, options, field_s, judge_s);
   if (options.json) {
@@ -155,7 +161,8 @@ Command add_refine(OptionParser& app) {
   OptionParser parser =
       app.add_subcommand("refine", "Walk along a plan and re-optimise a moving horizon of it");
   parser.add_option("PLAN", o.input, "Plan file (.g2o)").required();
-  parser.add_option("-o,--output", o.output, "Refined plan to write (.g2o)").required();
+  parser.add_option("-o,--output", o.output, "Refined plan to write (.g2o); - is standard output")
+      .required();
   add_world_options(parser, o.world);
   parser.add_option("--horizon", o.horizon, "Configurations that one cycle optimises")
       .show_default();

@@ -1,10 +1,11 @@
-#include <locograph/apps/data_folder.h>
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/scene.h>
-#include <locograph/common/atomic_file.h>
+#include <locograph/common/data_folder.h>
+#include <locograph/common/input_file.h>
 #include <locograph/core/graph_file.h>
 
 #include <cmath>
+#include <optional>
 
 namespace locograph {
 namespace {
@@ -14,6 +15,18 @@ bool has_configurations(const Graph& graph) {
     if (pool->type() == typeid(VertexConfiguration) && pool->size() > 0) return true;
   }
   return false;
+}
+
+/// What the plan is judged by; nothing, with a warning, where it names files that are not there.
+std::optional<Judging> known_judging(const PlanFile& file, const SceneOptions& options) {
+  try {
+    return judging_of(file, {.scenario = {}, .map = options.map, .obstacles = options.obstacles});
+  } catch (const Error& error) {
+    // What the command line names must be there.
+    load_world(options.map, options.obstacles);
+    print_warning(std::string("neither judged nor shown in its world: ") + error.what());
+    return {};
+  }
 }
 
 Json plan_scene(PlanFile file, const SceneOptions& options) {
@@ -31,12 +44,12 @@ Json plan_scene(PlanFile file, const SceneOptions& options) {
   } else {
     near.extend(Eigen::Vector3d::Zero());
   }
-  const Judging judging =
-      judging_of(file, {.scenario = {}, .map = options.map, .obstacles = options.obstacles});
-  add_world_scene(judging.world, near, scene);
-  if (!options.check) return scene;
+  const std::optional<Judging> judging = known_judging(file, options);
+  add_world_scene(judging ? judging->world : load_world(options.map, options.obstacles), near,
+                  scene);
+  if (!options.check || !judging) return scene;
   try {
-    scene["check"] = check_scene(file, check_plan(file, judging));
+    scene["check"] = check_scene(file, check_plan(file, *judging));
   } catch (const Error& error) {
     // E.g. a collision mesh that is missing: the rest can be shown all the same.
     print_warning(std::string("not checked: ") + error.what());

@@ -2,10 +2,13 @@
 #include <locograph/apps/packed.h>
 #include <locograph/apps/scene.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
+#include <locograph/plugins/static_balance/static_rows.h>
+#include <locograph/plugins/static_balance/vertex_wrenches.h>
 #include <locograph/robots/robot_state.h>
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 namespace locograph {
 namespace {
@@ -29,6 +32,52 @@ std::map<int, Eigen::VectorXd> references(const Graph& graph) {
     }
   }
   return result;
+}
+
+/// Where in the state of a VERTEX_WRENCHES the wrench of a contact begins.
+struct WrenchPlace {
+  const VertexWrenches* vertex;
+  int first;
+};
+/// By the slot of the configuration and the number of the contact.
+using WrenchPlaces = std::map<std::pair<int, int>, WrenchPlace>;
+
+void add_wrench_places(const VertexWrenches& wrenches, int configuration_slot,
+                       WrenchPlaces& places) {
+  int first = 0;
+  for (std::size_t i = 0; i < wrenches.contact_numbers.size(); ++i) {
+    places.emplace(std::pair(configuration_slot, wrenches.contact_numbers[i]),
+                   WrenchPlace{&wrenches, first});
+    first += static_cast<int>((*wrenches.contacts)[i]->components().size());
+  }
+}
+
+/// Wrenches bear the configurations that they share an edge with.
+WrenchPlaces wrench_places(const Graph& graph) {
+  const auto holds = [&graph](int slot, const std::type_info& type) {
+    return graph.vertex_pools()[graph.vertex_record(slot).pool]->type() == type;
+  };
+  WrenchPlaces places;
+  for (int edge = 0; edge < graph.edge_slots(); ++edge) {
+    if (!graph.edge_alive(edge)) continue;
+    for (const int a : graph.edge_vertices(edge)) {
+      if (!holds(a, typeid(VertexWrenches))) continue;
+      for (const int b : graph.edge_vertices(edge)) {
+        if (!holds(b, typeid(VertexConfiguration))) continue;
+        add_wrench_places(graph.vertex(VertexId<VertexWrenches>{a}), b, places);
+      }
+    }
+  }
+  return places;
+}
+
+/// On the robot, in the world frame, at the touching point.
+void add_wrench(const ContactParameter& contact, const RobotState& state, const WrenchPlace& place,
+                Json& json) {
+  const AppliedWrench applied(state, contact, place.vertex->state.data() + place.first);
+  json["force"] = vector_json(applied.force);
+  // What turns on its contact bears no moment there.
+  if (!contact.axes_in_world) json["moment"] = vector_json(applied.moment);
 }
 
 Json contact_json(const ContactParameter& parameter, const RobotState& state) {
@@ -73,6 +122,7 @@ Json stances_json(const Plan& plan) {
 void add_plan_scene(const PlanFile& file, const SceneOptions& options, Json& scene) {
   const Robot& robot = *file.plan.robot->robot;
   const std::map<int, Eigen::VectorXd> planned = references(file.graph);
+  const WrenchPlaces wrenches = wrench_places(file.graph);
   RobotState state(robot);
   std::vector<float> configurations, reference;
   Json times = Json::array(), ids = Json::array(), contacts = Json::array();
@@ -87,7 +137,13 @@ void add_plan_scene(const PlanFile& file, const SceneOptions& options, Json& sce
     state.update(vertex.state.data());
     Json here = Json::array();
     if (const StanceParameter* stance = file.plan.stance_from[i].get()) {
-      for (const auto& contact : stance->contacts) here.push_back(contact_json(*contact, state));
+      for (std::size_t k = 0; k < stance->contacts.size(); ++k) {
+        here.push_back(contact_json(*stance->contacts[k], state));
+        const auto place = wrenches.find({slot, stance->contact_numbers[k]});
+        if (place != wrenches.end()) {
+          add_wrench(*stance->contacts[k], state, place->second, here.back());
+        }
+      }
     }
     contacts.push_back(std::move(here));
   }

@@ -57,18 +57,24 @@ Json shape_json(const VisualShape& shape, Meshes& meshes) {
 }
 
 Json joint_json(const Joint& joint) {
-  return {{"name", joint.name},
-          {"type", type_name(joint.type)},
-          {"parent", joint.parent_link},
-          {"child", joint.child_link},
-          {"origin", pose_json(joint.parent_from_joint)},
-          {"axis", vector_json(joint.axis)},
-          {"lower", limit_json(joint.lower)},
-          {"upper", limit_json(joint.upper)},
-          {"velocity", limit_json(joint.max_velocity)},
-          {"effort", limit_json(joint.max_effort)},
-          {"index", joint.index},
-          {"frozen", joint.frozen_position}};
+  Json json = {{"name", joint.name},
+               {"type", type_name(joint.type)},
+               {"parent", joint.parent_link},
+               {"child", joint.child_link},
+               {"origin", pose_json(joint.parent_from_joint)},
+               {"axis", vector_json(joint.axis)},
+               {"lower", limit_json(joint.lower)},
+               {"upper", limit_json(joint.upper)},
+               {"velocity", limit_json(joint.max_velocity)},
+               {"effort", limit_json(joint.max_effort)},
+               {"index", joint.index},
+               {"frozen", joint.frozen_position}};
+  if (joint.mimics >= 0) {
+    json["mimics"] = joint.mimics;
+    json["multiplier"] = joint.multiplier;
+    json["offset"] = joint.offset;
+  }
+  return json;
 }
 
 }  // namespace

@@ -3,11 +3,13 @@
 #include <locograph/apps/live_refine.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/page_picture.h>
+#include <locograph/apps/progress.h>
 #include <locograph/apps/scene.h>
 #include <locograph/apps/view_command.h>
 #include <locograph/common/atomic_file.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace locograph {
@@ -42,10 +44,6 @@ ExitCode serve(const CommandOptions& options, Json scene) {
 void save(const CommandOptions& options, const std::string& page) {
   if (!options.output.empty()) write_file_atomically(options.output, page);
   if (options.png.empty()) return;
-  if (!options.output.empty()) {
-    save_page_picture(options.output, options.at_s, options.png);
-    return;
-  }
   const ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "page.html";
   write_file_atomically(file, page);
@@ -87,13 +85,16 @@ ExitCode view(const CommandOptions& options) {
     throw Error("nothing to write", "-o OUT.html, --png FILE or --serve PORT");
   }
   for (const std::string& file : {options.output, options.png}) {
-    if (!file.empty()) check_writable(file);
+    if (!file.empty()) check_output(file, options.json);
   }
   if (!options.png.empty()) require_browser();
+  std::optional<Progress> progress("reading " + options.input);
   Json scene = make_scene(options.input, options.scene);
   warn_of_missing_meshes(scene);
   const std::string page = scene_page(scene);
+  progress.emplace("drawing " + options.input);
   save(options, page);
+  progress.reset();
   if (!options.output.empty() || !options.png.empty()) {
     if (!serving || !options.json) report(options, scene, page.size());
   }
@@ -108,7 +109,8 @@ Command add_view(OptionParser& app) {
   OptionParser parser =
       app.add_subcommand("view", "Show a plan, a pose graph or a robot in one self-contained page");
   parser.add_option("FILE", o.input, "Plan or pose graph (.g2o), or robot (.urdf)").required();
-  parser.add_option("-o,--output", o.output, "Page to write (.html); opens without a network");
+  parser.add_option("-o,--output", o.output,
+                    "Page to write (.html); opens without a network; - is standard output");
   parser.add_option("--map", o.scene.map, "OctoMap to show instead of the plan's own world");
   parser.add_option("--obstacles", o.scene.obstacles, "Obstacle file (.xml); may go with --map");
   parser.add_option("--png", o.png, "Picture to write, taken by headless Chromium");

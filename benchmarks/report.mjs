@@ -70,6 +70,23 @@ const sections = {
     return table(['graph', 'χ²', 'steps', 'locograph [ms]', 'Ceres [ms]', 'g2o [ms]', 'GTSAM [ms]',
                   'two threads'], rows);
   },
+  bad_starts(data) {
+    // A cost more than a thousandth above the other is worse.
+    const worse = (a, b) => a.chi2 > 1.001 * b.chi2;
+    const cell = (run) => `${figure(run.chi2, 7)}${run.ended ? '' : ' (limit)'}`;
+    const rows = data.graphs.map((graph) => {
+      const peers = [graph.ceres, graph.ceres_nonmonotonic];
+      const compared = peers.map((peer) => worse(graph.locograph, peer) ? 'worse'
+                                           : worse(peer, graph.locograph) ? 'better' : 'same');
+      const faster = peers.map((peer) => times(peer.total / graph.locograph.total));
+      return [
+        graph.file.replace('.g2o', ''), graph.start, cell(graph.locograph), ...peers.map(cell),
+        compared.join(', '), figure(1e3 * graph.locograph.total), faster.join(', '),
+      ];
+    });
+    return table(['graph', 'start', 'χ²', 'χ² of Ceres', 'χ² of Ceres, non-monotonic', 'our χ² is',
+                  'locograph [ms]', 'Ceres takes'], rows);
+  },
   factorisation(data) {
     const name = (key) => (graph) => {
       const run = graph[key];

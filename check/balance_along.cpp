@@ -87,6 +87,7 @@ BalanceOptions BalanceAlong::options_for(const JudgedStance& stance, const LinkP
 
 BalanceAlong::Sample BalanceAlong::judge(int vertex, double fraction, std::optional<Half> half,
                                          const JudgedStance& stance) {
+  context_.go_on("judging balance", vertex);
   sampler_.link_poses(vertex, fraction, poses_);
   const RobotState& state = sampler_.state();
   std::vector<Contact> contacts;

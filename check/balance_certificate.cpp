@@ -179,7 +179,8 @@ class Programme {
     }
     contacts_.push_back(contact);
     if (!given.bears_load) return;
-    for (const int joint : robot_.support(link)) moving_joint_[std::size_t(joint)] = true;
+    for (const int axis : robot_.support(link))
+      moving_joint_[std::size_t(robot_.axes()[std::size_t(axis)].active)] = true;
     switch (effector.kind) {
       case ContactKind::kRung:
         for (const int component : {0, 1, 2, 3, 5}) {

@@ -1,7 +1,7 @@
 #pragma once
 /// What the rooms of the judge share while one motion is checked.
 ///
-///     CheckContext context{robot, world, exact, motion, options, &shapes, sampler};
+///     CheckContext context{robot, world, exact, motion, options, &shapes, sampler, job};
 ///     for (std::size_t i = 0; i < context.vertices(); ++i)
 ///       for (const JudgedStance* stance : context.stances_at(int(i))) use(*stance);
 
@@ -9,6 +9,7 @@
 #include <locograph/check/judged_stance.h>
 #include <locograph/check/motion.h>
 #include <locograph/check/moving_shapes.h>
+#include <locograph/common/job_control.h>
 #include <locograph/world/collision_world.h>
 #include <locograph/world/world.h>
 
@@ -22,6 +23,9 @@ struct UsableParts {
   std::vector<bool> vertices, steps;
 };
 
+/// Thrown where the job ends a check, caught where it began.
+struct CheckStopped {};
+
 struct CheckContext {
   const Robot& robot;
   const World& world;
@@ -30,6 +34,7 @@ struct CheckContext {
   const CheckOptions& options;
   MovingShapes* shapes;  ///< null for a single configuration
   MotionSampler& sampler;
+  const JobControl& job;
   double cutoff_m = 0.5;  ///< of distances
   bool single = false;    ///< one configuration, not a motion
 
@@ -38,6 +43,10 @@ struct CheckContext {
   std::vector<int> samples_per_step = {};
   int samples = 0;  ///< looked at so far
 
+  /// To be called before each piece of work. what: the part of the check.
+  void go_on(const char* what, int vertex) const {
+    if (!job.go_on(what, std::size_t(vertex), vertices())) throw CheckStopped();
+  }
   std::size_t vertices() const { return motion.configurations.size(); }
   /// Null: not known.
   const JudgedStance* stance_from(int vertex) const {

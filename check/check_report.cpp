@@ -1,6 +1,7 @@
 #include <locograph/check/check_report.h>
 #include <locograph/common/error.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -63,10 +64,17 @@ std::string violation_text(const Violation& v) {
 }
 
 const Violation& CheckReport::worst() const {
-  const Violation* most = &violations.front();
+  const std::vector<const Violation*> all = violated();
+  return all.empty() ? violations.front() : *all.front();
+}
+
+std::vector<const Violation*> CheckReport::violated() const {
+  std::vector<const Violation*> all;
   for (const Violation& v : violations)
-    if (v.violated && (!most->violated || excess(v) > excess(*most))) most = &v;
-  return *most;
+    if (v.violated) all.push_back(&v);
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Violation* a, const Violation* b) { return excess(*a) > excess(*b); });
+  return all;
 }
 
 const Violation& CheckReport::constraint(const std::string& name) const {

@@ -116,6 +116,8 @@ struct CheckReport {
   /// The one that is violated most, by its unit: 0.01 m, 0.1 rad and 0.1 of a ratio count alike.
   /// Where all hold, the first.
   const Violation& worst() const;
+  /// Those that are violated, the worst first by the same measure.
+  std::vector<const Violation*> violated() const;
   /// Throws Error if there is no such constraint.
   const Violation& constraint(const std::string& name) const;
 };

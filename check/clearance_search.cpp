@@ -53,6 +53,8 @@ void ClearanceSearch::add(std::size_t channel, CollisionWorld::Closest closest, 
 
 ClearanceSearch::Sample ClearanceSearch::sample(int vertex, double fraction,
                                                 const JudgedStance* stance) {
+  context_.go_on(self_ ? "judging self-collisions" : "judging distances",
+                 std::min(vertex, int(context_.vertices())));
   Sample sample;
   sample.fraction = fraction;
   sampler_.link_poses(vertex, fraction, sample.world_from_link);

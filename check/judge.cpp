@@ -171,7 +171,8 @@ struct Judge::Parts {
         exact(*robot, world),
         shapes(*robot) {}
 
-  CheckReport check(const Motion& motion, const CheckOptions& options, bool single) const {
+  std::optional<CheckReport> check(const Motion& motion, const CheckOptions& options, bool single,
+                                   const JobControl& job) const {
     options.validate();
     require_whole(motion);
     std::optional<MovingShapes> moving;  // it keeps numbers of a step
@@ -185,10 +186,15 @@ struct Judge::Parts {
                          .options = options,
                          .shapes = moving ? &*moving : nullptr,
                          .sampler = sampler,
+                         .job = job,
                          .cutoff_m = std::max({cutoff, 2.0 * options.min_clearance_m,
                                                2.0 * options.min_self_clearance_m}),
                          .single = single};
-    return Check(context).run();
+    try {
+      return Check(context).run();
+    } catch (const CheckStopped&) {
+      return std::nullopt;
+    }
   }
 };
 
@@ -199,7 +205,12 @@ Judge::Judge(Judge&&) noexcept = default;
 Judge& Judge::operator=(Judge&&) noexcept = default;
 
 CheckReport Judge::check(const Motion& motion, const CheckOptions& options) const {
-  return parts_->check(motion, options, false);
+  return *check(motion, options, JobControl());
+}
+
+std::optional<CheckReport> Judge::check(const Motion& motion, const CheckOptions& options,
+                                        const JobControl& job) const {
+  return parts_->check(motion, options, false, job);
 }
 
 CheckReport Judge::check(const Eigen::VectorXd& configuration, const Stance& stance,
@@ -209,7 +220,7 @@ CheckReport Judge::check(const Eigen::VectorXd& configuration, const Stance& sta
   motion.configurations = {configuration};
   motion.stances = {stance};
   motion.stance_from = {0};
-  return parts_->check(motion, options, true);
+  return *parts_->check(motion, options, true, JobControl());
 }
 
 double Judge::self_distance_m(const RobotState& state) const {

@@ -54,12 +54,14 @@
 
 #include <locograph/check/check_report.h>
 #include <locograph/check/motion.h>
+#include <locograph/common/job_control.h>
 #include <locograph/robots/robot.h>
 #include <locograph/robots/robot_state.h>
 #include <locograph/world/world.h>
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 
 namespace locograph {
 
@@ -72,6 +74,9 @@ class Judge {
   Judge& operator=(Judge&&) noexcept;
 
   CheckReport check(const Motion& motion, const CheckOptions& options = {}) const;
+  /// Nothing when the job, which is asked at every vertex and sample, ends before the check does.
+  std::optional<CheckReport> check(const Motion& motion, const CheckOptions& options,
+                                   const JobControl& job) const;
   /// Distances are looked for up to 0.05 m only.
   CheckReport check(const Eigen::VectorXd& configuration, const Stance& stance,
                     const CheckOptions& options = {}) const;

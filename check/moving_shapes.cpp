@@ -18,10 +18,19 @@ bool spins_in_place(const CollisionShape& shape, const Joint& joint) {
   return axis.cross(joint.axis).norm() <= kOnAxis;
 }
 
-double travel(const Joint& joint) {
+double travel(const Robot& robot, const Joint& joint, const Axis* axis) {
   if (joint.type != JointType::kPrismatic) return 0.0;
-  if (joint.index < 0) return std::abs(joint.frozen_position);
-  return std::max(std::abs(joint.lower), std::abs(joint.upper));
+  if (axis == nullptr) return std::abs(joint.frozen_position);
+  const Joint& leader = robot.active_joint(axis->active);
+  return std::max(std::abs(axis->multiplier * leader.lower + axis->offset),
+                  std::abs(axis->multiplier * leader.upper + axis->offset));
+}
+
+// Null for a joint that stands still.
+const Axis* axis_of_joint(const Robot& robot, int joint) {
+  const auto found = std::find_if(robot.axes().begin(), robot.axes().end(),
+                                  [joint](const Axis& axis) { return axis.joint == joint; });
+  return found == robot.axes().end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -30,11 +39,8 @@ MovingShapes::MovingShapes(const Robot& robot) {
   for (const Link& link : robot.links())
     for (const CollisionShape& shape : link.collision) add(robot, shape);
   moves_shapes_.assign(std::size_t(robot.active_joint_count()), false);
-  prismatic_.assign(std::size_t(robot.active_joint_count()), false);
-  for (int i = 0; i < robot.active_joint_count(); ++i)
-    prismatic_[std::size_t(i)] = robot.active_joint(i).type == JointType::kPrismatic;
   for (const Shape& shape : shapes_)
-    for (int joint : shape.joints) moves_shapes_[std::size_t(joint)] = true;
+    for (const Mover& mover : shape.movers) moves_shapes_[std::size_t(mover.active)] = true;
   for (const auto& [first, second] : robot.self_collision_pairs())
     for (Shape& shape : shapes_)
       if (shape.link == first || shape.link == second) shape.in_self_pair = true;
@@ -57,8 +63,7 @@ void MovingShapes::add(const Robot& robot, const CollisionShape& collision) {
               .geometry = link_solid(robot, collision),
               .end_1 = {},
               .end_2 = {},
-              .joints = {},
-              .reach = {}};
+              .movers = {}};
   const ConvexShape& geometry = shape.geometry;
   shape.end_1 = carrier_from_shape * (geometry.center() + geometry.bounding_axis());
   shape.end_2 = carrier_from_shape * (geometry.center() - geometry.bounding_axis());
@@ -68,22 +73,21 @@ void MovingShapes::add(const Robot& robot, const CollisionShape& collision) {
   for (int link = carrier; robot.links()[std::size_t(link)].parent_joint >= 0;) {
     const int index = robot.links()[std::size_t(link)].parent_joint;
     const Joint& joint = robot.joints()[std::size_t(index)];
-    if (joint.index >= 0) {
-      shape.joints.push_back(joint.index);
-      shape.reach.push_back(reach);
+    const Axis* axis = axis_of_joint(robot, index);
+    if (axis != nullptr) {
+      shape.movers.push_back(
+          {axis->active, std::abs(axis->multiplier), joint.type == JointType::kPrismatic, reach});
     }
-    reach += joint.parent_from_joint.translation().norm() + travel(joint);
+    reach += joint.parent_from_joint.translation().norm() + travel(robot, joint, axis);
     link = joint.parent_link;
   }
-  std::reverse(shape.joints.begin(), shape.joints.end());
-  std::reverse(shape.reach.begin(), shape.reach.end());
+  std::reverse(shape.movers.begin(), shape.movers.end());
   shape.base_reach = reach;
   shapes_.push_back(std::move(shape));
 }
 
 MovingShapes::Bound MovingShapes::bound(const Shape& shape, double base_distance, double base_angle,
-                                        const ConfigurationStep& step,
-                                        const std::vector<bool>& prismatic) {
+                                        const ConfigurationStep& step) {
   Bound bound;
   double turned = 0.0;  // by the base and the joints above
   const auto turn = [&](double angle, double reach) {
@@ -97,20 +101,20 @@ MovingShapes::Bound MovingShapes::bound(const Shape& shape, double base_distance
   };
   slide(base_distance);
   turn(base_angle, shape.base_reach);
-  for (std::size_t i = 0; i < shape.joints.size(); ++i) {
-    const double change = std::abs(step.joints[shape.joints[i]]);
-    if (prismatic[std::size_t(shape.joints[i])])
+  for (const Mover& mover : shape.movers) {
+    const double change = mover.rate * std::abs(step.joints[mover.active]);
+    if (mover.prismatic)
       slide(change);
     else
-      turn(change, shape.reach[i]);
+      turn(change, mover.reach);
   }
   return bound;
 }
 
 void MovingShapes::set_step(const ConfigurationStep& step) {
   for (std::size_t i = 0; i < shapes_.size(); ++i) {
-    in_world_[i] = bound(shapes_[i], step.base_distance_m, step.base_angle_rad, step, prismatic_);
-    in_base_[i] = bound(shapes_[i], 0.0, 0.0, step, prismatic_);
+    in_world_[i] = bound(shapes_[i], step.base_distance_m, step.base_angle_rad, step);
+    in_base_[i] = bound(shapes_[i], 0.0, 0.0, step);
   }
 }
 

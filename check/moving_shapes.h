@@ -57,6 +57,13 @@ class MovingShapes {
                              std::span<const Eigen::Isometry3d> to, double fraction) const;
 
  private:
+  /// An axis of the robot: how fast it moves by an active joint, how far the shape is from it.
+  struct Mover {
+    int active;
+    double rate;
+    bool prismatic;
+    double reach;
+  };
   struct Shape {
     int link = -1;     // as in the URDF
     int carrier = -1;  // link it moves with, up to its own spin
@@ -66,8 +73,7 @@ class MovingShapes {
     double loose_radius = 0.0;     // of that capsule; 0 if it is the shape
     bool in_self_pair = false;
     double base_reach = 0.0;
-    std::vector<int> joints;    // active joints above the carrier, root first
-    std::vector<double> reach;  // of the same joints
+    std::vector<Mover> movers;  // above the carrier, root first
   };
   struct Bound {
     double length = 0.0, second_derivative = 0.0;  // of the whole step
@@ -75,12 +81,12 @@ class MovingShapes {
 
   void add(const Robot& robot, const CollisionShape& shape);
   static Bound bound(const Shape& shape, double base_distance, double base_angle,
-                     const ConfigurationStep& step, const std::vector<bool>& prismatic);
+                     const ConfigurationStep& step);
   static double path(const Shape& shape, const Bound& bound, const Eigen::Isometry3d& from,
                      const Eigen::Isometry3d& to, double fraction);
 
   std::vector<Shape> shapes_;
-  std::vector<bool> moves_shapes_, prismatic_;
+  std::vector<bool> moves_shapes_;
   std::vector<Bound> in_world_, in_base_;
 };
 

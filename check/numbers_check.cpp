@@ -59,6 +59,7 @@ void NumbersCheck::run() {
 }
 
 void NumbersCheck::check_numbers(int vertex) {
+  context_.go_on("judging numbers", vertex);
   const Eigen::VectorXd& q = context_.motion.configurations[std::size_t(vertex)];
   const Eigen::Vector3d nowhere = Eigen::Vector3d::Zero();
   const long missing = std::abs(long(q.size()) - long(robot_.configuration_size()));
@@ -99,6 +100,7 @@ void NumbersCheck::check_joint_limits(int vertex) {
 }
 
 void NumbersCheck::check_step(int vertex) {
+  context_.go_on("judging steps", vertex);
   const Motion& motion = context_.motion;
   const Eigen::Vector3d nowhere = Eigen::Vector3d::Zero();
   const double duration = time(vertex + 1) - time(vertex);
@@ -167,10 +169,11 @@ double NumbersCheck::samples_needed(const ConfigurationStep& step) {
   shapes.set_step(step);
   double samples = std::max(step.base_distance_m, shapes.step_length_bound()) / options_.max_step_m;
   samples = std::max(samples, step.base_angle_rad / options_.max_step_rad);
-  for (int i = 0; i < robot_.active_joint_count(); ++i) {
-    if (robot_.active_joint(i).type == JointType::kPrismatic) continue;
-    const double largest = shapes.joint_moves_shapes(i) ? options_.max_step_rad : kMaxSpinPerSample;
-    samples = std::max(samples, std::abs(step.joints[i]) / largest);
+  for (const Axis& axis : robot_.axes()) {
+    if (robot_.joints()[std::size_t(axis.joint)].type == JointType::kPrismatic) continue;
+    const double largest =
+        shapes.joint_moves_shapes(axis.active) ? options_.max_step_rad : kMaxSpinPerSample;
+    samples = std::max(samples, std::abs(axis.multiplier * step.joints[axis.active]) / largest);
   }
   return std::max(1.0, std::ceil(samples));
 }

@@ -1,34 +1,13 @@
 #include <locograph/check/obstacle_path.h>
+#include <locograph/world/obstacle_way.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace locograph {
-namespace {
-
-double turning_radius(const Obstacle& obstacle) {
-  switch (obstacle.shape) {
-    case Obstacle::Shape::kSphere:
-      return 0.0;
-    case Obstacle::Shape::kCylinder:
-      return std::hypot(obstacle.size[0], 0.5 * obstacle.size[1]);
-    case Obstacle::Shape::kBox:
-      break;
-  }
-  return 0.5 * obstacle.size.norm();
-}
-
-double piece_length(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double radius) {
-  const Eigen::Quaterniond start(from.linear()), end(to.linear());
-  return (to.translation() - from.translation()).norm() + start.angularDistance(end) * radius;
-}
-
-}  // namespace
-
 ObstaclePath::ObstaclePath(std::span<const Obstacle> obstacles) {
   for (const Obstacle& obstacle : obstacles) {
     if (obstacle.motion.empty()) continue;
-    const double radius = turning_radius(obstacle);
     Track track;
     track.repeats = obstacle.repeat_s > 0.0;
     track.time_s = {0.0};
@@ -36,7 +15,7 @@ ObstaclePath::ObstaclePath(std::span<const Obstacle> obstacles) {
     Eigen::Isometry3d pose = obstacle.world_from_obstacle;
     const auto append = [&](double time, const Eigen::Isometry3d& next) {
       track.time_s.push_back(time);
-      track.length_m.push_back(track.length_m.back() + piece_length(pose, next, radius));
+      track.length_m.push_back(track.length_m.back() + way_m(obstacle, pose, next));
       pose = next;
     };
     for (const KeyFrame& frame : obstacle.motion) append(frame.time_s, frame.pose);

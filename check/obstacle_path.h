@@ -4,8 +4,7 @@
 ///     locograph::ObstaclePath path(obstacles);
 ///     double at_most_m = path.bound(2.0, 2.5);  // no point of any obstacle travels further
 ///
-/// Along a key frame piece a point travels at most |dp| + |angle| * rho, with rho the distance of
-/// the obstacle's farthest point from its origin (0 for a sphere, which looks the same turned).
+/// By world/obstacle_way.h, added up along the key frames.
 
 #include <locograph/world/obstacles.h>
 

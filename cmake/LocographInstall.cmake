@@ -15,7 +15,7 @@ install(FILES ${PROJECT_BINARY_DIR}/locographConfig.cmake
         DESTINATION ${locograph_config_dir})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 if(LOCOGRAPH_PLANNING)
-  # Where programs look for it: apps/data_folder.h.
+  # Where programs look for it: common/data_folder.h.
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/robots/models
           DESTINATION ${CMAKE_INSTALL_DATADIR}/locograph/robots)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/planners/scenarios

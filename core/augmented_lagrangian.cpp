@@ -1,4 +1,5 @@
 #include <locograph/core/augmented_lagrangian.h>
+#include <locograph/core/weighted_square.h>
 
 #include <algorithm>
 #include <cmath>
@@ -171,7 +172,7 @@ Cost plain_cost(Workspace& workspace) {
       const int index = compiled.edges[k];
       e.resize(pool.dimension(index));
       workspace.error(static_cast<int>(p), static_cast<int>(k), e.data());
-      const double chi2 = e.dot(pool.information(index) * e);
+      const double chi2 = weighted_square(pool, index, e);
       total += {pool.kernel(index).weights(chi2).cost, chi2};
     }
   }

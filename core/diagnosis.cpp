@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <sstream>
 
@@ -12,6 +13,9 @@ namespace locograph {
 namespace {
 
 constexpr std::size_t kMostVertices = 10;
+/// Edges of a type whose Jacobians are compared, and the difference that is none.
+constexpr std::size_t kMostCompared = 1000;
+constexpr double kSameJacobian = 1e-2;
 
 /// Part of each vertex slot, -1 for removed ones.
 std::vector<int> part_of_slot(const Graph& graph, const std::vector<Component>& parts) {
@@ -70,13 +74,21 @@ void check_edges(Graph& graph, Diagnosis& diagnosis) {
     if (!graph.edge_alive(e)) continue;
     const Graph::EdgeRecord& record = graph.edge_record(e);
     const EdgePool& pool = *graph.edge_pools()[record.pool];
+    if (pool.has_weights()) {
+      double least = pool.weight(record.index, 0), most = least;
+      for (int r = 1; r < pool.dimension(record.index); ++r) {
+        least = std::min(least, pool.weight(record.index, r));
+        most = std::max(most, pool.weight(record.index, r));
+      }
+      if (!(least > 1e-12 * most)) diagnosis.information.push_back({{e}, 0.0});
+      continue;
+    }
     Eigen::MatrixXd information = pool.information(record.index);
     // Most edges share their matrix with the one before.
     if (information.rows() == last_good.rows() && information == last_good) continue;
-    const double smallest = pool.has_weights() ? information.diagonal().minCoeff()
-                                               : Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
-                                                     information, Eigen::EigenvaluesOnly)
-                                                     .eigenvalues()[0];
+    const double smallest =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(information, Eigen::EigenvaluesOnly)
+            .eigenvalues()[0];
     const double rounding = 1e-12 * information.cwiseAbs().maxCoeff();
     if (smallest > rounding) {
       last_good = std::move(information);
@@ -86,18 +98,23 @@ void check_edges(Graph& graph, Diagnosis& diagnosis) {
   }
 }
 
+/// By pool and index in it.
+std::vector<std::vector<int>> slots_of_edges(const Graph& graph) {
+  std::vector<std::vector<int>> slots(graph.edge_pools().size());
+  for (std::size_t p = 0; p < slots.size(); ++p) slots[p].resize(graph.edge_pools()[p]->size());
+  for (int e = 0; e < graph.edge_slots(); ++e) {
+    if (!graph.edge_alive(e)) continue;
+    const Graph::EdgeRecord& record = graph.edge_record(e);
+    slots[record.pool][record.index] = e;
+  }
+  return slots;
+}
+
 std::vector<EdgeId> edges_without_numbers(Workspace& workspace) {
   const Problem& problem = workspace.problem();
   const Graph& graph = problem.graph();
   std::vector<EdgeId> found;
-  std::vector<std::vector<int>> slot_of(problem.edges().size());
-  for (int e = 0; e < graph.edge_slots(); ++e) {
-    if (!graph.edge_alive(e)) continue;
-    const Graph::EdgeRecord& record = graph.edge_record(e);
-    std::vector<int>& slots = slot_of[record.pool];
-    if (static_cast<int>(slots.size()) <= record.index) slots.resize(record.index + 1);
-    slots[record.index] = e;
-  }
+  const std::vector<std::vector<int>> slot_of = slots_of_edges(graph);
   Eigen::VectorXd error;
   for (std::size_t p = 0; p < problem.edges().size(); ++p) {
     const CompiledEdges& compiled = problem.edges()[p];
@@ -107,6 +124,61 @@ std::vector<EdgeId> edges_without_numbers(Workspace& workspace) {
       if (!error.allFinite()) found.push_back({slot_of[p][compiled.edges[k]]});
     }
   }
+  return found;
+}
+
+/// Largest difference over the largest entry. A row without error of a hinged edge has no
+/// derivative to compare.
+double difference_of(const EdgePool& pool, const Eigen::VectorXd& error, Eigen::MatrixXd used,
+                     Eigen::MatrixXd expected) {
+  for (Eigen::Index row = 0; pool.one_sided() && row < error.size(); ++row) {
+    if (error[row] != 0.0) continue;
+    used.row(row).setZero();
+    expected.row(row).setZero();
+  }
+  const double largest =
+      std::max(used.lpNorm<Eigen::Infinity>(), expected.lpNorm<Eigen::Infinity>());
+  const double difference = (used - expected).lpNorm<Eigen::Infinity>();
+  return difference == 0.0 ? 0.0 : difference / largest;
+}
+
+std::vector<Diagnosis::WrongJacobian> wrong_jacobians(Workspace& workspace) {
+  const Problem& problem = workspace.problem();
+  const Graph& graph = problem.graph();
+  const std::vector<std::vector<int>> slot_of = slots_of_edges(graph);
+  std::vector<std::unique_ptr<DerivedStore>> derived;
+  for (std::size_t p = 0; p < problem.active().size(); ++p) {
+    const VertexPool& pool = *graph.vertex_pools()[p];
+    derived.push_back(pool.make_derived(problem.active()[p]));
+    if (derived.back()) {
+      pool.derive(problem.active()[p], workspace.state().data(), *derived.back());
+    }
+  }
+  Scratch scratch;
+  scratch.reserve(problem.scratch_bytes());
+  const Evaluation x{workspace.state().data(), derived, &scratch};
+  std::vector<Diagnosis::WrongJacobian> found;
+  for (std::size_t p = 0; p < problem.edges().size(); ++p) {
+    const EdgePool& pool = *graph.edge_pools()[p];
+    const CompiledEdges& edges = problem.edges()[p];
+    const std::size_t count = edges.edges.size(), stride = 1 + count / kMostCompared;
+    Diagnosis::WrongJacobian worst;
+    for (std::size_t i = 0; i < count; i += stride) {
+      const int k = static_cast<int>(i);
+      Eigen::VectorXd error(pool.dimension(edges.edges[k]));
+      pool.error(edges, k, x, error.data());
+      for (int slot = 0; slot < edges.slot_begin[k + 1] - edges.slot_begin[k]; ++slot) {
+        if (edges.slots[edges.slot_begin[k] + slot].tangent_offset < 0) continue;
+        const double difference =
+            difference_of(pool, error, pool.jacobian(edges, k, slot, x, false),
+                          pool.jacobian(edges, k, slot, x, true));
+        if (difference > worst.difference) worst = {{slot_of[p][edges.edges[k]]}, slot, difference};
+      }
+    }
+    if (worst.difference > kSameJacobian) found.push_back(worst);
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.difference > b.difference; });
   return found;
 }
 
@@ -133,7 +205,7 @@ int Diagnosis::free_directions() const {
 }
 
 bool Diagnosis::healthy() const {
-  return free_directions() == 0 && not_finite.empty() &&
+  return free_directions() == 0 && not_finite.empty() && jacobians.empty() &&
          std::none_of(information.begin(), information.end(),
                       [](const BadInformation& bad) { return bad.smallest_eigenvalue < 0.0; });
 }
@@ -166,6 +238,12 @@ std::string Diagnosis::text(const Graph& graph) const {
   for (std::size_t i = 0; i < std::min(not_finite.size(), kMostLines); ++i) {
     out << "the error of " << edge_text(graph, not_finite[i]) << " is not a number\n";
   }
+  for (std::size_t i = 0; i < std::min(jacobians.size(), kMostLines); ++i) {
+    out << "the Jacobian of " << edge_text(graph, jacobians[i].edge) << " by its vertex "
+        << vertex_text(graph, graph.edge_vertices(jacobians[i].edge.slot)[jacobians[i].slot])
+        << " is not the derivative of its error: it differs from numeric differences by "
+        << 100.0 * jacobians[i].difference << " %\n";
+  }
   std::size_t lines = 0;
   for (const BadInformation& bad : information) {
     if (lines++ == kMostLines) break;
@@ -190,6 +268,7 @@ Diagnosis diagnose(Graph& graph) {
     diagnosis.not_finite = edges_without_numbers(workspace);
     return diagnosis;
   }
+  diagnosis.jacobians = wrong_jacobians(workspace);
   workspace.linearise();
   find_free_directions(workspace, part_of_slot(graph, parts), diagnosis.parts);
   return diagnosis;

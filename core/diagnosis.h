@@ -1,5 +1,6 @@
 #pragma once
-/// Why a graph cannot be solved: parts that float, directions nothing measures, bad information.
+/// Why a graph cannot be solved: parts that float, directions nothing measures, bad information,
+/// Jacobians that are not the derivatives of their errors.
 ///
 ///     Diagnosis diagnosis = diagnose(graph);
 ///     if (!diagnosis.healthy()) std::cerr << diagnosis.text(graph);
@@ -31,13 +32,22 @@ struct Diagnosis {
     EdgeId edge;
     double smallest_eigenvalue = 0.0;  ///< < 0: indefinite, 0: rows that count nothing
   };
+  /// The Jacobian of an edge by one of its vertices, against central differences.
+  struct WrongJacobian {
+    EdgeId edge;
+    int slot = 0;             ///< of its vertices
+    double difference = 0.0;  ///< the largest, over the largest entry of the two
+  };
 
   std::vector<Part> parts;                  ///< unconnected parts, by their first vertex
   std::vector<EdgeId> not_finite;           ///< edges whose error is no number at this state
   std::vector<BadInformation> information;  ///< matrices that are not positive definite
+  /// Those that differ by more than a hundredth: of each type of edge the one that does most, the
+  /// worst first.
+  std::vector<WrongJacobian> jacobians;
 
   int free_directions() const;
-  /// Nothing is free, every error a number, no information indefinite.
+  /// Nothing is free, every error a number, no information indefinite, no Jacobian wrong.
   bool healthy() const;
   /// A few lines, each ended by a newline; empty for a healthy graph in one part.
   std::string text(const Graph& graph) const;

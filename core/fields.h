@@ -57,7 +57,7 @@ class FieldReader {
 
 class FieldWriter {
  public:
-  /// folder: of the file being written; paths are written relative to it.
+  /// folder: of the file being written; paths are written relative to it, absolute if it is empty.
   explicit FieldWriter(std::filesystem::path folder = {}) : folder_(std::move(folder)) {}
 
   void tag(std::string_view tag) { text_ += tag; }

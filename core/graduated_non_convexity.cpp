@@ -1,4 +1,5 @@
 #include <locograph/core/graduated_non_convexity.h>
+#include <locograph/core/weighted_square.h>
 
 #include <algorithm>
 #include <cmath>
@@ -142,7 +143,7 @@ class Rounds {
       const EdgePool& pool = *graph_.edge_pools()[suspects_[i].pool];
       error_.resize(pool.dimension(suspects_[i].index));
       workspace_.error(suspects_[i].pool, suspects_[i].compiled, error_.data());
-      squared_[i] = error_.dot(pool.information(suspects_[i].index) * error_);
+      squared_[i] = weighted_square(pool, suspects_[i].index, error_);
     }
   }
 
@@ -270,6 +271,7 @@ GraduationResult optimise_graduated(Workspace& workspace, const GraduationOption
     result.iterations += optimiser.result().iterations;
     const OptimiserResult::Reason reason = optimiser.result().reason;
     const bool broken = reason == OptimiserResult::Reason::kDeadline ||
+                        reason == OptimiserResult::Reason::kStopped ||
                         reason == OptimiserResult::Reason::kNotFinite ||
                         reason == OptimiserResult::Reason::kNothingToDo;
     if (broken || !rounds.next()) {
@@ -297,6 +299,7 @@ GraduationResult optimise_graduated(Graph& graph, const GraduationOptions& optio
     result = std::move(now);
     if (doubted.empty() || pass == kMostPasses ||
         result.optimiser.reason == OptimiserResult::Reason::kDeadline ||
+        result.optimiser.reason == OptimiserResult::Reason::kStopped ||
         !bring_back(graph, out, options, trusted, result)) {
       break;
     }

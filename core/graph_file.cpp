@@ -1,4 +1,5 @@
 #include <locograph/common/atomic_file.h>
+#include <locograph/common/input_file.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/core/information.h>
 #include <locograph/core/initial_guess.h>
@@ -44,6 +45,13 @@ void write_mark(const Graph::EdgeRecord& record, ConstraintKind of_type, FieldWr
   if (record.tolerance > 0.0) out.number(record.tolerance);
 }
 
+/// Where the file is, behind links to it.
+std::filesystem::path real_folder(const std::filesystem::path& path) {
+  std::error_code failed;
+  if (!std::filesystem::is_symlink(path, failed)) return path.parent_path();
+  return std::filesystem::canonical(path, failed).parent_path();
+}
+
 }  // namespace
 
 /// One file being read: sorts its lines by kind, so that they may come in any order.
@@ -61,6 +69,7 @@ class GraphReader {
     if (parameters_.empty() && vertices_.empty() && edges_.empty() && report_.unknown.empty()) {
       throw Error(where_.file, 0, "holds no graph", "VERTEX_… or EDGE_… lines");
     }
+    lines_ = parameters_.size() + vertices_.size() + edges_.size() + fixes_.size();
     for (const Line& line : parameters_)
       at(line, [&](FieldReader& in) { read_parameter(line, in); });
     for (const Line& line : vertices_) at(line, [&](FieldReader& in) { read_vertex(line, in); });
@@ -83,6 +92,9 @@ class GraphReader {
   template <class F>
   void at(const Line& line, F&& read) {
     where_.line = line.number;
+    if (options_.progress && ++lines_read_ % (lines_ / 256 + 1) == 0) {
+      options_.progress(static_cast<double>(lines_read_) / static_cast<double>(lines_));
+    }
     FieldReader in(line.fields, where_);
     try {
       read(in);
@@ -222,6 +234,13 @@ class GraphReader {
     }
     in.set_parameters(&graph_.parameters_);
     const int index = pool.read(slots_, in);
+    // Rows of equal weight are written as one number; the pairs of 140 links are as many as these.
+    constexpr int kMostRowsOfEqualWeight = 10'000;
+    const int rows = pool.dimension(index);
+    if (rows > kMostRowsOfEqualWeight && rows > static_cast<long>(line.fields.size())) {
+      in.fail("an error of size " + std::to_string(rows),
+              "at most " + std::to_string(kMostRowsOfEqualWeight) + " rows of equal weight");
+    }
     Mark mark{pool.constraint(), 0.0};
     if (in.peek() == kConstraintWord) mark = read_mark(in);
     in.expect_end();
@@ -246,6 +265,10 @@ class GraphReader {
       }
       const int pool_number = pool_of(pool.slot_type(slot), pool.make_slot_pool(slot));
       const int index = graph_.vertex_pools_[pool_number]->add_default();
+      if (graph_.vertex_pools_[pool_number]->dimension(index) == 0) {
+        in.fail("nothing says how large vertex " + std::to_string(id) + " is",
+                "a " + graph_.vertex_pools_[pool_number]->tag() + " line for it");
+      }
       vertex = graph_.add_vertex_record(id, pool_number, index);
       graph_.vertex_records_[vertex].line = line.number;
     }
@@ -255,9 +278,12 @@ class GraphReader {
       in.fail("vertex " + std::to_string(id) + " is a " + graph_.vertex_tag(vertex),
               "a " + pool.make_slot_pool(slot)->tag());
     }
-    if (std::find(slots_.begin(), slots_.end(), vertex) != slots_.end()) {
+    const std::size_t place = static_cast<std::size_t>(vertex);
+    if (place >= named_on_line_.size()) named_on_line_.resize(graph_.vertex_records_.size(), 0);
+    if (named_on_line_[place] == line.number) {
       in.fail("the edge names vertex " + std::to_string(id) + " twice", "different vertices");
     }
+    named_on_line_[place] = line.number;
     return vertex;
   }
 
@@ -299,8 +325,10 @@ class GraphReader {
   ReadReport& report_;
   FileLine where_;
   std::vector<Line> parameters_, vertices_, edges_, fixes_;
+  std::size_t lines_ = 0, lines_read_ = 0;
   std::map<const void*, int> vertex_pool_of_type_, edge_pool_of_type_;
   std::vector<int> slots_;
+  std::vector<int> named_on_line_;  ///< of each vertex slot the last line whose edge named it
   Eigen::MatrixXd last_good_;
   Graph graph_;
 };
@@ -316,8 +344,8 @@ Graph read_graph_text(std::string_view text, const std::string& name,
 
 Graph read_graph(const std::filesystem::path& path, const TypeRegistry& types,
                  const ReadOptions& options, ReadReport* report) {
-  const std::string text = read_file(path);
-  return read_graph_text(text, path.string(), path.parent_path(), types, options, report);
+  const std::string text = read_file(path, kMostInputBytes, "a graph file");
+  return read_graph_text(text, path.string(), real_folder(path), types, options, report);
 }
 
 std::string write_graph_text(const Graph& graph, const std::filesystem::path& folder) {
@@ -356,7 +384,7 @@ std::string write_graph_text(const Graph& graph, const std::filesystem::path& fo
 }
 
 void write_graph(const Graph& graph, const std::filesystem::path& path) {
-  write_file_atomically(path, write_graph_text(graph, path.parent_path()));
+  write_file_atomically(path, write_graph_text(graph, folder_of_output(path)));
 }
 
 }  // namespace locograph

@@ -12,12 +12,13 @@
 /// (Graph::set_constraint). Lines may come in any order, be blank, be indented, and end in a `#`
 /// comment. A file without any vertex gets them from its edges. Every mistake is an Error with file
 /// and line; nothing is guessed. Numbers are written with 17 significant digits: reading them back
-/// gives the same bits. Paths in parameters are relative to the file.
+/// gives the same bits. Paths in parameters are relative to the file, behind links to it.
 
 #include <locograph/core/graph.h>
 #include <locograph/core/type_registry.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,8 @@ struct ReadOptions {
   /// Unknown tags and indefinite information matrices are reported instead of refused; the matrices
   /// are projected to the nearest positive semi-definite one.
   bool lenient = false;
+  /// Called some hundred times with the fraction of the lines that are read, if it is not empty.
+  std::function<void(double fraction)> progress = {};
 };
 
 struct ReadReport {
@@ -43,8 +46,9 @@ Graph read_graph_text(std::string_view text, const std::string& name,
                       const std::filesystem::path& folder, const TypeRegistry& types,
                       const ReadOptions& options = {}, ReadReport* report = nullptr);
 
-/// Written to a temporary file and renamed: the whole graph or nothing.
+/// As write_file_atomically(): the whole graph or nothing; `-` is standard output.
 void write_graph(const Graph& graph, const std::filesystem::path& path);
+/// folder: what paths are written relative to; empty: they are absolute.
 std::string write_graph_text(const Graph& graph, const std::filesystem::path& folder = {});
 
 }  // namespace locograph

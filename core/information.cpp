@@ -31,6 +31,8 @@ bool is_positive_semidefinite(const Eigen::Ref<const Eigen::MatrixXd>& informati
       }
     }
     if (positive) return true;
+  } else if (Eigen::LLT<Eigen::MatrixXd>(information).info() == Eigen::Success) {
+    return true;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(information),
                                                               Eigen::EigenvaluesOnly);

@@ -1,4 +1,5 @@
 #include <locograph/core/null_space.h>
+#include <locograph/core/weighted_square.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -270,7 +271,7 @@ void NullSpace::sum_edges(std::vector<Group>& groups) {
       each_slot([&](const Eigen::MatrixXd& jacobian, int at, int size) {
         change += jacobian * group.v.middleRows(at, size);
       });
-      const Eigen::MatrixXd force = edge.weight * (pool.information(compiled.edges[k]) * change);
+      const Eigen::MatrixXd force = edge.weight * weighted(pool, compiled.edges[k], change);
       group.energy += change.transpose() * force;
       each_slot([&](const Eigen::MatrixXd& jacobian, int at, int size) {
         group.product.middleRows(at, size) += jacobian.transpose() * force;

@@ -15,6 +15,10 @@ constexpr double kLambdaFall = 1.0 / 3.0;
 /// A predicted decrease below this fraction of the cost is too near to rounding to measure parts
 /// of it.
 constexpr double kMeasurable = 1e-11;
+/// A predicted decrease above this fraction of the cost is one that rounding cannot hide.
+constexpr double kPromise = 1e-9;
+/// A step is one of many where it promises more than this fraction of the cost.
+constexpr double kMatters = 1e-2;
 
 Vector map(std::span<double> values) {
   return Vector(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -45,6 +49,13 @@ void check(bool good, const char* option, const char* expected) {
 
 }  // namespace
 
+OptimiserOptions OptimiserOptions::for_any_start() {
+  OptimiserOptions options;
+  options.scale_by_diagonal = options.follow_diagonal = true;
+  options.refused_lambda = 1e-4;
+  return options;
+}
+
 void OptimiserOptions::validate() const {
   check(max_iterations >= 0, "max_iterations", "0 or more");
   check(gain >= 0.0 && gain < 1.0, "gain", "a fraction in [0, 1)");
@@ -54,6 +65,7 @@ void OptimiserOptions::validate() const {
   check(refused_lambda > 0.0, "refused_lambda", "a positive number");
   check(initial_radius > 0.0, "initial_radius", "a positive number");
   check(max_refusals >= 1, "max_refusals", "1 or more");
+  check(nonmonotonic_steps >= 0, "nonmonotonic_steps", "0 or more");
 }
 
 std::string OptimiserResult::reason_text() const {
@@ -71,7 +83,10 @@ std::string OptimiserResult::reason_text() const {
     case Reason::kDeadline:
       return "the deadline has passed";
     case Reason::kNoProgress:
-      return "no step lowers the cost";
+      return promised_decrease > kPromise
+                 ? "no step lowers the cost, although the gradient promises one that does: the "
+                   "Jacobian of an edge may not be the derivative of its error"
+                 : "no step lowers the cost";
     case Reason::kSingular:
       return "the linear system is singular";
     case Reason::kNotFinite:
@@ -98,25 +113,63 @@ void Optimiser::start(Workspace& workspace, LinearSolver& solver) {
   lambda_ = 0.0;
   lambda_growth_ = 2.0;
   lambda_fall_ = kLambdaFall;
+  refused_ = false;
   radius_ = options_.initial_radius;
   const int n = workspace.problem().dimension();
   diagonal_.resize(n);
   scaling_.assign(n, 0.0);
+  if (options_.follow_diagonal) first_diagonal_.resize(n);
   newton_step_.resize(n);
   negative_gradient_.resize(n);
   workspace.problem().analyse(solver);
   cost_ = workspace.evaluate(workspace.state());
-  result_.initial = result_.final = cost_;
+  result_.initial = result_.final = best_cost_ = cost_;
+  const bool undamped_first =
+      options_.follow_diagonal && options_.algorithm == Algorithm::kLevenbergMarquardt;
+  reference_.start(cost_.robust, undamped_first ? 0 : options_.nonmonotonic_steps);
+  if (may_rise()) best_state_ = first_state_ = workspace.state();
   if (!std::isfinite(cost_.robust)) finish(Reason::kNotFinite);
   if (n == 0) finish(Reason::kNothingToDo);
 }
 
+void Optimiser::go_to(const std::vector<double>& state, const Cost& cost) {
+  workspace_->trial() = state;
+  workspace_->evaluate(workspace_->trial());
+  workspace_->accept_trial();
+  cost_ = result_.final = cost;
+}
+
+void Optimiser::return_to_best() {
+  if (cost_.robust > best_cost_.robust) go_to(best_state_, best_cost_);
+}
+
+/// At the first state, with damping and the steps that may rise.
+bool Optimiser::begin_again() {
+  if (cost_.robust <= best_cost_.robust) best_state_ = workspace_->state();
+  go_to(first_state_, result_.initial);
+  reference_.start(cost_.robust, options_.nonmonotonic_steps);
+  lambda_growth_ = 2.0;
+  ++result_.iterations;
+  return true;
+}
+
 bool Optimiser::finish(Reason reason) {
+  return_to_best();
   result_.reason = reason;
   result_.converged = reason == Reason::kGain || reason == Reason::kGradient ||
                       reason == Reason::kStep || reason == Reason::kNothingToDo;
   result_.final = cost_;
   return false;
+}
+
+/// Ends because refused steps have become too short to matter. That is convergence where already
+/// the first of them, which was to lower the cost by `promised`, mattered to nobody; a gradient
+/// that is one lowers the cost before the step vanishes.
+bool Optimiser::finish_refused(Reason converged, double promised) {
+  const double fraction = promised / cost_.robust;
+  if (!(fraction > std::max(options_.gain, kPromise))) return finish(converged);
+  result_.promised_decrease = fraction;
+  return finish(Reason::kNoProgress);
 }
 
 bool Optimiser::iterate() {
@@ -177,18 +230,30 @@ double Optimiser::state_norm() const { return norm(map(workspace_->state())); }
 
 /// Takes the trial state; true when there is more to do. That a step cut short is small, or gains
 /// little, says nothing: it is no sign of convergence.
-bool Optimiser::accept(const Cost& cost, IterationStatistics& now, bool whole) {
+bool Optimiser::accept(const Cost& cost, double predicted, IterationStatistics& now, bool whole) {
   const double before = cost_.robust;
   now.step_norm = norm(map(workspace_->step()));
   const bool tiny =
       now.step_norm <= options_.step_tolerance * (state_norm() + options_.step_tolerance);
+  if (may_rise() && cost.robust > before && before <= best_cost_.robust) {
+    best_state_ = workspace_->state();
+  }
   workspace_->accept_trial();
+  reference_.accept(cost.robust, predicted);
   cost_ = cost;
+  if (!may_rise() || cost.robust < best_cost_.robust) best_cost_ = cost;
   result_.final = cost;
   ++result_.iterations;
   if (!whole) return true;
-  if (before - cost.robust <= options_.gain * before) return finish(Reason::kGain);
-  if (tiny) return finish(Reason::kStep);
+  const double change = may_rise() ? std::abs(before - cost.robust) : before - cost.robust;
+  const bool settled = change <= options_.gain * before;
+  if (!settled && !tiny) return true;
+  if (cost.robust <= best_cost_.robust * (1.0 + options_.gain)) {
+    return finish(settled ? Reason::kGain : Reason::kStep);
+  }
+  // The rise led to a worse place: from the best one again, downwards.
+  return_to_best();
+  reference_.start(cost_.robust, 0);
   return true;
 }
 
@@ -198,7 +263,7 @@ bool Optimiser::iterate_gauss_newton(IterationStatistics& now) {
   const Cost cost = evaluate_trial(now);
   // A rise beyond rounding: keep the better state and say so.
   if (!(cost.robust <= cost_.robust * (1.0 + 1e-9))) return finish(Reason::kDiverged);
-  return accept(cost, now);
+  return accept(cost, 0.0, now);
 }
 
 /// Cuts the refused step, whose cost is `cost`, until a tenth of the decrease that the gradient
@@ -223,14 +288,27 @@ bool Optimiser::shorten(Cost& cost, IterationStatistics& now) {
   return false;
 }
 
+void Optimiser::update_scaling() {
+  constexpr double kLeastOfFirst = 1e-6;
+  Vector scaling = map(scaling_);
+  const Vector now = map(diagonal_);
+  if (!options_.follow_diagonal) {
+    scaling = scaling.cwiseMax(now);
+    return;
+  }
+  if (result_.iterations == 0) first_diagonal_ = diagonal_;
+  scaling = now.cwiseMax(kLeastOfFirst * map(first_diagonal_));
+}
+
 bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
   workspace_->diagonal(diagonal_);
   if (lambda_ == 0.0) {
     lambda_unit_ = options_.scale_by_diagonal ? 1.0 : map(diagonal_).maxCoeff();
     lambda_ = options_.initial_lambda * lambda_unit_;
   }
-  map(scaling_) = map(scaling_).cwiseMax(map(diagonal_));
+  update_scaling();
   bool factorised = false;
+  double promised = 0.0;
   for (; now.refusals < options_.max_refusals; ++now.refusals) {
     now.lambda = lambda_;
     Vector damping = map(workspace_->damping());
@@ -240,10 +318,9 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
       damping.setConstant(lambda_);
     }
     if (solve(now)) {
-      factorised = true;
       const Vector step = map(workspace_->step());
       if (norm(step) <= options_.step_tolerance * (state_norm() + options_.step_tolerance)) {
-        return finish(Reason::kStep);
+        return finish_refused(Reason::kStep, promised);
       }
       const Cost cost = evaluate_trial(now);
       // F(h) ≈ F + 2gᵀh + hᵀHh, and (H + D)h = −g: the predicted decrease is hᵀ(Dh − g).
@@ -251,7 +328,9 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
       const double predicted = sum(step.size(), [&](Eigen::Index i) {
         return step[i] * (damping[i] * step[i] + descent[i]);
       });
-      now.gain_ratio = (cost_.robust - cost.robust) / predicted;
+      if (!factorised) promised = predicted;
+      factorised = true;
+      now.gain_ratio = reference_.quality(cost.robust, predicted);
       if (std::isfinite(cost.robust) && now.gain_ratio > 0.0) {
         const double s = 2.0 * now.gain_ratio - 1.0;
         const double factor = 1.0 - s * s * s;
@@ -265,10 +344,12 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
           lambda_fall_ =
               fell && damped ? std::max(lambda_fall_ * lambda_fall_, kFastest) : kLambdaFall;
         }
-        return accept(cost, now);
+        return accept(cost, predicted, now);
       }
       // At the bottom of the valley rounding decides; the model says there is nothing to gain.
-      if (predicted <= options_.gain * cost_.robust * 1e-3) return finish(Reason::kGain);
+      if (predicted <= options_.gain * cost_.robust * 1e-3) {
+        return finish_refused(Reason::kGain, promised);
+      }
       lambda_fall_ = kLambdaFall;
       Cost shorter = cost;
       if (options_.shorten_steps && predicted > kMeasurable * cost_.robust &&
@@ -278,14 +359,23 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
         constexpr double kRise = 10.0;
         lambda_ *= kRise;
         lambda_fall_ = kLambdaFall / kRise;
-        return accept(shorter, now, false);
+        return accept(shorter, predicted, now, false);
       }
     }
-    lambda_ = std::max(lambda_ * lambda_growth_, options_.refused_lambda * lambda_unit_);
+    lambda_ *= lambda_growth_;
+    if (!refused_ || !options_.follow_diagonal) {
+      lambda_ = std::max(lambda_, options_.refused_lambda * lambda_unit_);
+    }
     lambda_growth_ *= 2.0;
+    if (!refused_ && options_.follow_diagonal && promised > kMatters * cost_.robust) {
+      refused_ = true;
+      if (result_.iterations > 0) return begin_again();
+      reference_.start(cost_.robust, options_.nonmonotonic_steps);
+    }
     if (options_.deadline.passed()) return finish(Reason::kDeadline);
   }
-  return finish(factorised ? Reason::kNoProgress : Reason::kSingular);
+  if (!factorised) return finish(Reason::kSingular);
+  return finish_refused(Reason::kNoProgress, promised);
 }
 
 bool Optimiser::iterate_dogleg(IterationStatistics& now) {
@@ -303,6 +393,7 @@ bool Optimiser::iterate_dogleg(IterationStatistics& now) {
   }
   newton = step;
   const double curvature = workspace_->quadratic_form(negative_gradient_);
+  double promised = 0.0;
   const double alpha = curvature > 0.0 ? dot(descent, descent) / curvature : 0.0;
   for (; now.refusals < options_.max_refusals; ++now.refusals) {
     now.lambda = radius_;
@@ -326,16 +417,19 @@ bool Optimiser::iterate_dogleg(IterationStatistics& now) {
     const Cost cost = evaluate_trial(now);
     const double predicted =
         2.0 * dot(descent, step) - workspace_->quadratic_form(workspace_->step());
-    now.gain_ratio = (cost_.robust - cost.robust) / predicted;
+    if (now.refusals == 0) promised = predicted;
+    now.gain_ratio = reference_.quality(cost.robust, predicted);
     const bool good = std::isfinite(cost.robust) && now.gain_ratio > 0.0;
     const double length = norm(step);
     if (good && now.gain_ratio > 0.75) radius_ = std::max(radius_, 3.0 * length);
     if (!good || now.gain_ratio < 0.25) radius_ = std::min(radius_, length) / 2.0;
-    if (good) return accept(cost, now);
-    if (predicted <= options_.gain * cost_.robust * 1e-3) return finish(Reason::kGain);
+    if (good) return accept(cost, predicted, now);
+    if (predicted <= options_.gain * cost_.robust * 1e-3) {
+      return finish_refused(Reason::kGain, promised);
+    }
     if (options_.deadline.passed()) return finish(Reason::kDeadline);
   }
-  return finish(Reason::kNoProgress);
+  return finish_refused(Reason::kNoProgress, promised);
 }
 
 OptimiserResult optimise(Graph& graph, const OptimiserOptions& options, LinearSolver& solver,

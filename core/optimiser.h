@@ -13,11 +13,15 @@
 ///     while (optimiser.iterate()) {}          // does not allocate
 ///     workspace.store_state();
 ///
+/// OptimiserOptions::for_any_start() is for values that may be poor. With nonmonotonic_steps the
+/// cost may rise for a few steps, along a bent valley where a cost that must fall creeps.
+///
 /// Levenberg-Marquardt follows Madsen, Nielsen & Tingleff 2004 (gain ratio and Nielsen's update of
 /// λ, their algorithm 3.16); the dogleg their algorithm 3.21. Deterministic.
 
 #include <locograph/common/deadline.h>
 #include <locograph/core/linear_solver.h>
+#include <locograph/core/reference_cost.h>
 #include <locograph/core/workspace.h>
 
 #include <functional>
@@ -49,12 +53,24 @@ struct OptimiserOptions {
   /// independent of the units of the variables (Marquardt 1963), and a direction that is flat just
   /// now does not run away (Moré 1978, section 6). The two options above are then λ itself.
   bool scale_by_diagonal = false;
+  /// With scale_by_diagonal, for values that may be poor. Steps with next to no damping come first;
+  /// when one of them is refused that was to lower the cost by more than a hundredth, the run
+  /// begins again at its first state with λ = refused_lambda, and from there on is that of a trust
+  /// region of radius 1/λ as Ceres has it: D is the diagonal of now, but at least 1e-6 of the first
+  /// one, and λ moves by Nielsen's factors alone. The run ends at the best state that it has seen.
+  bool follow_diagonal = false;
   /// Of Levenberg-Marquardt, for costs whose second derivatives jump, as those of hinged rows do
   /// (constraint.h). A refused step is cut short in its direction, so that the next linearisation
   /// knows the rows it ran into; λ rises by tens only, and falls ever faster as long as whole steps
   /// do what the model says. Without this a stiff row that begins to act raises λ by many orders,
   /// for all directions, and tens of iterations crawl until it has come down by thirds.
   bool shorten_steps = false;
+  /// Of Levenberg-Marquardt and the dogleg: steps in a row that may leave the cost above the least
+  /// so far (reference_cost.h); the run ends at the best state that it has seen. With 0 every step
+  /// lowers the cost, and the workspace holds the best state after each, which a caller that stops
+  /// when it likes relies on. 5 is the
+  /// number of Ceres: often fewer steps from poor values, now and then to another minimum.
+  int nonmonotonic_steps = 0;
   /// First trust-region radius of the dogleg, in units of the tangent.
   double initial_radius = 1e4;
   /// Steps that may be refused in a row before the iteration gives up.
@@ -63,6 +79,10 @@ struct OptimiserOptions {
   /// Called after every iteration; false stops the run. The result so far holds the statistics of
   /// the iteration; the workspace holds its state.
   std::function<bool(const OptimiserResult&)> on_iteration;
+
+  /// Levenberg-Marquardt for values that may be good or poor, as those in a file: follow_diagonal.
+  /// Good ones still take Gauss-Newton steps.
+  static OptimiserOptions for_any_start();
 
   /// Throws Error naming the option that is out of range.
   void validate() const;
@@ -85,7 +105,7 @@ struct OptimiserResult {
     kStep,
     kMaxIterations,
     kDeadline,
-    kNoProgress,   ///< no damping gave a lower cost
+    kNoProgress,   ///< no damping gave a lower cost; see promised_decrease
     kSingular,     ///< H is not positive definite: singular_vertex says where
     kNotFinite,    ///< the initial cost is not a number
     kDiverged,     ///< Gauss-Newton raised the cost
@@ -96,6 +116,10 @@ struct OptimiserResult {
   bool converged = false;
   int iterations = 0;
   Cost initial, final;
+  /// With kNoProgress, the decrease that the gradient promised of the last iteration's first step,
+  /// as a fraction of the cost. Where it is not tiny, the Jacobian of an edge is not the derivative
+  /// of its error: diagnose() compares them.
+  double promised_decrease = 0.0;
   int singular_vertex = -1;                     ///< slot, -1 when H was never singular
   std::vector<IterationStatistics> statistics;  ///< of the first 10 000 iterations
 
@@ -114,26 +138,38 @@ class Optimiser {
   OptimiserOptions& options() { return options_; }
 
  private:
-  enum class Trial { kAccepted, kRefused, kFailed };
-
   bool finish(OptimiserResult::Reason reason);
+  bool finish_refused(OptimiserResult::Reason converged, double promised);
+  /// Whether the present state may be worse than one before.
+  bool may_rise() const {
+    return (options_.nonmonotonic_steps > 0 || options_.follow_diagonal) &&
+           options_.algorithm != Algorithm::kGaussNewton;
+  }
+  void go_to(const std::vector<double>& state, const Cost& cost);
+  void return_to_best();
+  bool begin_again();
   bool iterate_gauss_newton(IterationStatistics& now);
   bool iterate_levenberg_marquardt(IterationStatistics& now);
+  void update_scaling();
   bool iterate_dogleg(IterationStatistics& now);
   bool solve(IterationStatistics& now);
   Cost evaluate_trial(IterationStatistics& now);
   bool shorten(Cost& cost, IterationStatistics& now);
-  bool accept(const Cost& cost, IterationStatistics& now, bool whole = true);
+  bool accept(const Cost& cost, double predicted, IterationStatistics& now, bool whole = true);
   double state_norm() const;
 
   OptimiserOptions options_;
   Workspace* workspace_ = nullptr;
   LinearSolver* solver_ = nullptr;
   OptimiserResult result_;
-  Cost cost_;
+  Cost cost_, best_cost_;
+  ReferenceCost reference_;
   double lambda_ = 0.0, lambda_unit_ = 1.0, lambda_growth_ = 2.0;
   double lambda_fall_ = 0.0, radius_ = 0.0;
+  bool refused_ = false;  ///< a step, of this run
   std::vector<double> diagonal_, scaling_, newton_step_, negative_gradient_;
+  std::vector<double> first_diagonal_, first_state_;
+  std::vector<double> best_state_;  ///< where the cost has risen since
 };
 
 /// Compiles, optimises and writes the result back to the graph. Vertices that are fixed stay. The

@@ -1,4 +1,5 @@
 #include <locograph/common/error.h>
+#include <locograph/common/suggestion.h>
 #include <locograph/core/robust_kernel.h>
 
 #include <algorithm>
@@ -132,11 +133,8 @@ RobustKernel RobustKernel::parse(std::string_view text) {
   }
   const auto* const found = std::find(std::begin(kNames), std::end(kNames), fields[0]);
   if (found == std::end(kNames)) {
-    std::string all;
-    for (const std::string_view known : kNames) {
-      all += (all.empty() ? "" : ", ") + std::string(known);
-    }
-    throw Error("unknown robust kernel '" + std::string(fields[0]) + "'", "one of " + all);
+    throw Error("unknown robust kernel '" + std::string(fields[0]) + "'",
+                "one of " + joined_names(names()) + did_you_mean(fields[0], names()));
   }
   RobustKernel kernel(static_cast<Kind>(found - std::begin(kNames)), 1.0);
   if (fields.size() > 1 && fields.back() == kSecondOrder) {

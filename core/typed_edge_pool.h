@@ -383,11 +383,13 @@ class TypedEdgePool final : public EdgePool {
 
   /// H_ij += J_iᵀ W J_j for i ≤ j, g_i += J_iᵀ (wΩ) e, at the precomputed offsets; W is Ω as the
   /// kernel weights it.
+  /// A template, lest explicit instantiations of pools of weighted edges reach for their Ω.
+  template <class Own = E>
   void accumulate(const CompiledEdges& compiled, int k, const Evaluator& evaluator, const double* e,
                   const Weight& weight, double* const* data, const Evaluation& x, double* hessian,
-                  double* gradient) const requires(!kHasWeights<E>) {
+                  double* gradient) const {
     if (weight.first == 0.0) return;
-    const E& edge = edges[compiled.edges[k]];
+    const Own& edge = edges[compiled.edges[k]];
     const int n = edge.dimension();
     const double* information = edge.information.data();
     const std::span<const CompiledEdges::Slot> own = slots(compiled, k);

@@ -1,3 +1,4 @@
+#include <locograph/core/weighted_square.h>
 #include <locograph/core/workspace.h>
 
 #include <algorithm>
@@ -175,8 +176,7 @@ Workspace::Linearised Workspace::linearise_edge(int pool_number, int k) {
   if (first >= 0) {
     constrain_error(constraint_rows_.data() + first, pool.dimension(index), edge.error.data());
   } else {
-    edge.weight =
-        pool.kernel(index).weights(edge.error.dot(pool.information(index) * edge.error)).weight;
+    edge.weight = pool.kernel(index).weights(weighted_square(pool, index, edge.error)).weight;
   }
   for (int s = compiled.slot_begin[k]; s < compiled.slot_begin[k + 1]; ++s) {
     edge.jacobians.emplace_back();

@@ -3,6 +3,7 @@
 #include <locograph/robots/kinematic_tree.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <sstream>
 
 namespace locograph {
@@ -10,6 +11,10 @@ namespace {
 
 // Inertias of flat bodies, where the largest moment is the sum of the others, come in three digits.
 constexpr double kRoundedInertia = 1e-3;
+// Moments below zero that are rounding, as a part of the largest: of thin bodies in six digits.
+constexpr double kRoundedMoment = 1e-6;
+// Moments [kg m^2] that are rounding whatever the others are: a milligram within a few micrometres.
+constexpr double kNoMoment = 1e-15;
 // Below this part of the largest moment of inertia, the one about the axis is rounding.
 constexpr double kNoInertia = 1e-12;
 
@@ -41,6 +46,12 @@ std::vector<BodyInertia> fold(const Robot& robot) {
   return bodies;
 }
 
+/// Ascending.
+Eigen::Vector3d principal_moments(const Eigen::Matrix3d& inertia) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly)
+      .eigenvalues();
+}
+
 /// The link of a body whose inertia is furthest from that of a solid.
 const Link& worst_link(const Robot& robot, int body) {
   const std::vector<Link>& links = robot.links();
@@ -49,9 +60,7 @@ const Link& worst_link(const Robot& robot, int body) {
   double largest_excess = 0.0;
   for (std::size_t l = 0; l < links.size(); ++l) {
     if (robot.tree().body_of_link[l] != body) continue;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(links[l].inertia,
-                                                                Eigen::EigenvaluesOnly);
-    const Eigen::Vector3d& principal = solver.eigenvalues();
+    const Eigen::Vector3d principal = principal_moments(links[l].inertia);
     const double excess = principal[2] - principal[1] - principal[0];
     if (excess > largest_excess) {
       largest_excess = excess;
@@ -62,10 +71,8 @@ const Link& worst_link(const Robot& robot, int body) {
 }
 
 void check_solid(const Robot& robot, int body, const BodyInertia& inertia) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia.inertia,
-                                                              Eigen::EigenvaluesOnly);
-  const Eigen::Vector3d& principal = solver.eigenvalues();
-  if (principal[0] + principal[1] >= (1.0 - kRoundedInertia) * principal[2]) return;
+  if (is_inertia_of_a_body(inertia.inertia)) return;
+  const Eigen::Vector3d principal = principal_moments(inertia.inertia);
   const Link& link = worst_link(robot, body);
   std::ostringstream what;
   what << "link '" << link.name << "' gives its body the principal moments of inertia "
@@ -75,33 +82,48 @@ void check_solid(const Robot& robot, int body, const BodyInertia& inertia) {
 }
 
 /// A joint that moves no mass, or turns only one body, and that about an axis through all its mass,
-/// has no equation of motion in any configuration.
+/// has no equation of motion in any configuration. Its mimic joints may give it one.
 void check_moved(const Robot& robot, const std::vector<BodyInertia>& bodies) {
   const KinematicTree& tree = robot.tree();
-  std::vector<bool> massive_below(bodies.size(), false);
+  std::vector<bool> massive_below(bodies.size(), false), moves(bodies.size(), false);
   for (std::size_t b = bodies.size() - 1; b > 0; --b) {
     const BodyInertia& body = bodies[b];
     const Eigen::Vector3d axis = tree.bodies[b].axis.head<3>();
     const double largest = body.inertia.diagonal().maxCoeff() + body.mass * body.com.squaredNorm();
     const double turned =
         axis.dot(body.inertia * axis) + body.mass * axis.cross(body.com).squaredNorm();
-    const bool moves = tree.bodies[b].revolute ? turned > kNoInertia * largest : body.mass > 0.0;
+    moves[b] = massive_below[b] ||
+               (tree.bodies[b].revolute ? turned > kNoInertia * largest : body.mass > 0.0);
     const bool massive = body.mass > 0.0 || largest > 0.0;
-    if (!moves && !massive_below[b]) {
-      const Joint& joint = robot.active_joint(static_cast<int>(b) - 1);
-      const Link& link = robot.links()[static_cast<std::size_t>(joint.child_link)];
-      throw Error(robot.urdf_file().string(), link.inertial_line,
-                  "joint '" + joint.name + "' moves no " + (body.mass > 0.0 ? "inertia" : "mass") +
-                      ", only link '" + link.name + "'",
-                  "an <inertial> with a positive mass and inertia, or the joint not among the "
-                  "active ones");
-    }
     const std::size_t parent = static_cast<std::size_t>(tree.bodies[b].parent);
     massive_below[parent] = massive_below[parent] || massive_below[b] || massive;
+  }
+  for (int i = 0; i < robot.active_joint_count(); ++i) {
+    const std::span<const int> axes = robot.axes_of(i);
+    if (std::any_of(axes.begin(), axes.end(),
+                    [&](int axis) { return moves[static_cast<std::size_t>(axis) + 1]; })) {
+      continue;
+    }
+    const Joint& joint = robot.active_joint(i);
+    const Link& link = robot.links()[static_cast<std::size_t>(joint.child_link)];
+    const bool massive = bodies[static_cast<std::size_t>(axes.front()) + 1].mass > 0.0;
+    throw Error(robot.urdf_file().string(), link.inertial_line,
+                "joint '" + joint.name + "' moves no " + (massive ? "inertia" : "mass") +
+                    ", only link '" + link.name + "'",
+                "an <inertial> with a positive mass and inertia, or the joint not among the "
+                "active ones");
   }
 }
 
 }  // namespace
+
+bool is_inertia_of_a_body(const Eigen::Matrix3d& inertia) {
+  const Eigen::Vector3d principal = principal_moments(inertia);
+  const double largest = principal.cwiseAbs().maxCoeff();
+  if (largest < kNoMoment) return true;
+  return principal[0] >= -kRoundedMoment * largest &&
+         principal[0] + principal[1] >= (1.0 - kRoundedInertia) * principal[2];
+}
 
 std::vector<BodyInertia> body_inertias(const Robot& robot) {
   const std::vector<BodyInertia> bodies = fold(robot);

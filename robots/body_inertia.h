@@ -7,10 +7,10 @@
 ///
 /// Errors, with the file and the line of an <inertial> or <link>, if the equations of motion have
 /// no solution: a joint that moves no mass, or that only turns a body about an axis through all of
-/// its mass; a body whose largest principal moment of inertia is above the sum of the other two,
-/// which no body has. The last is asked of whole bodies: published models break it in the inertias
-/// of their cameras and covers, which does not matter once they are part of a trunk. The root of a
-/// fixed base does not move and is not looked at.
+/// its mass, and whose mimic joints do no more; a body whose largest principal moment of inertia is
+/// above the sum of the other two, which no body has. The last is asked of whole bodies: published
+/// models break it in the inertias of their cameras and covers, which does not matter once they are
+/// part of a trunk. The root of a fixed base does not move and is not looked at.
 
 #include <locograph/robots/robot.h>
 
@@ -24,6 +24,10 @@ struct BodyInertia {
   Eigen::Vector3d com = Eigen::Vector3d::Zero();      ///< m, body frame; 0 if there is no mass
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< kg m^2, about com, along the body axes
 };
+
+/// Whether a body can have this inertia [kg m^2, about its centre of mass], up to what printing it
+/// in a few digits does to it.
+bool is_inertia_of_a_body(const Eigen::Matrix3d& inertia);
 
 std::vector<BodyInertia> body_inertias(const Robot& robot);
 

@@ -152,7 +152,13 @@ void require_sound_effector(const Robot& robot, const EndEffector& effector) {
       throw Error(name + " is a wheel that no joint turns",
                   "a link below a revolute or continuous joint");
     }
-    const Eigen::Vector3d& axis = robot.joints()[static_cast<std::size_t>(joint)].axis;
+    const Joint& axle = robot.joints()[static_cast<std::size_t>(joint)];
+    if (axle.mimics >= 0) {
+      throw Error(name + " is a wheel whose joint mimics '" +
+                      robot.joints()[static_cast<std::size_t>(axle.mimics)].name + "'",
+                  "a wheel that turns on its own");
+    }
+    const Eigen::Vector3d& axis = axle.axis;
     const double off_m = (effector.point - axis * axis.dot(effector.point)).norm();
     if (!(off_m <= kOnAxle_m)) {
       throw Error(name + " has its centre " + std::to_string(off_m) + " m beside its axle",

@@ -15,13 +15,20 @@ RobotDynamics::RobotDynamics(const Robot& robot, const Eigen::Vector3d& gravity)
       forces_(inertias_.size()),
       composites_(inertias_.size()) {}
 
-/// The joint's column of the motion subspace, about the base origin.
-RobotDynamics::Motion RobotDynamics::joint_motion(const RobotState& state, int active) const {
-  const Eigen::Vector3d& axis = state.joint_axis(active);
-  if (!tree_->bodies[static_cast<std::size_t>(active) + 1].revolute) {
-    return {Eigen::Vector3d::Zero(), axis};
+/// What a unit of the active joint's motion gives the axis: its column of the motion subspace,
+/// about the base origin.
+RobotDynamics::Motion RobotDynamics::axis_motion(const RobotState& state, int axis) const {
+  const Eigen::Vector3d along =
+      robot_->axes()[static_cast<std::size_t>(axis)].multiplier * state.joint_axis(axis);
+  if (!tree_->bodies[static_cast<std::size_t>(axis) + 1].revolute) {
+    return {Eigen::Vector3d::Zero(), along};
   }
-  return {axis, (state.joint_origin(active) - state.world_from_link(0).translation()).cross(axis)};
+  return {along, (state.joint_origin(axis) - state.world_from_link(0).translation()).cross(along)};
+}
+
+/// Tangent entry of what moves body b.
+int RobotDynamics::entry_of_body(std::size_t b) const {
+  return robot_->base_tangent_size() + robot_->axes()[b - 1].active;
 }
 
 void RobotDynamics::mass_matrix(const RobotState& state, Eigen::Ref<Eigen::MatrixXd> mass) {
@@ -39,30 +46,32 @@ void RobotDynamics::mass_matrix(const RobotState& state, Eigen::Ref<Eigen::Matri
     composite.inertia.noalias() = rotated * pose.linear().transpose();
     composite.inertia.noalias() -= composite.moment * com.transpose();
     composite.inertia.diagonal().array() += composite.moment.dot(com);
-    if (b > 0) motions_[b] = joint_motion(state, static_cast<int>(b) - 1);
+    if (b > 0) motions_[b] = axis_motion(state, static_cast<int>(b) - 1);
   }
   mass.setZero();
   for (std::size_t b = inertias_.size() - 1; b > 0; --b) {
-    const int i = static_cast<int>(b) - 1;
+    const int entry = entry_of_body(b);
     const Composite& composite = composites_[b];
     const Motion& motion = motions_[b];
     const Eigen::Vector3d force =
         composite.mass * motion.linear + motion.angular.cross(composite.moment);
     const Eigen::Vector3d moment =
         composite.inertia * motion.angular + composite.moment.cross(motion.linear);
-    for (int j = i; j >= 0; j = tree_->bodies[static_cast<std::size_t>(j) + 1].parent - 1) {
-      const Motion& upper = motions_[static_cast<std::size_t>(j) + 1];
+    for (std::size_t above = b; above > 0;
+         above = static_cast<std::size_t>(tree_->bodies[above].parent)) {
+      const Motion& upper = motions_[above];
       const double value = upper.angular.dot(moment) + upper.linear.dot(force);
-      mass(base + i, base + j) = value;
-      mass(base + j, base + i) = value;
+      const int other = entry_of_body(above);
+      mass(entry, other) += value;
+      if (above != b) mass(other, entry) += value;
     }
     if (base > 0) {
       const Eigen::Vector3d linear = world_from_base.linear().transpose() * force;
       const Eigen::Vector3d angular = world_from_base.linear().transpose() * moment;
-      mass.block<3, 1>(0, base + i) = linear;
-      mass.block<3, 1>(3, base + i) = angular;
-      mass.block<1, 3>(base + i, 0) = linear.transpose();
-      mass.block<1, 3>(base + i, 3) = angular.transpose();
+      mass.block<3, 1>(0, entry) += linear;
+      mass.block<3, 1>(3, entry) += angular;
+      mass.block<1, 3>(entry, 0) += linear.transpose();
+      mass.block<1, 3>(entry, 3) += angular.transpose();
     }
     Composite& parent = composites_[static_cast<std::size_t>(tree_->bodies[b].parent)];
     parent.mass += composite.mass;
@@ -121,10 +130,10 @@ void RobotDynamics::recurse(const RobotState& state, const double* velocity,
     Motion& a = accelerations_[b];
     if (b > 0) {
       const std::size_t parent = static_cast<std::size_t>(tree_->bodies[b].parent);
-      const int entry = base + static_cast<int>(b) - 1;
+      const int entry = entry_of_body(b);
       const double speed = velocity[entry];
       const double change = acceleration == nullptr ? 0.0 : acceleration[entry];
-      const Motion s = joint_motion(state, static_cast<int>(b) - 1);
+      const Motion s = axis_motion(state, static_cast<int>(b) - 1);
       motions_[b] = s;
       v.angular = velocities_[parent].angular + speed * s.angular;
       v.linear = velocities_[parent].linear + speed * s.linear;
@@ -153,10 +162,11 @@ void RobotDynamics::recurse(const RobotState& state, const double* velocity,
     forces_[body].force -= wrench.force;
     forces_[body].moment -= arm.cross(wrench.force) + wrench.moment;
   }
+  torques.setZero();
   for (std::size_t b = inertias_.size() - 1; b > 0; --b) {
     const Motion& s = motions_[b];
     const Force& f = forces_[b];
-    torques[base + static_cast<int>(b) - 1] = s.angular.dot(f.moment) + s.linear.dot(f.force);
+    torques[entry_of_body(b)] += s.angular.dot(f.moment) + s.linear.dot(f.force);
     Force& parent = forces_[static_cast<std::size_t>(tree_->bodies[b].parent)];
     parent.force += f.force;
     parent.moment += f.moment;

@@ -76,7 +76,8 @@ class RobotDynamics {
 
   void recurse(const RobotState& state, const double* velocity, const double* acceleration,
                std::span<const PointWrench> wrenches, Eigen::Ref<Eigen::VectorXd> torques);
-  Motion joint_motion(const RobotState& state, int active) const;
+  Motion axis_motion(const RobotState& state, int axis) const;
+  int entry_of_body(std::size_t b) const;
 
   const Robot* robot_;
   const KinematicTree* tree_;

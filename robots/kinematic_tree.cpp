@@ -40,8 +40,8 @@ Eigen::Isometry3d frozen_pose(const Joint& joint) {
 
 }  // namespace
 
-KinematicTree KinematicTree::build(const std::vector<Link>& links,
-                                   const std::vector<Joint>& joints) {
+KinematicTree KinematicTree::build(const std::vector<Link>& links, const std::vector<Joint>& joints,
+                                   const std::vector<Axis>& axes) {
   KinematicTree tree;
   const std::size_t link_count = links.size();
   std::vector<Eigen::Isometry3d> body_from_link(link_count, Eigen::Isometry3d::Identity());
@@ -60,11 +60,12 @@ KinematicTree KinematicTree::build(const std::vector<Link>& links,
     const std::size_t parent_link = static_cast<std::size_t>(joint.parent_link);
     const int parent_body = tree.body_of_link[parent_link];
     support[l] = support[parent_link];
-    if (joint.index >= 0) {
+    const std::size_t axis = tree.bodies.size() - 1;
+    if (axis < axes.size() && axes[axis].joint == links[l].parent_joint) {
       tree.body_of_link[l] = static_cast<int>(tree.bodies.size());
       tree.bodies.push_back(moving_body(joint, body_from_link[parent_link], parent_body));
       tree.link_of_body.push_back(static_cast<int>(l));
-      support[l].push_back(joint.index);
+      support[l].push_back(static_cast<int>(axis));
     } else {
       tree.body_of_link[l] = parent_body;
       body_from_link[l] = body_from_link[parent_link] * frozen_pose(joint);

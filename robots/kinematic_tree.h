@@ -5,10 +5,10 @@
 ///     const locograph::KinematicTree& tree = robot.tree();
 ///     int body = tree.body_of_link[robot.link_index("wheel_1")];
 ///
-/// Body 0 is the root; body i + 1 is what active joint i moves. Every link is fixed to one body.
-/// The pose of a body is affine in two scalars of its joint, parent_from_body = A + u B + w C, with
-/// (u, w) = (sin q, cos q) for rotations, from Rodrigues' formula
-/// R(a, q) = a a^T + sin q [a] - cos q [a]^2, and (q, 0) for translations.
+/// Body 0 is the root; body i + 1 is what axis i of the robot moves. Every link is fixed to one
+/// body. The pose of a body is affine in two scalars of its joint, parent_from_body = A + u B + w
+/// C, with (u, w) = (sin q, cos q) for rotations, from Rodrigues' formula R(a, q) = a a^T + sin q
+/// [a] - cos q [a]^2, and (q, 0) for translations.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -16,6 +16,7 @@
 
 namespace locograph {
 
+struct Axis;
 struct Joint;
 struct Link;
 
@@ -38,9 +39,10 @@ struct KinematicTree {
   std::vector<int> link_of_body;       ///< the link whose frame is the body frame
   std::vector<RigidLink> rigid_links;  ///< links whose frame is not the body frame
   std::vector<int> support_begin;      ///< links + 1 offsets into support
-  std::vector<int> support;            ///< active joints from the root to each link
+  std::vector<int> support;            ///< axes from the root to each link
 
-  static KinematicTree build(const std::vector<Link>& links, const std::vector<Joint>& joints);
+  static KinematicTree build(const std::vector<Link>& links, const std::vector<Joint>& joints,
+                             const std::vector<Axis>& axes);
 };
 
 }  // namespace locograph

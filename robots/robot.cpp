@@ -145,6 +145,10 @@ std::span<const int> Robot::support(int link) const {
           static_cast<std::size_t>(begin[static_cast<std::size_t>(link) + 1] - first)};
 }
 
+std::span<const int> Robot::axes_of(int active) const {
+  return axes_of_active_[static_cast<std::size_t>(active)];
+}
+
 std::vector<std::string> Robot::missing_meshes() const {
   std::vector<std::string> missing;
   for (const Link& link : links_) {

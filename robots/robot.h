@@ -18,8 +18,12 @@
 /// RobotOptions::active_joints. A `floating` joint directly below the URDF's root link stands for
 /// the floating base: the link below it becomes the root and the link above it is dropped.
 ///
-/// Mimic joints are not followed: one that would be active is an error; a frozen one stands at its
-/// value in the frozen state, or at its offset.
+/// A mimic joint moves with the joint that it follows, multiplier * position + offset, and adds
+/// nothing to the configuration. Where it follows another mimic joint, both follow the one that
+/// leads them all. Its limits of position and velocity narrow those of the leader; its effort limit
+/// means nothing, as the leader's drive moves it: torques of the leader include what its mimic
+/// joints take. The axes of a robot are the joints that move with a configuration: the active ones
+/// and the mimic joints of active ones, in the order of joints().
 ///
 /// Errors: locograph::Error with file and line for every unusable URDF or SRDF.
 /// Thread-safety: const, freely shared.
@@ -49,8 +53,20 @@ struct Joint {
   double upper = 0.0;                               ///< rad or m; +infinity for continuous joints
   double max_velocity = 0.0;     ///< rad/s or m/s; infinity if the URDF gives none
   double max_effort = 0.0;       ///< Nm or N; infinity if the URDF gives none
-  int index = -1;                ///< position among the active joints, -1: fixed or frozen
-  double frozen_position = 0.0;  ///< where a movable joint with index -1 stands
+  int index = -1;                ///< position among the active joints, -1: fixed, frozen or mimic
+  double frozen_position = 0.0;  ///< where a movable joint stands that no active one moves
+  int mimics = -1;               ///< the joint that leads this mimic joint, -1: not a mimic joint
+  double multiplier = 1.0;       ///< of the leader's position
+  double offset = 0.0;           ///< rad or m
+};
+
+/// A joint that moves with the configuration: position = multiplier * that of an active joint
+/// + offset.
+struct Axis {
+  int joint = -1;   ///< index into Robot::joints()
+  int active = -1;  ///< the active joint that it is or follows
+  double multiplier = 1.0;
+  double offset = 0.0;
 };
 
 enum class ShapeType { kSphere, kCapsule, kCylinder, kBox, kMesh };
@@ -93,7 +109,7 @@ struct GroupState {
 struct RobotOptions {
   bool floating_base = true;
   /// Names of joints, or of SRDF groups standing for all their movable joints. Empty: all movable
-  /// joints. The others are frozen.
+  /// joints. The others are frozen. Mimic joints are as their leaders are.
   std::vector<std::string> active_joints = {};
   /// SRDF group_state that says where frozen joints stand. A joint it does not name, and every
   /// joint when the SRDF has no "home", stands at its neutral position.
@@ -126,6 +142,9 @@ class Robot {
 
   int active_joint_count() const { return static_cast<int>(active_.size()); }
   const Joint& active_joint(int i) const { return joints_[static_cast<std::size_t>(active_[i])]; }
+  const std::vector<Axis>& axes() const { return axes_; }
+  /// Axes of an active joint (indices into axes()), its own first.
+  std::span<const int> axes_of(int active) const;
   bool floating_base() const { return options_.floating_base; }
   int base_configuration_size() const { return floating_base() ? 7 : 0; }
   int base_tangent_size() const { return floating_base() ? 6 : 0; }
@@ -153,7 +172,7 @@ class Robot {
   /// are not connected through fixed joints only.
   const std::vector<std::pair<int, int>>& self_collision_pairs() const { return pairs_; }
 
-  /// Active joints (indices below active_joint_count()) between root and link, root first.
+  /// Axes (indices into axes()) between root and link, root first.
   std::span<const int> support(int link) const;
 
   double total_mass() const { return total_mass_; }  ///< kg
@@ -161,6 +180,8 @@ class Robot {
   std::vector<std::string> missing_meshes() const;
   /// What RobotOptions::lenient_srdf let pass, as FILE:LINE: text.
   const std::vector<std::string>& warnings() const { return warnings_; }
+  /// What of the URDF is valid and can hardly be meant: limits without room, impossible inertias.
+  const std::vector<std::string>& urdf_warnings() const { return urdf_warnings_; }
 
   /// Flat arrays for the kinematics; see kinematic_tree.h.
   const KinematicTree& tree() const { return *tree_; }
@@ -174,10 +195,12 @@ class Robot {
   std::vector<Link> links_;
   std::vector<Joint> joints_;
   std::vector<int> active_;
+  std::vector<Axis> axes_;
+  std::vector<std::vector<int>> axes_of_active_;
   std::vector<JointGroup> groups_;
   std::vector<GroupState> states_;
   std::vector<std::pair<int, int>> pairs_;
-  std::vector<std::string> warnings_;
+  std::vector<std::string> warnings_, urdf_warnings_;
   double total_mass_ = 0.0;
   std::shared_ptr<const KinematicTree> tree_;
 };

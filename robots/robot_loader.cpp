@@ -10,13 +10,14 @@
 namespace locograph {
 namespace {
 
-/// Joint and group names of RobotOptions::active_joints as a flag per joint.
+/// Joint and group names of RobotOptions::active_joints as a flag per joint; mimic joints have
+/// none.
 std::vector<bool> choose_active(const UrdfModel& urdf, const SrdfModel& srdf,
                                 const std::vector<std::string>& names, const std::string& file) {
   std::vector<bool> active(urdf.joints.size(), false);
   if (names.empty()) {
     for (std::size_t j = 0; j < active.size(); ++j) {
-      active[j] = urdf.joints[j].type != JointType::kFixed;
+      active[j] = urdf.joints[j].type != JointType::kFixed && urdf.joints[j].mimics < 0;
     }
   }
   std::vector<std::string> known;
@@ -40,12 +41,37 @@ std::vector<bool> choose_active(const UrdfModel& urdf, const SrdfModel& srdf,
     }
   }
   for (std::size_t j = 0; j < active.size(); ++j) {
-    if (active[j] && urdf.mimic[j]) {
-      throw Error(file, urdf.joint_lines[j], "mimic joint '" + urdf.joints[j].name + "' is active",
-                  "a list of active joints without it, which freezes it at its offset");
-    }
+    if (urdf.joints[j].mimics >= 0) active[j] = false;
+  }
+  for (const std::string& name : names) {
+    const auto joint = std::find_if(urdf.joints.begin(), urdf.joints.end(), [&](const Joint& j) {
+      return j.name == name && j.mimics >= 0;
+    });
+    if (joint == urdf.joints.end() || active[static_cast<std::size_t>(joint->mimics)]) continue;
+    throw Error(file, urdf.joint_lines[static_cast<std::size_t>(joint - urdf.joints.begin())],
+                "mimic joint '" + name + "' is active, but not the joint that leads it",
+                "'" + urdf.joints[static_cast<std::size_t>(joint->mimics)].name +
+                    "' among the active joints");
   }
   return active;
+}
+
+/// Places the mimic joints of frozen leaders, and lists what moves with the active joints.
+std::vector<Axis> place_mimic_joints(std::vector<Joint>& joints) {
+  std::vector<Axis> axes;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    Joint& joint = joints[j];
+    if (joint.index >= 0) axes.push_back({.joint = static_cast<int>(j), .active = joint.index});
+    if (joint.mimics < 0) continue;
+    const Joint& leader = joints[static_cast<std::size_t>(joint.mimics)];
+    if (leader.index < 0) {
+      joint.frozen_position = joint.multiplier * leader.frozen_position + joint.offset;
+    } else {
+      joint.frozen_position = 0.0;
+      axes.push_back({static_cast<int>(j), leader.index, joint.multiplier, joint.offset});
+    }
+  }
+  return axes;
 }
 
 /// Number of the group of links connected through fixed joints that each link belongs to.
@@ -94,6 +120,7 @@ Robot Robot::load(const std::filesystem::path& urdf_file, const std::filesystem:
   robot.options_ = options;
   robot.pairs_ = collision_pairs(urdf, srdf);
   robot.warnings_ = srdf.warnings;
+  robot.urdf_warnings_ = urdf.warnings;
   robot.links_ = std::move(urdf.links);
   robot.joints_ = std::move(urdf.joints);
   robot.groups_ = std::move(srdf.groups);
@@ -106,7 +133,7 @@ Robot Robot::load(const std::filesystem::path& urdf_file, const std::filesystem:
       joint.index = static_cast<int>(robot.active_.size());
       robot.active_.push_back(static_cast<int>(j));
       joint.frozen_position = 0.0;
-    } else if (joint.type != JointType::kFixed && !urdf.mimic[j]) {
+    } else if (joint.type != JointType::kFixed) {
       joint.frozen_position = std::clamp(0.0, joint.lower, joint.upper);
     }
   }
@@ -123,8 +150,16 @@ Robot Robot::load(const std::filesystem::path& urdf_file, const std::filesystem:
                 "no group_state '" + options.frozen_state + "' for the frozen joints",
                 similar_names(options.frozen_state, robot.configuration_names()));
   }
-  robot.tree_ =
-      std::make_shared<const KinematicTree>(KinematicTree::build(robot.links_, robot.joints_));
+  robot.axes_ = place_mimic_joints(robot.joints_);
+  robot.axes_of_active_.resize(robot.active_.size());
+  for (std::size_t i = 0; i < robot.axes_.size(); ++i) {
+    const Axis& axis = robot.axes_[i];
+    std::vector<int>& axes = robot.axes_of_active_[static_cast<std::size_t>(axis.active)];
+    const bool own = robot.joints_[static_cast<std::size_t>(axis.joint)].mimics < 0;
+    axes.insert(own ? axes.begin() : axes.end(), static_cast<int>(i));
+  }
+  robot.tree_ = std::make_shared<const KinematicTree>(
+      KinematicTree::build(robot.links_, robot.joints_, robot.axes_));
   return robot;
 }
 

@@ -20,7 +20,7 @@ RobotState::RobotState(const Robot& robot)
 
 void RobotState::update(const double* q) {
   const KinematicTree& tree = *tree_;
-  const std::size_t joint_count = joint_origin_.size();
+  const std::size_t axis_count = joint_origin_.size();
   if (robot_->floating_base()) {
     world_from_body_[0].linear() = Eigen::Quaterniond(q[6], q[3], q[4], q[5]).toRotationMatrix();
     world_from_body_[0].translation() << q[0], q[1], q[2];
@@ -29,12 +29,14 @@ void RobotState::update(const double* q) {
   world_from_link_[0] = world_from_body_[0];
   subtree_moment_[0].noalias() = world_from_body_[0].matrix() * tree.bodies[0].moment;
 
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < axis_count; ++i) {
     const bool revolute = tree.bodies[i + 1].revolute;
-    coefficients_[2 * i] = revolute ? std::sin(q[i]) : q[i];
-    coefficients_[2 * i + 1] = revolute ? std::cos(q[i]) : 0.0;
+    const Axis& axis = robot_->axes()[i];
+    const double position = axis.multiplier * q[axis.active] + axis.offset;
+    coefficients_[2 * i] = revolute ? std::sin(position) : position;
+    coefficients_[2 * i + 1] = revolute ? std::cos(position) : 0.0;
   }
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < axis_count; ++i) {
     const KinematicTree::Body& body = tree.bodies[i + 1];
     Eigen::Matrix4d local;
     local.noalias() = body.A + coefficients_[2 * i] * body.B + coefficients_[2 * i + 1] * body.C;
@@ -51,7 +53,7 @@ void RobotState::update(const double* q) {
     world_from_link_[static_cast<std::size_t>(rigid.link)].matrix().noalias() =
         world_from_body_[static_cast<std::size_t>(rigid.body)].matrix() * rigid.body_from_link;
   }
-  for (std::size_t b = joint_count; b > 0; --b) {
+  for (std::size_t b = axis_count; b > 0; --b) {
     subtree_moment_[static_cast<std::size_t>(tree.bodies[b].parent)] += subtree_moment_[b];
   }
 }
@@ -70,11 +72,14 @@ void RobotState::frame_jacobian(
     for (int k = 0; k < 3; ++k) jacobian.block<3, 1>(0, 3 + k) = rotation.col(k).cross(arm);
   }
   for (const int i : robot_->support(link)) {
+    const Axis& axis = robot_->axes()[static_cast<std::size_t>(i)];
+    const int column = base + axis.active;
+    const Eigen::Vector3d direction = axis.multiplier * joint_axis(i);
     if (tree_->bodies[static_cast<std::size_t>(i) + 1].revolute) {
-      jacobian.block<3, 1>(0, base + i) = joint_axis(i).cross(point - joint_origin(i));
-      jacobian.block<3, 1>(3, base + i) = joint_axis(i);
+      jacobian.block<3, 1>(0, column) += direction.cross(point - joint_origin(i));
+      jacobian.block<3, 1>(3, column) += direction;
     } else {
-      jacobian.block<3, 1>(0, base + i) = joint_axis(i);
+      jacobian.block<3, 1>(0, column) += direction;
     }
   }
 }
@@ -89,11 +94,17 @@ void RobotState::point_jacobian(
     jacobian.leftCols<3>() = rotation;
     for (int k = 0; k < 3; ++k) jacobian.col(3 + k) = rotation.col(k).cross(arm);
   }
-  for (const int i : robot_->support(link)) {
+  const std::span<const int> support = robot_->support(link);
+  for (const int i : support) {
+    jacobian.col(base + robot_->axes()[static_cast<std::size_t>(i)].active).setZero();
+  }
+  for (const int i : support) {
+    const Axis& axis = robot_->axes()[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d direction = axis.multiplier * joint_axis(i);
     if (tree_->bodies[static_cast<std::size_t>(i) + 1].revolute) {
-      jacobian.col(base + i) = joint_axis(i).cross(point_world - joint_origin(i));
+      jacobian.col(base + axis.active) += direction.cross(point_world - joint_origin(i));
     } else {
-      jacobian.col(base + i) = joint_axis(i);
+      jacobian.col(base + axis.active) += direction;
     }
   }
 }
@@ -125,11 +136,12 @@ void RobotState::add_point_gradient(int link, const Eigen::Vector3d& point_world
   const int end = tree_->support_begin[static_cast<std::size_t>(link) + 1];
   for (int s = tree_->support_begin[static_cast<std::size_t>(link)]; s < end; ++s) {
     const int i = support[s];
-    const Eigen::Vector3d& axis = joint_axis(i);
+    const Eigen::Vector3d& along = joint_axis(i);
     const double slope = tree_->bodies[static_cast<std::size_t>(i) + 1].revolute
-                             ? axis.dot((point_world - joint_origin(i)).cross(direction))
-                             : axis.dot(direction);
-    row[i * stride] += slope;
+                             ? along.dot((point_world - joint_origin(i)).cross(direction))
+                             : along.dot(direction);
+    const Axis& axis = robot_->axes()[static_cast<std::size_t>(i)];
+    row[axis.active * stride] += axis.multiplier * slope;
   }
 }
 
@@ -144,7 +156,8 @@ void RobotState::add_rotation_gradient(int link, const Eigen::Vector3d& directio
   }
   for (const int i : robot_->support(link)) {
     if (tree_->bodies[static_cast<std::size_t>(i) + 1].revolute) {
-      row[i * stride] += joint_axis(i).dot(direction);
+      const Axis& axis = robot_->axes()[static_cast<std::size_t>(i)];
+      row[axis.active * stride] += axis.multiplier * joint_axis(i).dot(direction);
     }
   }
 }
@@ -168,7 +181,7 @@ Eigen::Vector3d RobotState::center_of_mass() const {
   return subtree_moment_[0].head<3>() / tree_->bodies[0].subtree_mass;
 }
 
-// Moving joint i moves the subtree behind it: sum_k m_k axis x (c_k - o) = axis x (S - M_i o).
+// Moving axis i moves the subtree behind it: sum_k m_k axis x (c_k - o) = axis x (S - M_i o).
 Eigen::Vector3d RobotState::moment_column(int i) const {
   const Eigen::Vector4d& moment = subtree_moment(i + 1);
   const Eigen::Vector3d& axis = joint_axis(i);
@@ -187,8 +200,10 @@ void RobotState::center_of_mass_jacobian(
     jacobian.leftCols<3>() = rotation;
     for (int k = 0; k < 3; ++k) jacobian.col(3 + k) = rotation.col(k).cross(arm);
   }
-  for (int i = 0; i < robot_->active_joint_count(); ++i) {
-    jacobian.col(base + i) = inverse_mass * moment_column(i);
+  jacobian.rightCols(robot_->active_joint_count()).setZero();
+  for (int i = 0; i < static_cast<int>(robot_->axes().size()); ++i) {
+    const Axis& axis = robot_->axes()[static_cast<std::size_t>(i)];
+    jacobian.col(base + axis.active) += axis.multiplier * inverse_mass * moment_column(i);
   }
 }
 
@@ -201,8 +216,9 @@ void RobotState::add_center_of_mass_gradient(const Eigen::Vector3d& direction_wo
     row += 6 * stride;
   }
   const Eigen::Vector3d share = direction / tree_->bodies[0].subtree_mass;
-  for (int i = 0; i < robot_->active_joint_count(); ++i) {
-    row[i * stride] += moment_column(i).dot(share);
+  for (int i = 0; i < static_cast<int>(robot_->axes().size()); ++i) {
+    const Axis& axis = robot_->axes()[static_cast<std::size_t>(i)];
+    row[axis.active * stride] += axis.multiplier * moment_column(i).dot(share);
   }
 }
 

@@ -33,12 +33,12 @@ class RobotState {
   const Eigen::Isometry3d& world_from_link(int link) const {
     return world_from_link_[static_cast<std::size_t>(link)];
   }
-  /// A point on the axis of an active joint, and the axis' direction.
-  const Eigen::Vector3d& joint_origin(int active) const {
-    return joint_origin_[static_cast<std::size_t>(active)];
+  /// A point on an axis of the robot (index into Robot::axes()), and the direction of the axis.
+  const Eigen::Vector3d& joint_origin(int axis) const {
+    return joint_origin_[static_cast<std::size_t>(axis)];
   }
-  const Eigen::Vector3d& joint_axis(int active) const {
-    return joint_axis_[static_cast<std::size_t>(active)];
+  const Eigen::Vector3d& joint_axis(int axis) const {
+    return joint_axis_[static_cast<std::size_t>(axis)];
   }
 
   /// Geometric Jacobian, 6 x tangent_size, of a frame fixed to `link`: rows 0-2 velocity of its
@@ -72,12 +72,12 @@ class RobotState {
   /// Throws Error if no link has a mass.
   void require_mass() const;
   /// Mass * centre of mass [kg m] and mass [kg] of one body of robot().tree() and all bodies behind
-  /// it. Body 0 stands for the whole robot, body i + 1 for what active joint i moves.
+  /// it. Body 0 stands for the whole robot, body i + 1 for what axis i moves.
   const Eigen::Vector4d& subtree_moment(int body) const {
     return subtree_moment_[static_cast<std::size_t>(body)];
   }
-  /// How the mass moment of everything behind an active joint moves with it [kg m].
-  Eigen::Vector3d moment_column(int active_joint) const;
+  /// How the mass moment of everything behind an axis moves with it [kg m].
+  Eigen::Vector3d moment_column(int axis) const;
   /// Throws Error if no link has a mass.
   Eigen::Vector3d center_of_mass() const;
   /// 3 x tangent_size, overwrites all columns. Throws Error if no link has a mass.

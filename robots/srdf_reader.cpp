@@ -4,6 +4,7 @@
 #include <locograph/robots/xml_file.h>
 
 #include <algorithm>
+#include <bitset>
 #include <map>
 
 namespace locograph {
@@ -23,6 +24,9 @@ std::vector<std::string> keys(const std::map<std::string, int>& index) {
   for (const auto& [name, position] : index) names.push_back(name);
   return names;
 }
+
+constexpr std::size_t kMostSuggestions = 32;  // looking for similar names takes its time
+constexpr std::size_t kMostGroups = 1000;
 
 class SrdfReader {
  public:
@@ -56,6 +60,9 @@ class SrdfReader {
   }
 
  private:
+  /// One flag for each joint of the URDF.
+  using Joints = std::bitset<kMostLinks>;
+
   /// Runs `read`; an Error in it passes, or is noted if the reader is lenient.
   template <class Function>
   void attempt(const Function& read) {
@@ -73,7 +80,8 @@ class SrdfReader {
     const auto found = known.find(name);
     if (found == known.end()) {
       throw xml_.error(element, "unknown " + kind + " '" + name + "'",
-                       similar_names(name, keys(known)));
+                       model_.warnings.size() < kMostSuggestions ? similar_names(name, keys(known))
+                                                                 : "a name of the URDF");
     }
     return found->second;
   }
@@ -94,54 +102,96 @@ class SrdfReader {
       }
       elements.push_back(&group);
     }
+    if (elements.size() > kMostGroups) {
+      throw xml_.error(*elements[kMostGroups],
+                       "more than " + std::to_string(kMostGroups) + " groups", "fewer groups");
+    }
     group_index_ = names;
-    group_elements_ = elements;
+    std::vector<Group> groups;
+    for (const Element* element : elements) groups.push_back(read_group(*element));
+    gather(groups);
     for (const auto& [name, index] : names) {
-      std::set<int> joints;
-      collect(*elements[static_cast<std::size_t>(index)], 0, joints);
-      model_.groups.push_back({name, std::vector<int>(joints.begin(), joints.end())});
+      std::vector<int> joints;
+      const Joints& of_group = groups[static_cast<std::size_t>(index)].joints;
+      for (std::size_t j = 0; j < urdf_.joints.size(); ++j) {
+        if (of_group[j]) joints.push_back(static_cast<int>(j));
+      }
+      model_.groups.push_back({name, joints});
     }
   }
 
-  /// Adds the movable joints of a group and of the groups it refers to.
-  void collect(const Element& group, std::size_t depth, std::set<int>& joints) {
-    if (depth > group_elements_.size()) {
-      throw xml_.error(group, "group '" + xml_.attribute(group, "name") + "' contains itself",
-                       "groups without a circle");
-    }
-    for (const Element& member : xml_.children(group)) {
+  struct Group {
+    const Element* element;
+    Joints joints;           // its own, then those of its groups too
+    std::set<int> contains;  // groups
+  };
+
+  Group read_group(const Element& element) {
+    Group group{&element, {}, {}};
+    for (const Element& member : xml_.children(element)) {
       const std::string kind = member.Name();
       attempt([&] {
         if (kind == "joint") {
           if (!virtual_joints_.contains(xml_.attribute(member, "name"))) {
-            add(look_up(member, "name", joints_, "joint"), joints);
+            add(look_up(member, "name", joints_, "joint"), group.joints);
           }
         } else if (kind == "link") {
           const int link = look_up(member, "name", links_, "link");
-          add(urdf_.links[static_cast<std::size_t>(link)].parent_joint, joints);
+          add(urdf_.links[static_cast<std::size_t>(link)].parent_joint, group.joints);
         } else if (kind == "chain") {
-          add_chain(member, joints);
+          add_chain(member, group.joints);
         } else if (kind == "group") {
-          const int index = look_up(member, "name", group_index_, "group");
-          collect(*group_elements_[static_cast<std::size_t>(index)], depth + 1, joints);
+          group.contains.insert(look_up(member, "name", group_index_, "group"));
         } else {
           throw xml_.error(member, "unknown member <" + kind + "> of a group",
                            "joint, link, chain or group");
         }
       });
     }
+    return group;
   }
 
-  void add(int joint, std::set<int>& joints) const {
+  /// Adds the joints of the groups that a group contains, each group once: those first that contain
+  /// none, or only finished ones (Kahn's order).
+  void gather(std::vector<Group>& groups) const {
+    std::vector<std::vector<std::size_t>> part_of(groups.size());
+    std::vector<std::size_t> unfinished(groups.size()), finished;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      for (const int part : groups[g].contains)
+        part_of[static_cast<std::size_t>(part)].push_back(g);
+      unfinished[g] = groups[g].contains.size();
+      if (unfinished[g] == 0) finished.push_back(g);
+    }
+    for (std::size_t next = 0; next < finished.size(); ++next) {
+      for (const std::size_t whole : part_of[finished[next]]) {
+        groups[whole].joints |= groups[finished[next]].joints;
+        if (--unfinished[whole] == 0) finished.push_back(whole);
+      }
+    }
+    if (finished.size() == groups.size()) return;
+    // Each unfinished group contains another one: following them ends in a circle.
+    const auto is_unfinished = [&](int g) { return unfinished[static_cast<std::size_t>(g)] > 0; };
+    int in_circle = 0;
+    while (!is_unfinished(in_circle)) ++in_circle;
+    for (std::set<int> passed; passed.insert(in_circle).second;) {
+      const std::set<int>& parts = groups[static_cast<std::size_t>(in_circle)].contains;
+      in_circle = *std::find_if(parts.begin(), parts.end(), is_unfinished);
+    }
+    const Element& element = *groups[static_cast<std::size_t>(in_circle)].element;
+    throw xml_.error(element, "group '" + xml_.attribute(element, "name") + "' contains itself",
+                     "groups without a circle");
+  }
+
+  void add(int joint, Joints& joints) const {
     if (joint >= 0 && urdf_.joints[static_cast<std::size_t>(joint)].type != JointType::kFixed) {
-      joints.insert(joint);
+      joints[static_cast<std::size_t>(joint)] = true;
     }
   }
 
-  void add_chain(const Element& chain, std::set<int>& joints) const {
+  void add_chain(const Element& chain, Joints& joints) const {
     const int base = look_up(chain, "base_link", links_, "link");
     const int tip = look_up(chain, "tip_link", links_, "link");
-    std::set<int> between;
+    std::vector<int> between;
     for (int link = tip; link != base;) {
       const int joint = urdf_.links[static_cast<std::size_t>(link)].parent_joint;
       if (joint < 0) {
@@ -150,25 +200,23 @@ class SrdfReader {
                              xml_.attribute(chain, "tip_link") + "'",
                          "a tip_link below the base_link");
       }
-      add(joint, between);
+      between.push_back(joint);
       link = urdf_.joints[static_cast<std::size_t>(joint)].parent_link;
     }
-    joints.insert(between.begin(), between.end());
+    for (const int joint : between) add(joint, joints);
   }
 
   void read_state(const Element& element) {
     const std::string name = xml_.attribute(element, "name");
     attempt([&] { look_up(element, "group", group_index_, "group"); });
-    auto state = std::find_if(model_.states.begin(), model_.states.end(),
-                              [&](const GroupState& other) { return other.name == name; });
-    if (state == model_.states.end()) {
-      state = model_.states.insert(state, GroupState{name, {}});
-    }
+    const auto [known, is_new] = states_.emplace(name, model_.states.size());
+    if (is_new) model_.states.push_back({name, {}});
+    GroupState& state = model_.states[known->second];
     for (const Element& joint : xml_.children(element, "joint")) {
       if (virtual_joints_.contains(xml_.attribute(joint, "name"))) continue;
       attempt([&] {
         const int index = look_up(joint, "name", joints_, "joint");
-        state->positions.emplace_back(index, xml_.numbers(joint, "value", 1)[0]);
+        state.positions.emplace_back(index, xml_.numbers(joint, "value", 1)[0]);
       });
     }
   }
@@ -177,8 +225,8 @@ class SrdfReader {
   const UrdfModel& urdf_;
   bool lenient_;
   std::map<std::string, int> links_, joints_, group_index_;
-  std::vector<const Element*> group_elements_;
   std::set<std::string> virtual_joints_;
+  std::map<std::string, std::size_t> states_;  // into model_.states while they are read
   SrdfModel model_;
 };
 

@@ -5,8 +5,12 @@
 namespace locograph {
 namespace {
 
-const KinematicTree::Body& body_of_joint(const RobotState& state, int active) {
-  return state.robot().tree().bodies[static_cast<std::size_t>(active) + 1];
+const KinematicTree::Body& body_of_axis(const RobotState& state, int axis) {
+  return state.robot().tree().bodies[static_cast<std::size_t>(axis) + 1];
+}
+
+const Axis& axis_of(const RobotState& state, int axis) {
+  return state.robot().axes()[static_cast<std::size_t>(axis)];
 }
 
 }  // namespace
@@ -22,8 +26,10 @@ void gravity_torques(const RobotState& state, const Eigen::Vector3d& gravity,
     torques.head<3>().noalias() = -moment[3] * (world_from_base.linear().transpose() * gravity);
     torques.segment<3>(3).noalias() = -(world_from_base.linear().transpose() * arm.cross(gravity));
   }
-  for (int i = 0; i < state.robot().active_joint_count(); ++i) {
-    torques[base + i] = -gravity.dot(state.moment_column(i));
+  torques.tail(state.robot().active_joint_count()).setZero();
+  for (int i = 0; i < static_cast<int>(state.robot().axes().size()); ++i) {
+    const Axis& axis = axis_of(state, i);
+    torques[base + axis.active] -= axis.multiplier * gravity.dot(state.moment_column(i));
   }
 }
 
@@ -41,18 +47,21 @@ void gravity_torque_derivative(const RobotState& state, const Eigen::Vector3d& g
     derivative.block<3, 3>(0, 3) = -moment[3] * turning;
     derivative.block<3, 3>(3, 3).noalias() = -skew(arm) * turning;
   }
-  for (int i = 0; i < state.robot().active_joint_count(); ++i) {
-    const Eigen::Vector3d u = state.moment_column(i).cross(gravity);
-    for (int j = i; j >= 0; j = body_of_joint(state, j).parent - 1) {
-      if (!body_of_joint(state, j).revolute) continue;
-      const double value = -state.joint_axis(j).dot(u);
-      derivative(base + i, base + j) = value;
-      derivative(base + j, base + i) = value;
+  for (int i = 0; i < static_cast<int>(state.robot().axes().size()); ++i) {
+    const Axis& axis = axis_of(state, i);
+    const Eigen::Vector3d u = axis.multiplier * state.moment_column(i).cross(gravity);
+    const int entry = base + axis.active;
+    for (int j = i; j >= 0; j = body_of_axis(state, j).parent - 1) {
+      if (!body_of_axis(state, j).revolute) continue;
+      const Axis& upper = axis_of(state, j);
+      const double value = -upper.multiplier * state.joint_axis(j).dot(u);
+      derivative(entry, base + upper.active) += value;
+      if (j != i) derivative(base + upper.active, entry) += value;
     }
     if (base > 0) {
       const Eigen::Vector3d column = -(world_from_base.linear().transpose() * u);
-      derivative.block<3, 1>(3, base + i) = column;
-      derivative.block<1, 3>(base + i, 3) = column.transpose();
+      derivative.block<3, 1>(3, entry) += column;
+      derivative.block<1, 3>(entry, 3) += column.transpose();
     }
   }
 }
@@ -67,7 +76,9 @@ void add_wrench_torques(const RobotState& state, const PointWrench& wrench, doub
     torques.segment<3>(3).noalias() += state.world_from_link(0).linear().transpose() * moment;
   }
   for (const int i : state.robot().support(wrench.link)) {
-    if (body_of_joint(state, i).revolute) torques[base + i] += state.joint_axis(i).dot(moment);
+    if (!body_of_axis(state, i).revolute) continue;
+    const Axis& axis = axis_of(state, i);
+    torques[base + axis.active] += axis.multiplier * state.joint_axis(i).dot(moment);
   }
 }
 
@@ -87,25 +98,28 @@ void add_wrench_torque_derivative(const RobotState& state, const PointWrench& wr
     derivative.block<3, 3>(3, 3) += skew(world_from_base.linear().transpose() * moment);
   }
   for (const int i : state.robot().support(wrench.link)) {
-    const bool revolute = body_of_joint(state, i).revolute;
-    const Eigen::Vector3d& axis = state.joint_axis(i);
+    const bool revolute = body_of_axis(state, i).revolute;
+    const Axis& axis = axis_of(state, i);
+    const int entry = base + axis.active;
+    const Eigen::Vector3d along = axis.multiplier * state.joint_axis(i);
     Eigen::Vector3d upper, lower;  // u, and u + a x m
     if (revolute) {
-      upper = axis.cross(point - state.joint_origin(i)).cross(force);
-      lower = upper + axis.cross(moment);
+      upper = along.cross(point - state.joint_origin(i)).cross(force);
+      lower = upper + along.cross(moment);
     } else {
-      lower = upper = axis.cross(force);
+      lower = upper = along.cross(force);
     }
-    if (revolute) derivative(base + i, base + i) += axis.dot(upper);
-    for (int j = body_of_joint(state, i).parent - 1; j >= 0;
-         j = body_of_joint(state, j).parent - 1) {
-      if (!body_of_joint(state, j).revolute) continue;
-      derivative(base + i, base + j) += state.joint_axis(j).dot(lower);
-      derivative(base + j, base + i) += state.joint_axis(j).dot(upper);
+    if (revolute) derivative(entry, entry) += along.dot(upper);
+    for (int j = body_of_axis(state, i).parent - 1; j >= 0; j = body_of_axis(state, j).parent - 1) {
+      if (!body_of_axis(state, j).revolute) continue;
+      const Axis& above = axis_of(state, j);
+      const Eigen::Vector3d turning = above.multiplier * state.joint_axis(j);
+      derivative(entry, base + above.active) += turning.dot(lower);
+      derivative(base + above.active, entry) += turning.dot(upper);
     }
     if (base > 0) {
-      derivative.block<3, 1>(3, base + i).noalias() += world_from_base.linear().transpose() * upper;
-      derivative.block<1, 3>(base + i, 3).noalias() += lower.transpose() * world_from_base.linear();
+      derivative.block<3, 1>(3, entry).noalias() += world_from_base.linear().transpose() * upper;
+      derivative.block<1, 3>(entry, 3).noalias() += lower.transpose() * world_from_base.linear();
     }
   }
 }

@@ -1,5 +1,5 @@
-#include <locograph/common/atomic_file.h>
 #include <locograph/common/error.h>
+#include <locograph/common/input_file.h>
 #include <locograph/robots/stl_file.h>
 
 #include <array>
@@ -14,6 +14,7 @@ namespace {
 // Binary STL: 80 bytes of header, the number of triangles, and per triangle normal and three
 // vertices as 4-byte floats followed by two bytes.
 constexpr std::size_t kHeader = 84, kTriangle = 50;
+constexpr std::uintmax_t kMostStlBytes = std::uintmax_t{256} << 20;  // five million triangles
 
 bool is_binary(const std::string& bytes) {
   if (bytes.size() < kHeader) return false;
@@ -71,7 +72,7 @@ bool all_finite(const std::vector<Eigen::Vector3d>& corners) {
 }  // namespace
 
 std::vector<Eigen::Vector3d> stl_triangles(const std::filesystem::path& file) {
-  const std::string bytes = read_file(file);
+  const std::string bytes = read_file(file, kMostStlBytes, "an STL file");
   std::vector<Eigen::Vector3d> corners;
   if (is_binary(bytes)) {
     corners = read_binary(bytes);

@@ -1,16 +1,17 @@
 #include <console_bridge/console.h>
 #include <locograph/common/error.h>
+#include <locograph/robots/body_inertia.h>
+#include <locograph/robots/mimic_joints.h>
 #include <locograph/robots/names.h>
 #include <locograph/robots/urdf_reader.h>
 #include <locograph/robots/xml_file.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 #include <map>
 #include <mutex>
-#include <sstream>
+#include <set>
 
 namespace locograph {
 namespace {
@@ -18,8 +19,7 @@ namespace {
 using Element = XmlFile::Element;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Negative eigenvalues that are rounding: of the decomposition, and of thin bodies in six digits.
-constexpr double kInertiaRounding = 1e-6;
+constexpr std::size_t kMostShapes = 2000;
 
 /// The structure of a URDF, checked: urdfdom reads the values but knows neither lines nor most
 /// mistakes.
@@ -34,6 +34,7 @@ class UrdfStructure {
   /// Link names, depth first.
   const std::vector<std::string>& order() const { return order_; }
   const Element& link(const std::string& name) const { return *links_.at(name); }
+  const std::vector<std::string>& warnings() const { return warnings_; }
   /// The <joint> above a link, null for the root.
   const Element* parent_joint(const std::string& link) const {
     const auto found = parent_joint_.find(link);
@@ -46,6 +47,15 @@ class UrdfStructure {
       const std::string name = xml_.attribute(link, "name");
       if (!links_.emplace(name, &link).second) {
         throw xml_.error(link, "second link '" + name + "'", "a name of its own for each link");
+      }
+      if (links_.size() > kMostLinks) {
+        throw xml_.error(link, "more than " + std::to_string(kMostLinks) + " links",
+                         "a robot of fewer links");
+      }
+      shapes_ += xml_.children(link, "collision").size();
+      if (shapes_ > kMostShapes) {
+        throw xml_.error(link, "more than " + std::to_string(kMostShapes) + " collision shapes",
+                         "fewer of them, or meshes");
       }
       for (const char* kind : {"collision", "visual"}) {
         for (const Element& shape : xml_.children(link, kind)) check_geometry(shape, name);
@@ -74,7 +84,7 @@ class UrdfStructure {
     if (name == "box") check_positive(*kind, "size", 3);
   }
 
-  void check_inertial(const Element& inertial, const std::string& link) const {
+  void check_inertial(const Element& inertial, const std::string& link) {
     const Element* mass = inertial.FirstChildElement("mass");
     const Element* inertia = inertial.FirstChildElement("inertia");
     if (mass == nullptr || inertia == nullptr) {
@@ -92,17 +102,13 @@ class UrdfStructure {
                  yz = entry("iyz"), zz = entry("izz");
     Eigen::Matrix3d matrix;
     matrix << xx, xy, xz, xy, yy, yz, xz, yz, zz;
-    const Eigen::Vector3d principal =
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix, Eigen::EigenvaluesOnly)
-            .eigenvalues();
-    if (principal[0] < -kInertiaRounding * principal.cwiseAbs().maxCoeff()) {
-      std::ostringstream moment;
-      moment << principal[0];
-      throw xml_.error(*inertia,
-                       "link '" + link + "' has a negative principal moment of inertia, " +
-                           moment.str() + " kg m^2",
-                       "a matrix without negative eigenvalues");
-    }
+    if (is_inertia_of_a_body(matrix)) return;
+    warn(*inertia, "link '" + link + "' has an inertia that no body has",
+         "principal moments of which none is below zero or above the sum of the other two");
+  }
+
+  void warn(const Element& element, const std::string& what, const std::string& expected) {
+    warnings_.push_back(xml_.error(element, what, expected).what());
   }
 
   void check_positive(const Element& element, const char* name, int count) const {
@@ -154,7 +160,7 @@ class UrdfStructure {
     }
   }
 
-  void check_type(const Element& joint, const std::string& name) const {
+  void check_type(const Element& joint, const std::string& name) {
     const std::string type = xml_.attribute(joint, "type");
     if (type == "revolute" || type == "prismatic") {
       const Element* limit = joint.FirstChildElement("limit");
@@ -162,17 +168,25 @@ class UrdfStructure {
         throw xml_.error(joint, type + " joint '" + name + "' has no <limit>",
                          "<limit lower upper velocity effort>");
       }
-      for (const char* needed : {"lower", "upper", "velocity", "effort"}) {
-        xml_.numbers(*limit, needed, 1);
-      }
-      if (limit->DoubleAttribute("lower") > limit->DoubleAttribute("upper")) {
+      const double lower = position_limit(*limit, "lower"), upper = position_limit(*limit, "upper");
+      if (lower > upper) {
         throw xml_.error(*limit, "joint '" + name + "' has its lower limit above the upper one",
-                         "lower <= upper");
+                         "lower <= upper, either of which is 0 where it is not given");
+      }
+      const bool given =
+          limit->Attribute("lower") != nullptr || limit->Attribute("upper") != nullptr;
+      if (!given) {
+        warn(*limit, "joint '" + name + "' cannot move: both of its limits are 0, as none is given",
+             "lower and upper");
       }
     } else if (type != "fixed" && type != "continuous" && type != "floating") {
       throw xml_.error(joint, "joint '" + name + "' has unknown type '" + type + "'",
                        "fixed, revolute, continuous, prismatic, or floating below the root link");
     }
+    if (const Element* limit = joint.FirstChildElement("limit")) {
+      for (const char* needed : {"velocity", "effort"}) xml_.number(*limit, needed);
+    }
+    if (const Element* mimic = joint.FirstChildElement("mimic")) xml_.attribute(*mimic, "joint");
     const Element* axis = joint.FirstChildElement("axis");
     if (type != "fixed" && type != "floating" && axis != nullptr) {
       const std::vector<double> xyz = xml_.numbers(*axis, "xyz", 3);
@@ -180,6 +194,10 @@ class UrdfStructure {
         throw xml_.error(*axis, "joint '" + name + "' has a zero axis", "a direction");
       }
     }
+  }
+
+  double position_limit(const Element& limit, const char* name) const {
+    return limit.Attribute(name) == nullptr ? 0.0 : xml_.number(limit, name);
   }
 
   std::string end_link(const Element& joint, const std::string& name, const char* end) const {
@@ -215,10 +233,10 @@ class UrdfStructure {
       throw xml_.error(link(roots[1]), "two root links, '" + roots[0] + "' and '" + roots[1] + "'",
                        "one link that is no joint's child");
     }
-    append(root_below_floating_joint(roots[0]));
+    order_from(root_below_floating_joint(roots[0]));
+    const std::set<std::string> reached(order_.begin(), order_.end());
     for (const auto& [name, element] : links_) {
-      const bool reached = std::find(order_.begin(), order_.end(), name) != order_.end();
-      if (!reached && name != roots[0]) {
+      if (!reached.contains(name) && name != roots[0]) {
         throw xml_.error(*element, "link '" + name + "' is part of a loop",
                          "a tree of links and joints");
       }
@@ -246,17 +264,22 @@ class UrdfStructure {
     return floating ? child : root;
   }
 
-  void append(const std::string& link) {
-    order_.push_back(link);
-    const auto children = children_.find(link);
-    if (children == children_.end()) return;
-    for (const std::string& child : children->second) append(child);
+  void order_from(const std::string& root) {
+    std::vector<std::string> waiting = {root};
+    while (!waiting.empty()) {
+      order_.push_back(waiting.back());
+      waiting.pop_back();
+      const auto children = children_.find(order_.back());
+      if (children == children_.end()) continue;
+      waiting.insert(waiting.end(), children->second.rbegin(), children->second.rend());
+    }
   }
 
   const XmlFile& xml_;
   std::map<std::string, const Element*> links_, joints_, parent_joint_;
   std::map<std::string, std::vector<std::string>> children_;
-  std::vector<std::string> order_;
+  std::vector<std::string> order_, warnings_;
+  std::size_t shapes_ = 0;
 };
 
 /// Keeps what urdfdom would print.
@@ -377,7 +400,6 @@ Joint convert(const urdf::Joint& source) {
   joint.upper = limited ? source.limits->upper : kInfinity;
   joint.max_velocity = source.limits ? source.limits->velocity : kInfinity;
   joint.max_effort = source.limits ? source.limits->effort : kInfinity;
-  if (source.mimic) joint.frozen_position = source.mimic->offset;
   return joint;
 }
 
@@ -390,6 +412,8 @@ UrdfModel read_urdf(const std::filesystem::path& file) {
 
   UrdfModel model;
   model.name = source->getName();
+  model.warnings = structure.warnings();
+  std::vector<MimicElement> mimics;
   std::map<std::string, int> index;
   for (const std::string& name : structure.order()) {
     const int link_index = static_cast<int>(model.links.size());
@@ -401,12 +425,17 @@ UrdfModel read_urdf(const std::filesystem::path& file) {
       joint.parent_link = index.at(joint_source.parent_link_name);
       joint.child_link = link_index;
       link.parent_joint = static_cast<int>(model.joints.size());
+      if (joint_source.mimic && joint.type != JointType::kFixed) {
+        mimics.push_back({link.parent_joint, joint_source.mimic->joint_name,
+                          joint_source.mimic->multiplier, joint_source.mimic->offset,
+                          element->FirstChildElement("mimic")->GetLineNum()});
+      }
       model.joints.push_back(joint);
       model.joint_lines.push_back(element->GetLineNum());
-      model.mimic.push_back(joint_source.mimic != nullptr);
     }
     model.links.push_back(link);
   }
+  lead_mimic_joints(model, mimics, file);
   return model;
 }
 

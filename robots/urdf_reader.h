@@ -3,7 +3,8 @@
 ///
 ///     locograph::UrdfModel model = locograph::read_urdf("centauro.urdf");
 ///
-/// joints[i].index is -1 and frozen_position 0 throughout (the offset for a mimic joint).
+/// joints[i].index is -1 and frozen_position 0 throughout. Mimic joints and the limits of their
+/// leaders are resolved (mimic_joints.h).
 
 #include <locograph/robots/robot.h>
 
@@ -13,12 +14,15 @@
 
 namespace locograph {
 
+// Robots have up to a hundred links; the work grows with the pairs of them.
+constexpr std::size_t kMostLinks = 2000;
+
 struct UrdfModel {
   std::string name;
   std::vector<Link> links;
   std::vector<Joint> joints;
-  std::vector<int> joint_lines;  ///< of the <joint> elements
-  std::vector<bool> mimic;       ///< per joint
+  std::vector<int> joint_lines;       ///< of the <joint> elements
+  std::vector<std::string> warnings;  ///< Robot::urdf_warnings()
 };
 
 /// Throws Error with the line of the first element that makes the file unusable.

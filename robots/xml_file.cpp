@@ -1,23 +1,23 @@
+#include <locograph/common/input_file.h>
+#include <locograph/common/xml_text.h>
 #include <locograph/robots/xml_file.h>
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 
 namespace locograph {
 
 XmlFile::XmlFile(const std::filesystem::path& file, const std::string& root_name)
     : file_(file.string()) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || !std::filesystem::is_regular_file(file)) {
-    throw Error(file_, 0, "cannot be read", "a readable XML file");
-  }
-  std::ostringstream buffer;
-  buffer << stream.rdbuf();
-  text_ = buffer.str();
+  text_ = read_file(file, kMostXmlBytes, "an XML file");
   if (text_.find_first_not_of(" \t\r\n") == std::string::npos) {
     throw Error(file_, 0, "is empty", "XML with a <" + root_name + "> element");
+  }
+  if (const int line = crowded_tag(text_)) {
+    throw Error(file_, line,
+                "an element with more than " + std::to_string(kMostAttributes) + " attributes",
+                "those that are known");
   }
   if (document_.Parse(text_.data(), text_.size()) != tinyxml2::XML_SUCCESS) {
     throw Error(file_, document_.ErrorLineNum(), "not well-formed XML",

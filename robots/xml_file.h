@@ -10,6 +10,7 @@
 #include <locograph/common/error.h>
 #include <tinyxml2.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <set>
@@ -18,11 +19,15 @@
 
 namespace locograph {
 
+/// Files of robots have up to 200 kB.
+constexpr std::uintmax_t kMostXmlBytes = std::uintmax_t{4} << 20;
+
 class XmlFile {
  public:
   using Element = tinyxml2::XMLElement;
 
-  /// Throws Error if the file is missing, empty, not XML, or its root element is not <root_name>.
+  /// Throws Error if the file is missing, not a regular file of at most kMostXmlBytes, empty, not
+  /// XML, or its root element is not <root_name>.
   XmlFile(const std::filesystem::path& file, const std::string& root_name);
 
   const std::string& text() const { return text_; }

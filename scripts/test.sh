@@ -1,6 +1,7 @@
 #!/bin/bash
 # Builds and runs every test: sources formatted, unit tests under AddressSanitizer and UBSan, what
-# threads share under ThreadSanitizer, then all tests in Release. Quick when nothing has changed;
+# threads share under ThreadSanitizer, every parser for some seconds under libFuzzer, then all tests
+# in Release. Quick when nothing has changed;
 # ends with ctest's summary.
 
 . "$(dirname "$0")/setup.sh"
@@ -44,6 +45,8 @@ configure_sanitized build-tsan thread
 build build-tsan --target planners_thread_tests
 say "running planners_thread_tests under ThreadSanitizer"
 TSAN_OPTIONS=halt_on_error=1 run_tests build-tsan --tests-regex '^planners_thread_tests$' >&2
+
+"$root/scripts/fuzz.sh" 5
 
 say "running all tests"
 run_tests build

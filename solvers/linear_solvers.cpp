@@ -1,4 +1,5 @@
 #include <locograph/common/error.h>
+#include <locograph/common/suggestion.h>
 #include <locograph/solvers/banded_solver.h>
 #include <locograph/solvers/block_cholesky.h>
 #include <locograph/solvers/cost_model.h>
@@ -109,9 +110,9 @@ std::unique_ptr<LinearSolver> make_linear_solver(const std::string& name) {
   if (name == "schur-dense") return std::make_unique<SchurSolver>(Reduced::kDense);
   if (name == "schur-sparse") return std::make_unique<SchurSolver>(Reduced::kSparse);
   if (name == "schur-pcg") return std::make_unique<SchurSolver>(Reduced::kPcg);
-  std::string all;
-  for (const std::string& known : linear_solver_names()) all += (all.empty() ? "" : ", ") + known;
-  throw Error("unknown linear solver '" + name + "'", "one of " + all);
+  const std::vector<std::string> names = linear_solver_names();
+  throw Error("unknown linear solver '" + name + "'",
+              "one of " + joined_names(names) + did_you_mean(name, names));
 }
 
 }  // namespace locograph

@@ -1,6 +1,7 @@
 #include <locograph/common/error.h>
-#include <locograph/world/obstacles.h>
+#include <locograph/world/obstacle_way.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace locograph {
@@ -79,16 +80,38 @@ Eigen::Isometry3d Obstacle::pose_at(double time_s) const {
   if (motion.empty() || time_s <= 0.0) return world_from_obstacle;
   if (repeat_s > 0.0) time_s = std::fmod(time_s, repeat_s);
   const KeyFrame start{0.0, world_from_obstacle};
-  const KeyFrame* before = &start;
-  for (const KeyFrame& after : motion) {
-    if (time_s < after.time_s)
-      return interpolate(before->pose, after.pose,
-                         (time_s - before->time_s) / (after.time_s - before->time_s));
-    before = &after;
-  }
+  const auto after =
+      std::upper_bound(motion.begin(), motion.end(), time_s,
+                       [](double time, const KeyFrame& frame) { return time < frame.time_s; });
+  const KeyFrame* before = after == motion.begin() ? &start : &*(after - 1);
+  if (after != motion.end())
+    return interpolate(before->pose, after->pose,
+                       (time_s - before->time_s) / (after->time_s - before->time_s));
   if (repeat_s <= 0.0) return before->pose;
   return interpolate(before->pose, world_from_obstacle,
                      (time_s - before->time_s) / (repeat_s - before->time_s));
+}
+
+double way_m(const Obstacle& obstacle, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to) {
+  using Shape = Obstacle::Shape;
+  const Eigen::Vector3d& size = obstacle.size;
+  const double radius = obstacle.shape == Shape::kSphere     ? 0.0
+                        : obstacle.shape == Shape::kCylinder ? std::hypot(size[0], 0.5 * size[1])
+                                                             : 0.5 * size.norm();
+  const Eigen::Quaterniond start(from.linear()), end(to.linear());
+  return (to.translation() - from.translation()).norm() + start.angularDistance(end) * radius;
+}
+
+double fastest_m_s(const Obstacle& obstacle) {
+  double fastest = 0.0;
+  KeyFrame before{0.0, obstacle.world_from_obstacle};
+  const auto move_to = [&](double time_s, const Eigen::Isometry3d& pose) {
+    fastest = std::max(fastest, way_m(obstacle, before.pose, pose) / (time_s - before.time_s));
+    before = {time_s, pose};
+  };
+  for (const KeyFrame& frame : obstacle.motion) move_to(frame.time_s, frame.pose);
+  if (obstacle.repeat_s > 0.0) move_to(obstacle.repeat_s, obstacle.world_from_obstacle);
+  return fastest;
 }
 
 DistanceSample Obstacle::sample(const Eigen::Vector3d& point, double time_s) const {

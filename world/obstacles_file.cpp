@@ -1,11 +1,15 @@
 #include <locograph/common/atomic_file.h>
 #include <locograph/common/error.h>
-#include <locograph/world/obstacles.h>
+#include <locograph/common/input_file.h>
+#include <locograph/common/ranges.h>
+#include <locograph/common/xml_text.h>
+#include <locograph/world/obstacle_way.h>
 #include <tinyxml2.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <initializer_list>
 #include <locale>
 #include <set>
@@ -25,18 +29,23 @@ Eigen::Matrix3d rotation_from_rpy(const Eigen::Vector3d& rpy) {
   return q.toRotationMatrix();
 }
 
+std::string brief(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.6g", value);
+  return buffer;
+}
+
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& path) : file_(path.string()) {}
 
   std::vector<Obstacle> read() {
     tinyxml2::XMLDocument document;
-    if (std::filesystem::is_directory(file_)) fail(0, "is a folder", "an obstacles file");
-    const tinyxml2::XMLError status = document.LoadFile(file_.c_str());
-    if (status == tinyxml2::XML_ERROR_FILE_NOT_FOUND ||
-        status == tinyxml2::XML_ERROR_FILE_COULD_NOT_BE_OPENED ||
-        status == tinyxml2::XML_ERROR_FILE_READ_ERROR)
-      fail(0, "cannot be opened", "an obstacles file");
+    const std::string content = read_file(file_, kMostInputBytes, "an obstacles file");
+    if (const int line = crowded_tag(content))
+      fail(line, "an element with more than " + std::to_string(kMostAttributes) + " attributes",
+           "those that are known");
+    const tinyxml2::XMLError status = document.Parse(content.data(), content.size());
     if (status == tinyxml2::XML_ERROR_EMPTY_DOCUMENT)
       fail(0, "is empty", "an element <obstacles version=\"1\">");
     if (status != tinyxml2::XML_SUCCESS)
@@ -70,16 +79,16 @@ class Reader {
       out.shape = Obstacle::Shape::kBox;
       const std::vector<double> extents = numbers(e, "size", 3);
       out.size = Eigen::Vector3d(extents[0], extents[1], extents[2]);
-      if ((out.size.array() <= 0.0).any()) fail(e.GetLineNum(), "size is not positive", "> 0");
+      for (const double extent : extents) require_size(e, "size", extent);
     } else if (kind == "sphere") {
       only_attributes(e, {"name", "center", "rpy", "rotation", "repeat", "radius"});
       out.shape = Obstacle::Shape::kSphere;
-      out.size[0] = positive(e, "radius");
+      out.size[0] = size(e, "radius");
     } else if (kind == "cylinder") {
       only_attributes(e, {"name", "center", "rpy", "rotation", "repeat", "radius", "height"});
       out.shape = Obstacle::Shape::kCylinder;
-      out.size[0] = positive(e, "radius");
-      out.size[1] = positive(e, "height");
+      out.size[0] = size(e, "radius");
+      out.size[1] = size(e, "height");
     } else {
       fail(e.GetLineNum(), "unknown element <" + std::string(kind) + ">",
            "<box>, <sphere> or <cylinder>");
@@ -92,6 +101,9 @@ class Reader {
     }
     out.world_from_obstacle = pose(e, "center", Eigen::Matrix3d::Identity());
     key_frames(e, out);
+    if (const double speed = fastest_m_s(out); !(speed <= ranges::kObstacleSpeed_m_s))
+      fail(e.GetLineNum(), "the obstacle moves at up to " + brief(speed) + " m/s",
+           "at most " + brief(ranges::kObstacleSpeed_m_s) + " m/s (positions are in metres)");
     return out;
   }
 
@@ -108,7 +120,7 @@ class Reader {
         fail(inner->GetLineNum(), std::string("unknown element <") + inner->Name() + ">",
              "an empty <keyframe>");
       KeyFrame frame;
-      frame.time_s = numbers(*k, "time", 1)[0];
+      frame.time_s = time(*k, "time");
       if (frame.time_s <= last)
         fail(k->GetLineNum(), "key frame at " + text(*k, "time") + " s",
              "times after 0 that increase");
@@ -118,7 +130,7 @@ class Reader {
       out.motion.push_back(frame);
     }
     if (e.Attribute("repeat") == nullptr) return;
-    out.repeat_s = numbers(e, "repeat", 1)[0];
+    out.repeat_s = time(e, "repeat");
     if (out.motion.empty())
       fail(e.GetLineNum(), "repeat without a key frame", "at least one <keyframe>");
     if (out.repeat_s <= last)
@@ -130,6 +142,10 @@ class Reader {
                          const Eigen::Matrix3d& default_orientation) const {
     Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
     const std::vector<double> p = numbers(e, position, 3);
+    for (const double coordinate : p)
+      if (!(std::abs(coordinate) <= ranges::kCoordinate_m))
+        fail(e.GetLineNum(), std::string(position) + "=\"" + text(e, position) + "\"",
+             "coordinates up to " + brief(ranges::kCoordinate_m) + " m");
     out.translation() = Eigen::Vector3d(p[0], p[1], p[2]);
     out.linear() = default_orientation;
     const bool has_rpy = e.Attribute("rpy") != nullptr;
@@ -150,11 +166,23 @@ class Reader {
     return out;
   }
 
-  double positive(const XMLElement& e, const char* attribute) const {
+  double size(const XMLElement& e, const char* attribute) const {
     const double value = numbers(e, attribute, 1)[0];
-    if (value <= 0.0)
+    require_size(e, attribute, value);
+    return value;
+  }
+
+  void require_size(const XMLElement& e, const char* attribute, double value) const {
+    if (!(value >= ranges::kLeastSize_m && value <= ranges::kMostSize_m))
       fail(e.GetLineNum(), std::string(attribute) + "=\"" + text(e, attribute) + "\"",
-           "a positive number of metres");
+           "metres from " + brief(ranges::kLeastSize_m) + " to " + brief(ranges::kMostSize_m));
+  }
+
+  double time(const XMLElement& e, const char* attribute) const {
+    const double value = numbers(e, attribute, 1)[0];
+    if (!(std::abs(value) <= ranges::kTime_s))
+      fail(e.GetLineNum(), std::string(attribute) + "=\"" + text(e, attribute) + "\"",
+           "seconds, at most " + brief(ranges::kTime_s));
     return value;
   }
 

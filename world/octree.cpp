@@ -1,13 +1,13 @@
 #include <locograph/common/atomic_file.h>
 #include <locograph/common/error.h>
+#include <locograph/common/input_file.h>
+#include <locograph/common/ranges.h>
 #include <locograph/world/octree.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <iomanip>
-#include <iterator>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -57,9 +57,9 @@ class HeaderReader {
         if (!(words >> header.nodes)) fail("unreadable number of nodes", "size N");
         has_size = true;
       } else if (key == "res") {
-        if (!(words >> header.resolution_m) || !std::isfinite(header.resolution_m) ||
-            header.resolution_m <= 0.0)
-          fail("unusable resolution", "res followed by a positive number of metres");
+        if (!(words >> header.resolution_m) || !(header.resolution_m >= ranges::kLeastVoxel_m) ||
+            !(header.resolution_m <= ranges::kMostVoxel_m))
+          fail("unusable resolution", "res followed by a number of metres from 0.0001 to 100");
         has_resolution = true;
       } else {
         fail("unknown header entry '" + printable(key) + "'", "id, size, res or data");
@@ -177,10 +177,7 @@ void require_positive(double value, const char* what) {
 
 std::shared_ptr<octomap::OcTree> load_octree(const std::filesystem::path& path) {
   const std::string file = path.string();
-  if (std::filesystem::is_directory(path)) throw Error(file, 0, "is a folder", "an OctoMap file");
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw Error(file, 0, "cannot be opened", "an OctoMap file (.bt or .ot)");
-  const std::string content{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  std::string content = read_file(path, kMostInputBytes, "an OctoMap file (.bt or .ot)");
   if (content.empty()) throw Error(file, 0, "is empty", "an OctoMap file (.bt or .ot)");
 
   const Header header = HeaderReader(file, content).read();
@@ -195,7 +192,8 @@ std::shared_ptr<octomap::OcTree> load_octree(const std::filesystem::path& path) 
   // OctoMap's own file functions chatter on stderr; those for the data alone do not.
   std::shared_ptr<octomap::OcTree> tree = std::make_shared<octomap::OcTree>(header.resolution_m);
   if (header.nodes == 0) return tree;
-  std::istringstream data(content.substr(header.data_begin));
+  std::istringstream data(std::move(content));
+  data.seekg(static_cast<std::streamoff>(header.data_begin));
   if (header.binary)
     tree->readBinaryData(data);
   else

@@ -7,7 +7,7 @@
 // is refused although its planner calls it good. Then corruptions (benchmarks/check/corruptions.h)
 // are drawn until N lies have been told. Prints one JSON object; exits with 1 if a lie was
 // believed, or an original refused.
-#include <locograph/apps/data_folder.h>
+#include <locograph/common/data_folder.h>
 #include <locograph/common/deadline.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
 #include <locograph/planners/plan/judging.h>

@@ -3,6 +3,7 @@
 //     make_map boxes.xml 0.05 boxes.bt
 
 #include <locograph/common/error.h>
+#include <locograph/common/stop_signals.h>
 #include <locograph/world/obstacles.h>
 #include <locograph/world/octree.h>
 
@@ -15,6 +16,7 @@ int main(int argc, char** argv) {
     std::cerr << "usage: make_map OBSTACLES.xml RESOLUTION_M OUT.bt\n";
     return 2;
   }
+  locograph::take_stop_signals();
   try {
     std::vector<locograph::Box> boxes;
     for (const locograph::Obstacle& obstacle : locograph::load_obstacles(argv[1])) {

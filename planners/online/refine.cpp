@@ -55,6 +55,10 @@ class Walk {
 
   RefineReport run(const WorldAt& world_at) {
     for (int executed = 0; executed + 1 < planner_.plan_size(); ++executed) {
+      if (options_.stop != nullptr && *options_.stop) {
+        end_at(executed, "interrupted");
+        return std::move(report_);
+      }
       if (!step(executed, world_at)) return std::move(report_);
     }
     arrive();
@@ -111,15 +115,21 @@ class Walk {
 
   void stop(int executed, const std::string& symptom) {
     const std::string cause = cause_behind(executed);
+    end_at(executed, (cause.empty() ? "" : cause + "; what gave way is ") + symptom);
+  }
+
+  /// The rest of the plan is removed.
+  void end_at(int executed, const std::string& why) {
     measure_goal(executed);
     report_.success = false;
-    report_.reason = "stopped at configuration " + std::to_string(executed) + ": " +
-                     (cause.empty() ? "" : cause + "; what gave way is ") + symptom + "; after " +
-                     std::to_string(executed) + " of " + std::to_string(planner_.plan_size() - 1) +
-                     " steps, " + goal_text() + " from the goal";
+    report_.reason = "stopped at configuration " + std::to_string(executed) + ": " + why +
+                     "; after " + std::to_string(executed) + " of " +
+                     std::to_string(planner_.plan_size() - 1) + " steps, " + goal_text() +
+                     " from the goal";
     const Plan plan = planner_.plan();
     for (int i = executed + 1; i < planner_.plan_size(); ++i) graph_.remove_vertex(plan.slots[i]);
     report_.configurations = executed + 1;
+    mark_incomplete(graph_);
   }
 
   void arrive() {
@@ -131,6 +141,7 @@ class Walk {
       return;
     }
     report_.success = false;
+    mark_incomplete(graph_);
     const bool blocked = report_.short_of_goal_m > options_.goal_tolerance_m;
     report_.reason = std::string(blocked ? "blocked" : "beside the goal") +
                      ": feasible, but it ends " + goal_text() + " from the goal of the plan";

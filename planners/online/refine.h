@@ -6,13 +6,15 @@
 ///     RefineReport report = refine(graph, world_seen_at, options);
 ///
 /// Stops before a configuration that cannot be made feasible: the rest of the plan is removed from
-/// the graph, and the report says what stood in the way (window_cause.h) and how far it got. A plan
+/// the graph, which is marked as incomplete (plan_parameters.h), and the report says what stood in
+/// the way (window_cause.h) and how far it got. A plan
 /// that is feasible but does not end at its goal, whether short of it or beside it, is no success.
 
 #include <locograph/check/check_report.h>
 #include <locograph/check/motion.h>
 #include <locograph/planners/online/local_planner.h>
 
+#include <atomic>
 #include <functional>
 
 namespace locograph {
@@ -22,6 +24,8 @@ struct RefineOptions {
   /// How far from where it was planned the last configuration's base may end, in any direction.
   double goal_tolerance_m = 0.25;
   double goal_tolerance_rad = 0.25;
+  /// When it is set, as by Ctrl-C (stop_signals.h), the walk ends where it is; may be null.
+  const std::atomic<bool>* stop = nullptr;
   /// Called after each cycle, e.g. to show progress; may be empty.
   std::function<void(const CycleReport&)> on_cycle;
   /// The independent verdict on the motion from the executed configuration to the next, before it

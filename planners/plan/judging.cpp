@@ -1,12 +1,10 @@
 #include <locograph/check/judge.h>
+#include <locograph/common/input_file.h>
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/posture/contacts_file.h>
 #include <locograph/planners/scenario/scenario.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/world/octree.h>
-
-#include <fstream>
-#include <iterator>
 
 namespace locograph {
 namespace {
@@ -18,15 +16,10 @@ bool same_file(const fs::path& a, const fs::path& b) {
   return !a.empty() && !b.empty() && fs::equivalent(a, b, unknown);
 }
 
-std::string content_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return std::string((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-}
-
 /// A stronger or lighter robot than the scenario's would keep other limits.
 void require_robot_of(const Scenario& scenario, const Robot& robot) {
   if (same_file(robot.urdf_file(), scenario.urdf)) return;
-  if (content_of(robot.urdf_file()) == content_of(scenario.urdf)) return;
+  if (read_file(robot.urdf_file()) == read_file(scenario.urdf)) return;
   throw Error("the plan's robot, " + robot.urdf_file().string() +
                   ", is not the one of the scenario " + scenario.source,
               scenario.urdf.string());
@@ -88,10 +81,14 @@ Judging judging_of(const Graph& graph, const Plan& plan, const JudgingRequest& r
 }
 
 CheckReport judged(const Graph& graph, const Plan& plan, const Judging& judging) {
+  return *judged(motion_of(graph, plan), plan, judging, JobControl());
+}
+
+std::optional<CheckReport> judged(const Motion& motion, const Plan& plan, const Judging& judging,
+                                  const JobControl& job) {
   const Judge judge(plan.robot->robot, judging.world);
-  const Motion motion = motion_of(graph, plan);
   const bool posture = motion.configurations.size() == 1 && motion.stance_from.front() >= 0;
-  if (!posture) return judge.check(motion, judging.options);
+  if (!posture) return judge.check(motion, judging.options, job);
   return judge.check(motion.configurations.front(), motion.stances.front(), judging.options);
 }
 

@@ -14,10 +14,12 @@
 /// that there is something to touch at the other places is taken on trust.
 
 #include <locograph/check/check_report.h>
+#include <locograph/common/job_control.h>
 #include <locograph/planners/plan/plan.h>
 #include <locograph/world/world.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace locograph {
@@ -43,5 +45,8 @@ Judging judging_of(const Graph& graph, const Plan& plan, const JudgingRequest& r
 
 /// A posture, one configuration that stands, is judged as PostureSolver does; others as motions.
 CheckReport judged(const Graph& graph, const Plan& plan, const Judging& judging);
+/// The same of motion_of(graph, plan); nothing when the job ends before the check does.
+std::optional<CheckReport> judged(const Motion& motion, const Plan& plan, const Judging& judging,
+                                  const JobControl& job);
 
 }  // namespace locograph

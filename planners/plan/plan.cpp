@@ -87,6 +87,7 @@ Plan plan_of(const Graph& graph) {
   const auto format = only<PlanParameter>(parameters);
   if (!format) throw Error("a plan without a format version", "a PARAMS_PLAN line");
   plan.stances_only = format->stances_only;
+  plan.incomplete = format->incomplete;
   plan.world = only<WorldParameter>(parameters);
   only<RobotParameter>(parameters);
   if (!plan.stances_only) {
@@ -106,6 +107,17 @@ Plan plan_of(const Graph& graph) {
   }
   require_wrenches_of_stances(graph, plan);
   return plan;
+}
+
+void mark_incomplete(Graph& graph) {
+  for (const auto& [number, parameter] : graph.parameters().all()) {
+    const auto format = std::dynamic_pointer_cast<const PlanParameter>(parameter);
+    if (!format) continue;
+    const auto marked = std::make_shared<PlanParameter>(*format);
+    marked->incomplete = true;
+    graph.parameters().replace(number, marked);
+    return;
+  }
 }
 
 Motion motion_of(const Graph& graph, const Plan& plan) {

@@ -25,6 +25,7 @@ struct Plan {
   /// Of each configuration the stance that is held from it to the next one; null: not known.
   std::vector<std::shared_ptr<const StanceParameter>> stance_from;
   bool stances_only = false;
+  bool incomplete = false;  ///< it ends before its goal
 };
 
 /// Throws Error, with the line if the graph was read from a file, when it holds no configuration,
@@ -33,6 +34,9 @@ struct Plan {
 Plan plan_of(const Graph& graph);
 
 Motion motion_of(const Graph& graph, const Plan& plan);
+
+/// Says in its PARAMS_PLAN that the plan ends before its goal.
+void mark_incomplete(Graph& graph);
 
 /// Numbers of the parameters in a plan file. Contacts begin at kFirstContact; stances follow them.
 inline constexpr int kRobotNumber = 0, kPlanNumber = 1, kWorldNumber = 2, kScenarioNumber = 3,

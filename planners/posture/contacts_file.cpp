@@ -12,7 +12,8 @@ using Element = XmlFile::Element;
 
 class ContactsReader {
  public:
-  ContactsReader(const std::filesystem::path& file, const Robot& robot)
+  /// robot: null if it is not known.
+  ContactsReader(const std::filesystem::path& file, const Robot* robot)
       : robot_(robot), xml_(file, "contacts") {}
 
   Stance read() {
@@ -23,11 +24,16 @@ class ContactsReader {
     }
     Stance stance;
     for (const Element& element : xml_.children(root, "contact")) {
+      if (stance.contacts.size() == ranges::kContacts) {
+        throw xml_.error(element, "one contact more than " + std::to_string(ranges::kContacts),
+                         "as many as a robot has use for");
+      }
       stance.contacts.push_back(read_contact(element));
+      if (robot_ == nullptr) continue;
       // Whatever contradicts the contacts before is this one's mistake.
-      blame(xml_, element, [&] { require_sound_stance(robot_, all_loaded(stance)); });
+      blame(xml_, element, [&] { require_sound_stance(*robot_, all_loaded(stance)); });
     }
-    blame(xml_, root, [&] { require_sound_stance(robot_, stance); });
+    if (robot_ != nullptr) blame(xml_, root, [&] { require_sound_stance(*robot_, stance); });
     return stance;
   }
 
@@ -46,7 +52,9 @@ class ContactsReader {
 
     Contact contact;
     contact.effector = read_effector(xml_, element, kind);
-    if (kind != ContactKind::kRung) contact.effector.friction = xml_.positive(element, "mu");
+    if (kind != ContactKind::kRung) {
+      contact.effector.friction = read_positive(xml_, element, "mu", ranges::kFriction);
+    }
     const int before = of_link_[contact.effector.link]++;
     if (before > 0) {
       contact.effector.name = contact.effector.link + "_" + std::to_string(before + 1);
@@ -66,7 +74,7 @@ class ContactsReader {
     return contact;
   }
 
-  const Robot& robot_;
+  const Robot* robot_;
   XmlFile xml_;
   std::map<std::string, int> of_link_;
 };
@@ -74,7 +82,11 @@ class ContactsReader {
 }  // namespace
 
 Stance load_contacts(const std::filesystem::path& file, const Robot& robot) {
-  return ContactsReader(file, robot).read();
+  return ContactsReader(file, &robot).read();
+}
+
+Stance load_contacts(const std::filesystem::path& file) {
+  return ContactsReader(file, nullptr).read();
 }
 
 }  // namespace locograph

@@ -15,4 +15,7 @@ namespace locograph {
 
 Stance load_contacts(const std::filesystem::path& file, const Robot& robot);
 
+/// The same without a robot: whether its links exist and can touch all at once stays open.
+Stance load_contacts(const std::filesystem::path& file);
+
 }  // namespace locograph

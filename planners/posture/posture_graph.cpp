@@ -72,7 +72,10 @@ Violated WatchedRows::violated(const Workspace& workspace) const {
   Violated violated;
   violated.joints.assign(static_cast<std::size_t>(robot.active_joint_count()), false);
   const auto move_chain = [&](int link) {
-    for (const int i : robot.support(link)) violated.joints[static_cast<std::size_t>(i)] = true;
+    for (const int i : robot.support(link)) {
+      const int active = robot.axes()[static_cast<std::size_t>(i)].active;
+      violated.joints[static_cast<std::size_t>(active)] = true;
+    }
   };
   ConstraintReader(workspace).each([&](const ConstraintReader::Row& found) {
     if (found.ratio <= 1.0) return;

@@ -71,7 +71,7 @@ class Search {
     for (;;) {
       attempt(start);
       if (result_.success || result_.restarts >= options_.max_restarts ||
-          options_.deadline.passed()) {
+          options_.deadline.passed() || stopped()) {
         break;
       }
       ++result_.restarts;
@@ -100,7 +100,7 @@ class Search {
       const double worst = watched_.worst(workspace_);
       closed = worst <= 1.0;
       worst_by_iteration.push_back(worst);
-      return !closed && !stalled(worst_by_iteration);
+      return !closed && !stopped() && !stalled(worst_by_iteration);
     };
     const Stopwatch watch;
     Optimiser optimiser(lm);
@@ -130,6 +130,8 @@ class Search {
     }
   }
 
+  bool stopped() const { return options_.stop != nullptr && *options_.stop; }
+
   /// The worst violation, in tolerances, has not come down by a tenth in a few iterations.
   bool stalled(const std::vector<double>& worst) const {
     if (static_cast<int>(worst.size()) <= options_.patience) return false;
@@ -148,6 +150,7 @@ class Search {
     if (!checked_) result_.report = checked(result_.configuration, options_.check);
     result_.reason = "no posture found: " + violation_text(result_.report.worst());
     if (options_.deadline.passed()) result_.reason += "; the time allowed is used up";
+    if (stopped()) result_.reason += "; interrupted";
   }
 
   /// The preferred configuration with what was violated moved at random, further from one restart

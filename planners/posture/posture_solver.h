@@ -29,6 +29,7 @@
 #include <locograph/core/graph.h>
 #include <locograph/plugins/configuration/robot_parameters.h>
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -68,6 +69,8 @@ struct PostureOptions {
   /// An attempt ends when this many iterations have not lowered its worst violation by a tenth.
   int patience = 6;
   Deadline deadline;
+  /// When it is set, as by Ctrl-C (stop_signals.h), the search ends; may be null.
+  const std::atomic<bool>* stop = nullptr;
   /// Limits the torques to the efforts of the URDF; false: the result tells them.
   bool enforce_torque_limits = true;
 

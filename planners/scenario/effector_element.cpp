@@ -1,10 +1,19 @@
 #include <locograph/planners/scenario/effector_element.h>
 
+#include <cmath>
+#include <cstdio>
+
 namespace locograph {
 namespace {
 
 bool has_axes(ContactKind kind) {
   return kind == ContactKind::kSurface || kind == ContactKind::kRung;
+}
+
+std::string short_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
 }
 
 }  // namespace
@@ -38,19 +47,19 @@ EndEffector read_effector(const XmlFile& xml, const XmlFile::Element& element, C
   vector("point", effector.point);
   vector("link_normal", effector.normal);
   vector("link_forward", effector.forward);
-  effector.max_force_N = xml.positive(element, "max_force");
+  effector.max_force_N = read_positive(xml, element, "max_force", ranges::kForce_N);
   if (kind == ContactKind::kSurface) {
-    effector.half_x_m = xml.positive(element, "half_x");
-    effector.half_y_m = xml.positive(element, "half_y");
+    effector.half_x_m = read_size(xml, element, "half_x");
+    effector.half_y_m = read_size(xml, element, "half_y");
   }
   if (kind == ContactKind::kWheel || element.Attribute("radius") != nullptr) {
-    effector.radius_m = xml.positive(element, "radius");
+    effector.radius_m = read_size(xml, element, "radius");
   }
   if (kind == ContactKind::kRung) {
     effector.max_moment_Nm = xml.number(element, "max_moment");
-    if (effector.max_moment_Nm < 0.0) {
-      throw xml.error(element, "max_moment is " + std::to_string(effector.max_moment_Nm),
-                      "zero or more");
+    if (!(effector.max_moment_Nm >= 0.0 && effector.max_moment_Nm <= ranges::kMoment_Nm)) {
+      throw xml.error(element, "max_moment is " + short_text(effector.max_moment_Nm),
+                      "zero or more, at most " + short_text(ranges::kMoment_Nm));
     }
   }
   return effector;
@@ -58,7 +67,25 @@ EndEffector read_effector(const XmlFile& xml, const XmlFile::Element& element, C
 
 Eigen::Vector3d read_vector(const XmlFile& xml, const XmlFile::Element& element, const char* name) {
   const std::vector<double> numbers = xml.numbers(element, name, 3);
+  for (const double number : numbers) {
+    if (std::abs(number) <= ranges::kCoordinate_m) continue;
+    throw xml.error(element, std::string(name) + "=\"" + xml.attribute(element, name) + "\"",
+                    "numbers up to " + short_text(ranges::kCoordinate_m));
+  }
   return {numbers[0], numbers[1], numbers[2]};
+}
+
+double read_positive(const XmlFile& xml, const XmlFile::Element& element, const char* name,
+                     double most, double least) {
+  const double value = xml.number(element, name);
+  if (value > 0.0 && value >= least && value <= most) return value;
+  const std::string from = least > 0.0 ? "from " + short_text(least) : "> 0";
+  throw xml.error(element, std::string(name) + " is " + short_text(value),
+                  "a number " + from + " to " + short_text(most));
+}
+
+double read_size(const XmlFile& xml, const XmlFile::Element& element, const char* name) {
+  return read_positive(xml, element, name, ranges::kMostSize_m, ranges::kLeastSize_m);
 }
 
 }  // namespace locograph

@@ -7,8 +7,9 @@
 ///     allowed.insert({"kind", "position", "mu"});
 ///     xml.allow(element, allowed, {});
 ///     EndEffector foot = read_effector(xml, element, kind);
-///     foot.friction = xml.positive(element, "mu");
+///     foot.friction = read_positive(xml, element, "mu", ranges::kFriction);
 
+#include <locograph/common/ranges.h>
 #include <locograph/robots/contact.h>
 #include <locograph/robots/xml_file.h>
 
@@ -28,7 +29,14 @@ std::set<std::string> effector_attributes(ContactKind kind);
 /// is not looked for.
 EndEffector read_effector(const XmlFile& xml, const XmlFile::Element& element, ContactKind kind);
 
+/// Three numbers within ±1e6: a place [m] or a direction.
 Eigen::Vector3d read_vector(const XmlFile& xml, const XmlFile::Element& element, const char* name);
+
+/// A number from `least`, or, where that is 0, above it, to `most`.
+double read_positive(const XmlFile& xml, const XmlFile::Element& element, const char* name,
+                     double most, double least = 0.0);
+/// The size of a contact or of an end effector.
+double read_size(const XmlFile& xml, const XmlFile::Element& element, const char* name);
 
 /// Runs f; what it throws is the element's mistake.
 template <class F>

@@ -1,3 +1,4 @@
+#include <locograph/common/suggestion.h>
 #include <locograph/planners/scenario/effector_element.h>
 #include <locograph/planners/scenario/scenario.h>
 #include <locograph/robots/xml_file.h>
@@ -68,7 +69,8 @@ class ScenarioReader {
       const std::filesystem::path folder = data_folder_ / "robots/models" / model;
       if (!std::filesystem::exists(folder / (model + ".urdf"))) {
         throw xml_.error(*robot, "unknown robot model '" + model + "'",
-                         "one that `locograph list robots` names");
+                         "one that `locograph list robots` names" +
+                             did_you_mean(model, robot_names(data_folder_)));
       }
       scenario_.urdf = std::filesystem::canonical(folder) / (model + ".urdf");
       scenario_.srdf = std::filesystem::canonical(folder) / (model + ".srdf");
@@ -91,9 +93,10 @@ class ScenarioReader {
       EndEffector effector;
       effector.name = effector.link = xml_.attribute(wheel, "link");
       effector.kind = ContactKind::kWheel;
-      effector.radius_m = xml_.positive(wheel, "radius");
-      effector.friction = positive_or(wheel, "friction", friction_.value_or(kWheelFriction));
-      effector.max_force_N = positive_or(wheel, "max_force", kWheelForce_N);
+      effector.radius_m = read_size(xml_, wheel, "radius");
+      effector.friction =
+          positive_or(wheel, "friction", friction_.value_or(kWheelFriction), ranges::kFriction);
+      effector.max_force_N = positive_or(wheel, "max_force", kWheelForce_N, ranges::kForce_N);
       add(wheel, std::move(effector));
     }
   }
@@ -120,6 +123,11 @@ class ScenarioReader {
   }
 
   void add(const Element& element, EndEffector effector) {
+    if (scenario_.end_effectors.size() == ranges::kEndEffectors) {
+      throw xml_.error(element,
+                       "one end effector more than " + std::to_string(ranges::kEndEffectors),
+                       "as many as a robot has");
+    }
     for (const EndEffector& other : scenario_.end_effectors) {
       if (other.name == effector.name) {
         throw xml_.error(element, "a second end effector " + effector.name, "each once");
@@ -128,16 +136,20 @@ class ScenarioReader {
     scenario_.end_effectors.push_back(std::move(effector));
   }
 
-  double positive_or(const Element& element, const char* name, double otherwise) const {
-    return element.Attribute(name) == nullptr ? otherwise : xml_.positive(element, name);
+  double positive_or(const Element& element, const char* name, double otherwise,
+                     double most) const {
+    if (element.Attribute(name) == nullptr) return otherwise;
+    return read_positive(xml_, element, name, most);
   }
 
   void read_limits(const Element* limits) {
     if (limits == nullptr) return;
+    constexpr double kMostLimit = 1e6;
     xml_.allow(*limits, {"base_linear", "base_angular", "joint_acceleration"}, {});
-    scenario_.limits.base_linear_m_s = positive_or(*limits, "base_linear", 0.0);
-    scenario_.limits.base_angular_rad_s = positive_or(*limits, "base_angular", 0.0);
-    scenario_.limits.joint_acceleration_rad_s2 = positive_or(*limits, "joint_acceleration", 0.0);
+    scenario_.limits.base_linear_m_s = positive_or(*limits, "base_linear", 0.0, kMostLimit);
+    scenario_.limits.base_angular_rad_s = positive_or(*limits, "base_angular", 0.0, kMostLimit);
+    scenario_.limits.joint_acceleration_rad_s2 =
+        positive_or(*limits, "joint_acceleration", 0.0, kMostLimit);
   }
 
   void read_planner(const Element* planner) {
@@ -154,7 +166,9 @@ class ScenarioReader {
   void read_environment(const Element* environment) {
     if (environment == nullptr) return;
     xml_.allow(*environment, {"map", "obstacles", "friction"}, {});
-    if (environment->Attribute("friction")) friction_ = xml_.positive(*environment, "friction");
+    if (environment->Attribute("friction")) {
+      friction_ = read_positive(xml_, *environment, "friction", ranges::kFriction);
+    }
     if (environment->Attribute("map")) {
       scenario_.map = beside_file(xml_.attribute(*environment, "map"));
     }
@@ -168,13 +182,19 @@ class ScenarioReader {
     xml_.allow(*drive, {"distance", "curvature", "speed", "configurations"}, {});
     DriveTask task;
     task.line = drive->GetLineNum();
-    task.distance_m = xml_.positive(*drive, "distance");
-    task.speed_m_s = xml_.positive(*drive, "speed");
+    task.distance_m = read_positive(xml_, *drive, "distance", ranges::kDrive_m);
+    task.speed_m_s =
+        read_positive(xml_, *drive, "speed", ranges::kMostSpeed_m_s, ranges::kLeastSpeed_m_s);
     if (drive->Attribute("curvature")) task.curvature_1_m = xml_.number(*drive, "curvature");
+    if (!(std::abs(task.curvature_1_m) <= ranges::kCurvature_1_m)) {
+      throw xml_.error(*drive, "curvature=\"" + xml_.attribute(*drive, "curvature") + "\"",
+                       "1/m, at most 1000 either way");
+    }
     const double count = xml_.number(*drive, "configurations");
-    if (!(count >= 2.0 && count <= 1e6) || count != std::floor(count)) {
-      throw xml_.error(*drive, "configurations is " + std::to_string(count),
-                       "a whole number from 2 to 1000000");
+    if (!(count >= 2.0 && count <= ranges::kConfigurations) || count != std::floor(count)) {
+      throw xml_.error(*drive,
+                       "configurations=\"" + xml_.attribute(*drive, "configurations") + "\"",
+                       "a whole number from 2 to " + std::to_string(ranges::kConfigurations));
     }
     task.configurations = static_cast<int>(count);
     scenario_.drive = task;
@@ -193,11 +213,9 @@ Scenario load_scenario(const std::string& name_or_file, const std::filesystem::p
   const bool by_name = name_or_file.find('/') == std::string::npos && std::filesystem::exists(own);
   const std::filesystem::path file = by_name ? own : std::filesystem::path(name_or_file);
   if (!by_name && !std::filesystem::exists(file)) {
-    std::string names;
-    for (const std::string& name : scenario_names(data_folder)) {
-      names += (names.empty() ? "" : ", ") + name;
-    }
-    throw Error(name_or_file, 0, "no such scenario", "a file, or one of " + names);
+    const std::vector<std::string> names = scenario_names(data_folder);
+    throw Error(name_or_file, 0, "no such scenario",
+                "a file, or one of " + joined_names(names) + did_you_mean(name_or_file, names));
   }
   Scenario scenario = ScenarioReader(file, data_folder).read();
   scenario.source = by_name ? name_or_file : std::filesystem::absolute(file).string();
@@ -216,6 +234,17 @@ std::vector<std::string> scenario_names(const std::filesystem::path& data_folder
   if (!std::filesystem::is_directory(folder)) return names;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() == ".xml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::vector<std::string> robot_names(const std::filesystem::path& data_folder) {
+  std::vector<std::string> names;
+  const std::filesystem::path folder = data_folder / "robots/models";
+  if (!std::filesystem::is_directory(folder)) return names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.is_directory()) names.push_back(entry.path().filename().string());
   }
   std::sort(names.begin(), names.end());
   return names;

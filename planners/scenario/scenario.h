@@ -62,4 +62,7 @@ World world_of(const Scenario& scenario);
 /// Names of the scenarios that come with locograph, sorted.
 std::vector<std::string> scenario_names(const std::filesystem::path& data_folder);
 
+/// Names of the robots that come with locograph, sorted.
+std::vector<std::string> robot_names(const std::filesystem::path& data_folder);
+
 }  // namespace locograph

@@ -14,16 +14,22 @@ void PlanParameter::read(FieldReader& in) {
     in.fail("a plan of format version " + std::to_string(version),
             "version " + std::to_string(kPlanFormat));
   }
-  if (in.at_end()) return;
-  if (const std::string word = in.word(); word != "stances_only") {
-    in.fail("'" + word + "'", "'stances_only' or the end of the line");
+  while (!in.at_end()) {
+    const std::string word = in.word();
+    if (word == "stances_only") {
+      stances_only = true;
+    } else if (word == "incomplete") {
+      incomplete = true;
+    } else {
+      in.fail("'" + word + "'", "'stances_only', 'incomplete' or the end of the line");
+    }
   }
-  stances_only = true;
 }
 
 void PlanParameter::write(FieldWriter& out) const {
   out.integer(kPlanFormat);
   if (stances_only) out.word("stances_only");
+  if (incomplete) out.word("incomplete");
 }
 
 void ScenarioParameter::read(FieldReader& in) {

@@ -3,6 +3,7 @@
 ///
 ///     PARAMS_PLAN 1 2                          (format version 2)
 ///     PARAMS_PLAN 1 2 stances_only             (transitions: nothing moves between configurations)
+///     PARAMS_PLAN 1 2 incomplete               (the first part of a plan: the rest was not found)
 ///     PARAMS_SCENARIO 3 centauro_drive         (made for this scenario: a name, or a file)
 ///     PARAMS_CONTACTS 4 ../standing.xml        (a posture for this contacts file)
 ///
@@ -21,6 +22,8 @@ inline constexpr int kPlanFormat = 2;
 struct PlanParameter final : Parameter {
   /// The configurations are transitions of a plan of stances, in order; their times mean nothing.
   bool stances_only = false;
+  /// It ends before its goal.
+  bool incomplete = false;
 
   std::string_view tag() const override { return "PARAMS_PLAN"; }
   void read(FieldReader& in) override;

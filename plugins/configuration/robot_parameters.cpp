@@ -1,11 +1,19 @@
+#include <locograph/common/ranges.h>
 #include <locograph/plugins/configuration/path_field.h>
 #include <locograph/plugins/configuration/robot_parameters.h>
 #include <locograph/plugins/configuration/sphere_overshoot.h>
+#include <locograph/robots/shipped_robot.h>
 #include <locograph/world/octree.h>
 
 #include <algorithm>
 
 namespace locograph {
+namespace {
+
+constexpr std::string_view kModel = "model";
+
+}  // namespace
+
 RobotParameter::RobotParameter(std::filesystem::path urdf_file, std::filesystem::path srdf_file,
                                RobotOptions robot_options)
     : urdf(std::move(urdf_file)), srdf(std::move(srdf_file)), options(std::move(robot_options)) {
@@ -36,8 +44,27 @@ void RobotParameter::load() {
 }
 
 void RobotParameter::read(FieldReader& in) {
-  urdf = read_path(in);
-  srdf = read_path(in);
+  // Each line takes as long as loading its robot does.
+  int robots = 1;
+  for (const auto& [number, parameter] : in.parameters()->all()) {
+    if (parameter->tag() == tag()) ++robots;
+  }
+  if (robots > ranges::kRobots) {
+    in.fail("one robot more than " + std::to_string(ranges::kRobots), "fewer robots in one graph");
+  }
+  if (in.peek() == kModel) {
+    in.word();
+    const std::string name = in.word();
+    const auto files = shipped_robot(name);
+    if (!files) {
+      in.fail("unknown robot model '" + name + "'", "one that `locograph list robots` names");
+    }
+    urdf = files->urdf;
+    srdf = files->srdf;
+  } else {
+    urdf = read_path(in);
+    srdf = read_path(in);
+  }
   const std::string base = in.word();
   if (base != "floating" && base != "fixed") {
     in.fail("base '" + base + "'", "'floating' or 'fixed'");
@@ -60,8 +87,13 @@ void RobotParameter::read(FieldReader& in) {
 }
 
 void RobotParameter::write(FieldWriter& out) const {
-  write_path(out, urdf);
-  write_path(out, srdf);
+  if (const std::string name = shipped_robot_name(urdf, srdf); !name.empty()) {
+    out.word(kModel);
+    out.word(name);
+  } else {
+    write_path(out, urdf);
+    write_path(out, srdf);
+  }
   out.word(options.floating_base ? "floating" : "fixed");
   out.integer(static_cast<long>(options.active_joints.size()));
   for (const std::string& name : options.active_joints) out.word(name);

@@ -2,9 +2,11 @@
 /// What the vertices and edges of a robot plan share: the robot and the world around it.
 ///
 ///     PARAMS_ROBOT 0 ../robots/centauro.urdf ../robots/centauro.srdf floating 1 lower_body
+///     PARAMS_ROBOT 0 model centauro floating 1 lower_body
 ///     PARAMS_WORLD 2 map.bt obstacles.xml ground 0
 ///
-/// Paths are relative to the graph file; `-` stands for none.
+/// Paths are relative to the graph file; `-` stands for none. A robot that comes with locograph is
+/// named, so that the file can be copied anywhere.
 
 #include <locograph/core/parameters.h>
 #include <locograph/plugins/configuration/self_collision_shapes.h>
@@ -20,9 +22,9 @@
 
 namespace locograph {
 
-/// PARAMS_ROBOT: urdf, srdf, `floating` or `fixed`, number of names of active joints or groups
-/// (0: all), the names; then, where they differ from RobotOptions, `lenient` (lenient_srdf) and
-/// `frozen STATE` (frozen_state).
+/// PARAMS_ROBOT: urdf, srdf, or `model` and a name; then `floating` or `fixed`, number of names of
+/// active joints or groups (0: all), the names; then, where they differ from RobotOptions,
+/// `lenient` (lenient_srdf) and `frozen STATE` (frozen_state).
 struct RobotParameter final : Parameter {
   std::filesystem::path urdf, srdf;
   RobotOptions options;

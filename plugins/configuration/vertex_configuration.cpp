@@ -1,8 +1,10 @@
+#include <locograph/common/ranges.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
 #include <locograph/plugins/contact/stance_parameter.h>
 
 #include <cmath>
+#include <cstdio>
 
 namespace locograph {
 
@@ -32,6 +34,16 @@ int read_stance(FieldReader& in, const std::shared_ptr<const RobotParameter>& ro
     in.fail("stance " + std::to_string(number) + " of another robot", "a stance of this robot");
   }
   return number;
+}
+
+/// Beyond all use, and where the digits of distances end.
+void require_range(const FieldReader& in, const char* what, double value, double most,
+                   const char* unit) {
+  if (std::abs(value) <= most) return;
+  char found[80], expected[80];
+  std::snprintf(found, sizeof found, "%s %.6g%s", what, value, unit);
+  std::snprintf(expected, sizeof expected, "at most %.6g%s", most, unit);
+  in.fail(found, expected);
 }
 
 }  // namespace
@@ -79,7 +91,16 @@ void VertexConfiguration::read(FieldReader& in) {
   stance_number = read_stance(in, robot);
   state.resize(robot->robot->configuration_size());
   for (Eigen::Index i = 0; i < state.size(); ++i) state[i] = in.number();
-  if (robot->robot->floating_base()) read_quaternion(in, state);
+  require_range(in, "a time of", time_s, ranges::kTime_s, " s");
+  if (robot->robot->floating_base()) {
+    for (const double x : state.head<3>()) {
+      require_range(in, "a base at", x, ranges::kCoordinate_m, " m");
+    }
+    read_quaternion(in, state);
+  }
+  for (const double joint : state.tail(robot->robot->active_joint_count())) {
+    require_range(in, "a joint at", joint, ranges::kJoint_rad, "");
+  }
 }
 
 void read_quaternion(const FieldReader& in, Eigen::VectorXd& configuration) {

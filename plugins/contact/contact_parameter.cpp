@@ -1,16 +1,33 @@
+#include <locograph/common/ranges.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/contact/contact_parameter.h>
 
 #include <cmath>
+#include <cstdio>
 
 namespace locograph {
 namespace {
 
 constexpr int kMostFacets = 64;
 
+std::string brief(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+/// A number up to `most`; what is positive, the contact itself demands.
+double read_up_to(FieldReader& in, double most, const char* what) {
+  const std::string token(in.peek());
+  const double value = in.number();
+  if (std::abs(value) <= most) return value;
+  in.fail(std::string(what) + " " + token, "at most " + brief(most));
+}
+
+/// A place [m] or a direction.
 Eigen::Vector3d read_vector(FieldReader& in) {
   Eigen::Vector3d v;
-  read_field(in, v);
+  for (double& number : v) number = read_up_to(in, ranges::kCoordinate_m, "the coordinate");
   return v;
 }
 
@@ -21,13 +38,16 @@ void read_kind(FieldReader& in, EndEffector& effector) {
   if (!kind) in.fail("contact kind '" + word + "'", "'surface', 'point', 'rung' or 'wheel'");
   effector.kind = *kind;
   if (*kind == ContactKind::kSurface) {
-    effector.half_x_m = in.number();
-    effector.half_y_m = in.number();
+    effector.half_x_m = read_up_to(in, ranges::kMostSize_m, "the size");
+    effector.half_y_m = read_up_to(in, ranges::kMostSize_m, "the size");
   }
-  if (*kind == ContactKind::kPoint || *kind == ContactKind::kWheel) effector.radius_m = in.number();
-  if (*kind != ContactKind::kRung) effector.friction = in.number();
-  effector.max_force_N = in.number();
-  if (*kind == ContactKind::kRung) effector.max_moment_Nm = in.number();
+  if (*kind == ContactKind::kPoint || *kind == ContactKind::kWheel)
+    effector.radius_m = read_up_to(in, ranges::kMostSize_m, "the radius");
+  if (*kind != ContactKind::kRung)
+    effector.friction = read_up_to(in, ranges::kFriction, "the friction");
+  effector.max_force_N = read_up_to(in, ranges::kForce_N, "the force");
+  if (*kind == ContactKind::kRung)
+    effector.max_moment_Nm = read_up_to(in, ranges::kMoment_Nm, "the moment");
 }
 
 void write_kind(FieldWriter& out, const EndEffector& effector) {

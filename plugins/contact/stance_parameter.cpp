@@ -1,3 +1,4 @@
+#include <locograph/common/ranges.h>
 #include <locograph/plugins/contact/stance_parameter.h>
 
 namespace locograph {
@@ -30,7 +31,10 @@ StanceParameter::StanceParameter(const Parameters& parameters, std::vector<int> 
 
 void StanceParameter::read(FieldReader& in) {
   const int count = in.integer();
-  if (count < 1) in.fail("number of contacts " + std::to_string(count), "at least one");
+  if (count < 1 || count > ranges::kContacts) {
+    in.fail("number of contacts " + std::to_string(count),
+            "at least one, at most " + std::to_string(ranges::kContacts));
+  }
   std::vector<int> numbers;
   for (int i = 0; i < count; ++i) numbers.push_back(in.integer());
   *this = StanceParameter(*in.parameters(), std::move(numbers));

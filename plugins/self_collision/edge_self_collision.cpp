@@ -77,19 +77,21 @@ Nearest nearest(const ConfigurationState& q, const SelfCollisionShapes::Pair& pa
   return best;
 }
 
-/// row += d(direction · point)/dq for the joints in `support` from the `common`-th on.
+/// row += d(direction · point)/dq for the axes in `support` from the `common`-th on.
 void add_slope(const RobotState& kinematics, std::span<const int> support, std::size_t common,
                const Eigen::Vector3d& point, const Eigen::Vector3d& direction, double* row) {
   const Robot& robot = kinematics.robot();
   const Eigen::Vector3d moment = point.cross(direction);
   for (std::size_t k = common; k < support.size(); ++k) {
     const int i = support[k];
-    const Eigen::Vector3d& axis = kinematics.joint_axis(i);
-    // axis · ((p − o) × d) for a joint that turns, axis · d for one that slides
-    row[robot.base_tangent_size() + i] +=
-        robot.active_joint(i).type == JointType::kPrismatic
-            ? axis.dot(direction)
-            : axis.dot(moment - kinematics.joint_origin(i).cross(direction));
+    const Eigen::Vector3d& along = kinematics.joint_axis(i);
+    const Axis& axis = robot.axes()[static_cast<std::size_t>(i)];
+    // a · ((p − o) × d) for an axis that turns, a · d for one that slides
+    row[robot.base_tangent_size() + axis.active] +=
+        axis.multiplier *
+        (robot.joints()[static_cast<std::size_t>(axis.joint)].type == JointType::kPrismatic
+             ? along.dot(direction)
+             : along.dot(moment - kinematics.joint_origin(i).cross(direction)));
   }
 }
 
@@ -107,7 +109,7 @@ void EdgeSelfCollision::error(const ConfigurationState& q, Eigen::Ref<Eigen::Vec
 }
 
 // The nearest points move along with their links: how they slide along the shapes does not matter
-// to first order. What moves both links alike, base and common joints, does not change d.
+// to first order. What moves both links alike, base and common axes, does not change d.
 void EdgeSelfCollision::jacobians(const ConfigurationState& q,
                                   JacobianRef<EdgeSelfCollision, 0> j) const {
   const std::vector<SelfCollisionShapes::Pair>& pairs = q.robot->self_collision.pairs;

@@ -46,11 +46,18 @@ void EdgeTorqueLimits::error(const ConfigurationState& q, const WrenchesState& w
   require_rows(kTag, e.size(), robot.active_joint_count());
   require_same_robot(kTag, q.robot, wrenches.contacts->front()->robot);
   state.require_mass();
-  for (int i = 0; i < robot.active_joint_count(); ++i) e[i] = gravity_torque(state, i);
+  const std::vector<Axis>& axes = robot.axes();
+  e.setZero();
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    e[axes[i].active] += axes[i].multiplier * gravity_torque(state, static_cast<int>(i));
+  }
   const double* components = wrenches.components.data();
   for (const auto& contact : *wrenches.contacts) {
     const AppliedWrench applied(state, *contact, components);
-    for (const int i : robot.support(contact->link)) e[i] -= wrench_torque(state, applied, i);
+    for (const int i : robot.support(contact->link)) {
+      const Axis& axis = axes[static_cast<std::size_t>(i)];
+      e[axis.active] -= axis.multiplier * wrench_torque(state, applied, i);
+    }
     components += contact->components().size();
   }
   for (int i = 0; i < robot.active_joint_count(); ++i) {
@@ -63,11 +70,11 @@ void EdgeTorqueLimits::jacobians(const ConfigurationState& q, const WrenchesStat
                                  JacobianRef<EdgeTorqueLimits, 1> by_wrenches) const {
   const RobotState& state = q.kinematics;
   const Robot& robot = q.model();
-  /// f(applied wrench, its first component) for the contacts that joint i carries.
-  const auto each_wrench = [&](int i, auto&& f) {
+  /// f(applied wrench, its first component) for the contacts that an axis carries.
+  const auto each_wrench = [&](int axis, auto&& f) {
     int first = 0;
     for (const auto& contact : *wrenches.contacts) {
-      if (supports(robot, i, contact->link)) {
+      if (supports(robot, axis, contact->link)) {
         f(AppliedWrench(state, *contact, wrenches.components.data() + first), first);
       }
       first += static_cast<int>(contact->components().size());
@@ -76,18 +83,26 @@ void EdgeTorqueLimits::jacobians(const ConfigurationState& q, const WrenchesStat
   for (int i = 0; i < robot.active_joint_count(); ++i) {
     const double limit = fraction * robot.active_joint(i).max_effort;
     if (std::isinf(limit)) continue;
-    double torque = gravity_torque(state, i);
-    each_wrench(
-        i, [&](const AppliedWrench& applied, int) { torque -= wrench_torque(state, applied, i); });
+    double torque = 0.0;
+    for (const int axis : robot.axes_of(i)) {
+      double of_axis = gravity_torque(state, axis);
+      each_wrench(axis, [&](const AppliedWrench& applied, int) {
+        of_axis -= wrench_torque(state, applied, axis);
+      });
+      torque += robot.axes()[static_cast<std::size_t>(axis)].multiplier * of_axis;
+    }
     if (std::abs(torque) <= limit) continue;
     const double sign = torque > 0.0 ? 1.0 : -1.0;
     double* row = by_q.row(i).data();
-    add_gravity_gradient(state, i, sign, row);
-    each_wrench(i, [&](const AppliedWrench& applied, int first) {
-      add_wrench_gradient(state, applied, i, -sign, row);
-      add_wrench_gradient_by_components(state, applied, i, -sign,
-                                        by_wrenches.row(i).data() + first);
-    });
+    for (const int axis : robot.axes_of(i)) {
+      const double scale = sign * robot.axes()[static_cast<std::size_t>(axis)].multiplier;
+      add_gravity_gradient(state, axis, scale, row);
+      each_wrench(axis, [&](const AppliedWrench& applied, int first) {
+        add_wrench_gradient(state, applied, axis, -scale, row);
+        add_wrench_gradient_by_components(state, applied, axis, -scale,
+                                          by_wrenches.row(i).data() + first);
+      });
+    }
   }
 }
 

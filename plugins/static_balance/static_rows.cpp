@@ -11,12 +11,16 @@ namespace {
 bool revolute(const RobotState& state, int i) {
   return state.robot().tree().bodies[static_cast<std::size_t>(i) + 1].revolute;
 }
-/// Of the active joint above joint i, -1 when there is none.
+/// The axis above axis i, -1 when there is none.
 int above(const RobotState& state, int i) {
   return state.robot().tree().bodies[static_cast<std::size_t>(i) + 1].parent - 1;
 }
 
-/// How joint i moves a point behind it.
+const Axis& axis_at(const RobotState& state, int i) {
+  return state.robot().axes()[static_cast<std::size_t>(i)];
+}
+
+/// How axis i moves a point behind it.
 Eigen::Vector3d point_column(const RobotState& state, int i, const Eigen::Vector3d& point) {
   const Eigen::Vector3d& axis = state.joint_axis(i);
   if (!revolute(state, i)) return axis;
@@ -77,8 +81,10 @@ void add_gravity_on_base_gradient(const RobotState& state, BaseWrenchGradient gr
   const Eigen::Matrix3d turning = skew(base * gravity);
   gradient.block<3, 3>(0, 3) += moment[3] * turning;
   gradient.block<3, 3>(3, 3).noalias() += skew(arm) * turning;
-  for (int i = 0; i < state.robot().active_joint_count(); ++i) {
-    gradient.block<3, 1>(3, 6 + i).noalias() += base * state.moment_column(i).cross(gravity);
+  for (int i = 0; i < static_cast<int>(state.robot().axes().size()); ++i) {
+    const Axis& axis = axis_at(state, i);
+    gradient.block<3, 1>(3, 6 + axis.active).noalias() +=
+        base * (axis.multiplier * state.moment_column(i)).cross(gravity);
   }
 }
 
@@ -96,13 +102,17 @@ void add_wrench_on_base_gradient(const RobotState& state, const AppliedWrench& a
   const Eigen::Vector3d arm = applied.point - state.world_from_link(0).translation();
   if (!turns) add_turning(base * arm, base * applied.force, base * applied.moment, gradient);
   for (const int k : state.robot().support(applied.contact->link)) {
-    Eigen::Vector3d moment = point_column(state, k, applied.point).cross(applied.force);
+    const Axis& axis = axis_at(state, k);
+    const int column = 6 + axis.active;
+    Eigen::Vector3d moment =
+        axis.multiplier * point_column(state, k, applied.point).cross(applied.force);
     if (turns && revolute(state, k)) {
-      const Eigen::Vector3d force = state.joint_axis(k).cross(applied.force);
-      moment += arm.cross(force) + state.joint_axis(k).cross(applied.moment);
-      gradient.block<3, 1>(0, 6 + k).noalias() += base * force;
+      const Eigen::Vector3d along = axis.multiplier * state.joint_axis(k);
+      const Eigen::Vector3d force = along.cross(applied.force);
+      moment += arm.cross(force) + along.cross(applied.moment);
+      gradient.block<3, 1>(0, column).noalias() += base * force;
     }
-    gradient.block<3, 1>(3, 6 + k).noalias() += base * moment;
+    gradient.block<3, 1>(3, column).noalias() += base * moment;
   }
 }
 
@@ -136,14 +146,15 @@ void add_gravity_gradient(const RobotState& state, int i, double scale, double* 
   if (base > 0) {
     Eigen::Map<Eigen::Vector3d>(row + 3).noalias() += base_from_world(state) * own;
   }
-  double* joints = row + base;
+  const auto entry = [&](int k) -> double& { return row[base + axis_at(state, k).active]; };
+  const auto multiplier = [&](int k) { return axis_at(state, k).multiplier; };
   for (int k = i; k >= 0; k = above(state, k)) {
-    if (revolute(state, k)) joints[k] += state.joint_axis(k).dot(own);
+    if (revolute(state, k)) entry(k) += multiplier(k) * state.joint_axis(k).dot(own);
   }
   if (!revolute(state, i)) return;
-  // Joints are numbered depth first: those behind joint i follow it without a gap.
-  for (int k = i + 1; k < robot.active_joint_count() && above(state, k) >= i; ++k) {
-    joints[k] += state.joint_axis(i).dot(state.moment_column(k).cross(gravity));
+  // Axes are numbered depth first: those behind axis i follow it without a gap.
+  for (int k = i + 1; k < static_cast<int>(robot.axes().size()) && above(state, k) >= i; ++k) {
+    entry(k) += multiplier(k) * state.joint_axis(i).dot(state.moment_column(k).cross(gravity));
   }
 }
 
@@ -157,14 +168,15 @@ void add_wrench_gradient(const RobotState& state, const AppliedWrench& applied, 
   const Robot& robot = state.robot();
   const bool turns = !applied.contact->axes_in_world;
   const int base = robot.base_tangent_size();
-  double* joints = row + base;
+  const auto entry = [&](int k) -> double& { return row[base + axis_at(state, k).active]; };
+  const auto multiplier = [&](int k) { return axis_at(state, k).multiplier; };
   const Eigen::Vector3d axis = scale * state.joint_axis(i);
   if (!turns) {
     Eigen::Vector3d back = scale * point_column(state, i, applied.point).cross(applied.force);
     if (revolute(state, i)) back += axis.cross(applied.moment);
     if (base > 0) Eigen::Map<Eigen::Vector3d>(row + 3).noalias() += base_from_world(state) * back;
     for (int k = i; k >= 0; k = above(state, k)) {
-      if (revolute(state, k)) joints[k] += state.joint_axis(k).dot(back);
+      if (revolute(state, k)) entry(k) += multiplier(k) * state.joint_axis(k).dot(back);
     }
   }
   const Eigen::Vector3d arm = applied.point - state.joint_origin(i);
@@ -174,13 +186,13 @@ void add_wrench_gradient(const RobotState& state, const AppliedWrench& applied, 
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     if (turned) force = state.joint_axis(k).cross(applied.force);
     if (!revolute(state, i)) {
-      joints[k] += axis.dot(force);
+      entry(k) += multiplier(k) * axis.dot(force);
       continue;
     }
     Eigen::Vector3d moment =
         point_column(state, k, applied.point).cross(applied.force) + arm.cross(force);
     if (turned) moment += state.joint_axis(k).cross(applied.moment);
-    joints[k] += axis.dot(moment);
+    entry(k) += multiplier(k) * axis.dot(moment);
   }
 }
 

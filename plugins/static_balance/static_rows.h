@@ -9,10 +9,10 @@
 /// and have no n × n memory; what is added here is that the axes of a wrench may turn with its
 /// link.
 ///
-/// Derivation. A joint k with axis a_k moves the contact point by d_k = a_k × (p − o_k), or a_k if
-/// it slides, and turns axes fixed in the link: df = a_k × f, dm = a_k × m. The torque of joint i
-/// is t_i = a_i · ((p − o_i) × f + m), or a_i · f. A joint below i changes it by
-/// a_i · (d_k × f + (p − o_i) × df + dm), or a_i · df. The joint itself, one above it and the base
+/// Derivation. An axis k along a_k moves the contact point by d_k = a_k × (p − o_k), or a_k if
+/// it slides, and turns axes fixed in the link: df = a_k × f, dm = a_k × m. The torque of axis i
+/// is t_i = a_i · ((p − o_i) × f + m), or a_i · f. An axis below i changes it by
+/// a_i · (d_k × f + (p − o_i) × df + dm), or a_i · df. The axis itself, one above it and the base
 /// carry the whole chain along: seen from the chain only a wrench fixed in the world turns, back by
 /// a_k, and t_i changes by a_k · (j_i × f + a_i × m), j_i = a_i × (p − o_i), or j_i = a_i without
 /// the moment if i slides.
@@ -53,18 +53,19 @@ void add_wrench_on_base_gradient(const RobotState& state, const AppliedWrench& a
 void add_wrench_on_base_by_components(const RobotState& state, const AppliedWrench& applied,
                                       int first, BaseWrenchGradient gradient);
 
-/// The torque [N m] or force [N] of active joint i that gravity asks for, entry i of g(q), and its
-/// derivative by the tangent: row += scale · gradient.
+/// The torque [N m] or force [N] that gravity asks of axis i of the robot (Robot::axes()), and its
+/// derivative by the tangent: row += scale · gradient. An active joint bears the sum over its axes,
+/// each times its multiplier.
 double gravity_torque(const RobotState& state, int i);
 void add_gravity_gradient(const RobotState& state, int i, double scale, double* row);
-/// Entry i of Jᵀw; i must be in the support of the contact's link.
+/// What the wrench asks of axis i, which must be in the support of the contact's link.
 double wrench_torque(const RobotState& state, const AppliedWrench& applied, int i);
 void add_wrench_gradient(const RobotState& state, const AppliedWrench& applied, int i, double scale,
                          double* row);
 void add_wrench_gradient_by_components(const RobotState& state, const AppliedWrench& applied, int i,
                                        double scale, double* row);
 
-/// Whether active joint i moves a link.
+/// Whether axis i moves a link.
 bool supports(const Robot& robot, int i, int link);
 
 }  // namespace locograph

@@ -182,6 +182,55 @@ TEST(Info, DescribesObstacles) {
   EXPECT_EQ(bad.err.substr(0, 21), "locograph: bad.xml:2:") << bad.err;
 }
 
+TEST(Info, DescribesAScenario) {
+  const CommandRunner runner;
+  const nlohmann::json drive =
+      info(runner, "'" LOCOGRAPH_SOURCE_DIR "/planners/scenarios/centauro_drive.xml'");
+  EXPECT_EQ(drive["kind"], "scenario");
+  EXPECT_EQ(drive["name"], "centauro_drive");
+  EXPECT_EQ(drive["drive"]["distance_m"], 4.0);
+  EXPECT_EQ(drive["end_effectors"].size(), 4u);
+  EXPECT_EQ(drive["end_effectors"][0]["touches_as"], "wheel");
+  EXPECT_EQ(drive["missing_files"], nlohmann::json::array());
+  runner.write("s.xml",
+               "<scenario version=\"1\" name=\"s\">\n<robot urdf=\"arm.urdf\"/>\n"
+               "<wheels><wheel link=\"w\" radius=\"0.1\"/></wheels>\n"
+               "<environment map=\"hall.bt\"/>\n"
+               "<drive distance=\"2\" speed=\"0.1\" configurations=\"9\"/>\n</scenario>\n");
+  EXPECT_EQ(info(runner, "s.xml")["missing_files"].size(), 2u);
+  runner.write("bad.xml", "<scenario version=\"1\" name=\"s\">\n<robto/>\n</scenario>\n");
+  expect_refusal(runner.run("info bad.xml"), "bad.xml:2", "robto");
+}
+
+TEST(Info, DescribesContacts) {
+  const CommandRunner runner;
+  const std::string file = "'" LOCOGRAPH_SOURCE_DIR "/examples/posture/coman_plus_wall.xml'";
+  const nlohmann::json json = info(runner, file);
+  EXPECT_EQ(json["kind"], "contacts");
+  EXPECT_EQ(json["count"], 3);
+  EXPECT_EQ(json["contacts"][0]["link"], "l_sole");
+  EXPECT_EQ(json["contacts"][0]["max_force_N"], 1000.0);
+  EXPECT_EQ(json["contacts"][2]["touches_as"], "point");
+  EXPECT_EQ(json["contacts"][2]["position_m"], nlohmann::json({0.55, 0.25, 1.1}));
+  EXPECT_NE(runner.run("info " + file).out.find("max_force: 1000 N"), std::string::npos);
+  runner.write("bad.xml", "<contacts version=\"1\">\n<contact kind=\"foot\"/>\n</contacts>\n");
+  expect_refusal(runner.run("info bad.xml"), "bad.xml:2", "foot");
+}
+
+TEST(Info, DescribesBundleAdjustment) {
+  const CommandRunner runner;
+  const nlohmann::json json = info(runner, "'" LOCOGRAPH_SOURCE_DIR "/examples/graphs/desk.txt'");
+  EXPECT_EQ(json["kind"], "bundle adjustment");
+  EXPECT_EQ(json["cameras"], 4);
+  EXPECT_EQ(json["points"], 20);
+  EXPECT_EQ(json["observations"], 80);
+  EXPECT_EQ(json["dimension"], 4 * 9 + 20 * 3);
+  runner.write("short.txt", "4 20 80\n0 0 1.0\n");
+  const Outcome cut = runner.run("info short.txt");
+  EXPECT_EQ(cut.exit_code, 2);
+  EXPECT_EQ(cut.err.substr(0, 21), "locograph: short.txt:") << cut.err;
+}
+
 TEST(Info, TellsTheKindByContentWhenTheNameDoesNot) {
   const CommandRunner runner;
   runner.write("robot", kArm);

@@ -27,14 +27,20 @@ configure() {
   local example=$1
   shift
   cmake -S "$source/examples/$example" -B "$work/$example" -G "$generator" \
-    -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Release \
-    -DCMAKE_PREFIX_PATH="$work/prefix" "$@"
+    -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_PREFIX_PATH="$work/prefix" "$@"
 }
+build_type() { sed -n 's/^CMAKE_BUILD_TYPE:[A-Z]*=//p' "$work/$1/CMakeCache.txt"; }
 without() { printf -- '-DCMAKE_DISABLE_FIND_PACKAGE_%s=ON\n' "$@"; }
 
 # The optimiser needs nothing but Eigen.
 mapfile -t nothing_else < <(without octomap fcl tinyxml2 PkgConfig Ceres CLI11 nlohmann_json)
-configure custom_edge "${nothing_else[@]}"
+configure custom_edge "${nothing_else[@]}" -DCMAKE_BUILD_TYPE=Debug
+[ "$(build_type custom_edge)" = Debug ] || fail "the build type that was asked for is not kept"
+rm -r "$work/custom_edge"
+# Users who ask for no build type get an optimised one, and are told.
+configure custom_edge "${nothing_else[@]}" >"$work/log" 2>&1 || fail "$(cat "$work/log")"
+grep -q 'locograph: no CMAKE_BUILD_TYPE is chosen: Release' "$work/log" || fail "no message"
+[ "$(build_type custom_edge)" = Release ] || fail "built as '$(build_type custom_edge)'"
 cmake --build "$work/custom_edge"
 (cd "$work" && custom_edge/custom_edge out.g2o) || fail "custom_edge"
 grep -q '^RANGE_SE2_XY 0 1 ' "$work/out.g2o" || fail "the custom edge is not in the file"

@@ -146,9 +146,8 @@ TEST(LyingPlan, ARobotIsStrongerThanTheScenariosOne) {
   PlanText plan = runner.plan();
   for (std::string& line : plan.parameters) {
     if (line.rfind("PARAMS_ROBOT", 0) != 0) continue;
-    const std::size_t begin = line.find_first_not_of(' ', line.find(' ', 13)),
-                      end = line.find(' ', begin);
-    line.replace(begin, end - begin, "strong.urdf");
+    const std::string shipped = "model centauro";
+    line.replace(line.find(shipped), shipped.size(), "strong.urdf " + stem + ".srdf");
   }
   runner.write("lie.g2o", plan.text());
   const Outcome outcome = runner.run("check lie.g2o");

@@ -237,6 +237,45 @@ TEST(Optimize, EveryAlgorithmAndSolverReachesTheSameCost) {
   }
 }
 
+/// The triangle with its vertices far from where its edges say.
+std::string misplaced_triangle() {
+  std::string text = kTriangle;
+  const std::size_t end = text.find("EDGE");
+  return "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 -70 4 2\nVERTEX_SE2 2 9 90 -1\n" + text.substr(end);
+}
+
+TEST(Optimize, StartsFromTheFileWhereItsValuesAreBest) {
+  const CommandRunner runner;
+  runner.write("a.g2o", kTriangle);
+  ASSERT_EQ(runner.run("optimize a.g2o -o b.g2o").exit_code, 0);
+  const Outcome outcome = runner.run("optimize b.g2o --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["initial_guess"], "none");
+  EXPECT_NE(runner.run("optimize b.g2o").out.find("starts from the values of the file\n"),
+            std::string::npos);
+}
+
+TEST(Optimize, StartsFromABetterGuessWhereTheValuesOfTheFileAreWorseUnlessToldNotTo) {
+  const CommandRunner runner;
+  runner.write("a.g2o", misplaced_triangle());
+  const nlohmann::json best = runner.run("optimize a.g2o --json").json();
+  EXPECT_NE(best["initial_guess"], "none");
+  EXPECT_LT(best["initial_chi2"].get<double>(), 10.0);
+  EXPECT_NEAR(best["final_chi2"].get<double>(), 1.0 / 3.0, 1e-6);
+  const nlohmann::json as_it_is = runner.run("optimize a.g2o --initial-guess none --json").json();
+  EXPECT_EQ(as_it_is["initial_guess"], "none");
+  EXPECT_GT(as_it_is["initial_chi2"].get<double>(), 100.0);
+}
+
+TEST(Optimize, SaysWhatAGraphWithoutVerticesStartsFrom) {
+  const CommandRunner runner;
+  const std::string text = kTriangle;
+  runner.write("a.g2o", text.substr(text.find("EDGE")));
+  const Outcome outcome = runner.run("optimize a.g2o --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.json()["initial_guess"], "none");
+}
+
 TEST(Optimize, GivesTheSameBitsAgainAndForAnyNumberOfThreads) {
   const CommandRunner runner;
   runner.write("a.g2o", kTriangle);
@@ -298,7 +337,7 @@ TEST(Optimize, NamesTheVertexWhereTheSystemIsSingular) {
   runner.write("a.g2o",
                "VERTEX_SE2 4 0 0 0\nVERTEX_SE2 5 1 0 0\nFIX 4\n"
                "EDGE_SE2 4 5 2 0 0 1 0 0 0 0 0\n");
-  const Outcome outcome = runner.run("optimize a.g2o --algorithm gn --json");
+  const Outcome outcome = runner.run("optimize a.g2o --algorithm gn --initial-guess none --json");
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
   EXPECT_EQ(outcome.json()["reason"], "the linear system is singular at vertex 5");
 }

@@ -36,7 +36,7 @@ TEST(Plot, ConvergenceOfAnOptimisation) {
   runner.write("a.json", done.out);
   const std::string svg = plot(runner, "a.json");
   EXPECT_TRUE(contains(svg, "iteration"));
-  EXPECT_TRUE(contains(svg, "chi2"));
+  EXPECT_TRUE(contains(svg, "chi2 (lower is better)"));
 }
 
 TEST(Plot, CycleTimesWithTheirPercentiles) {
@@ -50,6 +50,7 @@ TEST(Plot, CycleTimesWithTheirPercentiles) {
   EXPECT_TRUE(contains(svg, "p95 = 95 ms"));
   EXPECT_TRUE(contains(svg, "p99 = 99 ms"));
   EXPECT_TRUE(contains(svg, "100 cycles"));
+  EXPECT_TRUE(contains(svg, "lower is better"));
 }
 
 TEST(Plot, RefineReportsTheTimesOfItsCycles) {
@@ -73,6 +74,7 @@ TEST(Plot, ConstraintsOfACheckAndAPlanAgainstItsLimits) {
   const std::string bars = plot(runner, "c.json");
   EXPECT_TRUE(contains(bars, "self_collision"));
   EXPECT_TRUE(contains(bars, "velocity_limits"));
+  EXPECT_TRUE(contains(bars, "where it holds (green)"));
   EXPECT_FALSE(contains(bars, "NOT feasible"));
   const std::string lines = plot(runner, "p.g2o");
   EXPECT_TRUE(contains(lines, "joint positions"));
@@ -119,7 +121,7 @@ TEST(Plot, RefusesWhatItCannotDraw) {
   runner.write("a.json", "{\"x\": 1}");
   expect_refusal(runner.run("plot a.json -o o.svg"), "a.json", "nothing to plot");
   runner.write("b.json", "not JSON");
-  expect_refusal(runner.run("plot b.json -o o.svg"), "b.json", "not JSON");
+  expect_refusal(runner.run("plot b.json -o o.svg"), "b.json:1", "not JSON");
   runner.write("c.json", "{\"cycle_times\": []}");
   expect_refusal(runner.run("plot c.json -o o.svg"), "c.json", "no cycle times");
   runner.write("e.csv", "success,time_total\ntrue\n");

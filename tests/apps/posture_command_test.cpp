@@ -126,16 +126,24 @@ TEST(PostureCommand, ReadsARobotFromItsUrdf) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
 }
 
+// Statics asks for masses only.
+TEST(PostureCommand, TakesARobotWithAnInertiaThatNoBodyHas) {
+  const CommandRunner runner;
+  runner.write("odd.urdf",
+               small_robot("5",
+                           "<inertial><mass value=\"2\"/><inertia ixx=\"-1\" iyy=\"0.01\" "
+                           "izz=\"0.01\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial>"));
+  runner.write("base.xml", kOnItsBase);
+  const Outcome outcome = runner.run("posture odd.urdf --contacts base.xml");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+}
+
 TEST(PostureCommand, RefusesBadInputOnOneLineAndWritesNothing) {
   const CommandRunner runner;
   runner.write("base.xml", kOnItsBase);
   runner.write("feet.xml", contacts(sole("l_sole", 0.12) + sole("r_sole", -0.12)));
   runner.write("weak.urdf", small_robot("0", kBody));
   runner.write("empty.urdf", small_robot("5", ""));
-  runner.write("odd.urdf",
-               small_robot("5",
-                           "<inertial><mass value=\"2\"/><inertia ixx=\"-1\" iyy=\"0.01\" "
-                           "izz=\"0.01\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial>"));
   runner.write("massless.urdf",
                small_robot("5",
                            "<inertial><mass value=\"-2\"/><inertia ixx=\"1\" iyy=\"1\" "
@@ -152,10 +160,9 @@ TEST(PostureCommand, RefusesBadInputOnOneLineAndWritesNothing) {
   };
   refused("weak.urdf --contacts base.xml", "weak.urdf", "effort limit of 0");
   refused("empty.urdf --contacts base.xml", "empty.urdf", "mass");
-  refused("odd.urdf --contacts base.xml", "odd.urdf:2", "moment of inertia");
   refused("massless.urdf --contacts base.xml", "massless.urdf:2", "mass");
   refused("coman_minus --contacts base.xml", "coman_minus", "no such robot");
-  refused("coman_plus --contacts missing.xml", "missing.xml", "cannot be read");
+  refused("coman_plus --contacts missing.xml", "missing.xml", "cannot be opened");
   refused("coman_plus --contacts link.xml", "link.xml:2", "l_sole");
   refused("coman_plus --contacts none.xml", "none.xml:1", "no contacts");
   refused("coman_plus --contacts twice.xml", "twice.xml:3", "contradict");

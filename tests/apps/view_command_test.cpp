@@ -115,14 +115,54 @@ TEST_F(ViewPlan, TextOfAFileCannotEndTheScript) {
 
 TEST_F(ViewPlan, RobotFileThatIsMissingIsNamed) {
   std::string text = runner.read("p.g2o");
-  const std::size_t at = text.find("centauro.urdf");
+  const std::size_t at = text.find("model centauro");
   ASSERT_NE(at, std::string::npos);
-  runner.write("moved.g2o", text.replace(at, 13, "nowhere.urdf"));
+  runner.write("moved.g2o", text.replace(at, 14, "nowhere.urdf -"));
   const Outcome outcome = runner.run("view moved.g2o -o x.html");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_NE(outcome.err.find("nowhere.urdf"), std::string::npos) << outcome.err;
   EXPECT_EQ(outcome.err.find('\n'), outcome.err.size() - 1);
   EXPECT_FALSE(runner.exists("x.html"));
+}
+
+TEST_F(ViewPlan, ScenarioThatIsMissingCostsTheVerdictOnly) {
+  std::string text = runner.read("p.g2o");
+  const std::size_t at = text.find("PARAMS_SCENARIO 3 centauro_drive");
+  ASSERT_NE(at, std::string::npos);
+  runner.write("moved.g2o", text.replace(at, 32, "PARAMS_SCENARIO 3 ./gone.xml"));
+  const Outcome outcome = runner.run("view moved.g2o --obstacles box.xml -o page.html");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("warning: neither judged"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("gone.xml"), std::string::npos) << outcome.err;
+  const nlohmann::json scene = scene_of(runner.read("page.html"));
+  EXPECT_EQ(scene["plan"]["times"].size(), 50u);
+  EXPECT_EQ(scene["obstacles"].size(), 2u);
+  EXPECT_FALSE(scene.contains("check"));
+  // What the command line names must be there all the same.
+  expect_refusal(runner.run("view moved.g2o --obstacles none.xml -o x.html"), "none.xml", "");
+}
+
+TEST(View, PostureShowsTheForcesThatHoldTheRobot) {
+  LOCOGRAPH_NEEDS_VIEWER();
+  const CommandRunner runner;
+  const std::string file = "'" LOCOGRAPH_SOURCE_DIR "/examples/posture/coman_plus_wall.xml'";
+  ASSERT_EQ(runner.run("posture coman_plus --contacts " + file + " -o p.g2o").exit_code, 0);
+  const nlohmann::json scene = view(runner, "p.g2o");
+  double weight_N = 0.0, lifted_N = 0.0;
+  for (const nlohmann::json& link : scene["robot"]["links"]) {
+    weight_N += 9.80665 * link["mass"].get<double>();
+  }
+  const nlohmann::json& contacts = scene["plan"]["contacts"][0];
+  ASSERT_EQ(contacts.size(), 3u);
+  for (const nlohmann::json& contact : contacts) {
+    lifted_N += contact["force"][2].get<double>();
+    EXPECT_GT(contact["friction"], 0.0);
+    // A bare point bears no moment.
+    EXPECT_EQ(contact.contains("moment"), contact["kind"] == "surface") << contact["name"];
+  }
+  EXPECT_NEAR(lifted_N, weight_N, 0.01 * weight_N);
+  // The wall pushes back, along its normal.
+  EXPECT_LE(contacts[2]["force"][0], 1e-6);
 }
 
 TEST(View, RefusesWhatItCannotShow) {

@@ -85,6 +85,7 @@ struct Searched {
                 .options = options,
                 .shapes = &shapes,
                 .sampler = sampler,
+                .job = job,
                 .cutoff_m = cutoff_m} {}
 
   World world;
@@ -92,6 +93,7 @@ struct Searched {
   MovingShapes shapes;
   MotionSampler sampler;
   CheckOptions options;
+  JobControl job;
   CheckContext context;
 };
 

@@ -178,5 +178,28 @@ TEST(Judge, GivesTheSameBitsTwice) {
   }
 }
 
+TEST(Judge, SaysNothingWhenItsTimeIsUpWhereverThatHappens) {
+  const Motion motion = centauro().drive(4, 0.08, 0.8);
+  World world;
+  world.surfaces = {ground()};
+  const Judge judge(centauro().shared, world);
+  std::set<std::string> parts;
+  JobControl job;
+  job.report = [&parts](std::string_view part, double) { parts.emplace(part); };
+  const std::optional<CheckReport> whole = judge.check(motion, {}, job);
+  ASSERT_TRUE(whole);
+  EXPECT_TRUE(whole->feasible);
+  EXPECT_EQ(parts, (std::set<std::string>{"judging numbers", "judging steps", "judging contacts",
+                                          "judging distances", "judging self-collisions",
+                                          "judging balance"}));
+  for (const std::string& last : parts) {
+    JobControl ended;
+    ended.report = [&](std::string_view part, double) {
+      if (part == last) ended.deadline = Deadline::after(0.0);
+    };
+    EXPECT_FALSE(judge.check(motion, {}, ended)) << last;
+  }
+}
+
 }  // namespace
 }  // namespace locograph

@@ -76,10 +76,10 @@ TEST(RunTimeSize, ComesBackFromAFileBitForBit) {
 }
 
 TEST(RunTimeSize, BeyondWhatTheLineCanHoldIsAnErrorBeforeMemoryIsTaken) {
-  for (const char* edge :
-       {"TOY_ROWS 0 2000000000 1 2 scalar 1", "TOY_ROWS 0 2147483647 scalar 1",
-        "TOY_ROWS 0 70000 diagonal 1 1", "TOY_ROWS 0 3 1 2 scalar 1", "TOY_ROWS 0 -1 scalar 1",
-        "TOY_ROWS 0 99999999999 scalar 1", "TOY_SUM 0 || 2000000000 1 1 1 0 1"}) {
+  for (const char* edge : {"TOY_ROWS 0 2000000000 1 2 scalar 1", "TOY_ROWS 0 2147483647 scalar 1",
+                           "TOY_ROWS 0 70000 diagonal 1 1", "TOY_ROWS 0 3 1 2 scalar 1",
+                           "TOY_ROWS 0 -1 scalar 1", "TOY_ROWS 0 99999999999 scalar 1",
+                           "TOY_ROWS 0 65536 scalar 1", "TOY_SUM 0 || 2000000000 1 1 1 0 1"}) {
     try {
       read("VERTEX_XY 0 0 0\n" + std::string(edge) + "\n");
       ADD_FAILURE() << edge;

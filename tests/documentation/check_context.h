@@ -32,6 +32,7 @@ extern const int vertex;
 extern const Eigen::Vector3d point;
 
 namespace check_context_h {
+extern const JobControl job;
 extern const CollisionWorld exact;
 extern MovingShapes shapes;
 extern MotionSampler sampler;

@@ -56,6 +56,14 @@ extern Scratch scratch;
 namespace optimiser_h {
 extern LinearSolver& solver;
 }
+namespace reference_cost_h {
+extern const double cost, trial_cost, predicted;
+}
+namespace weighted_square_h {
+extern const EdgePool& pool;
+extern const int index;
+extern const Eigen::VectorXd error;
+}  // namespace weighted_square_h
 namespace scratch_h {
 extern const int rows;
 }

@@ -31,6 +31,9 @@ void use(const Eigen::Vector3d& point);
 namespace contact_closure_h {
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 }
+namespace mimic_joints_h {
+extern UrdfModel model;
+}
 namespace orientation_error_h {
 extern const Eigen::Isometry3d world_from_target, world_from_frame;
 extern Eigen::Matrix<double, 6, 1> e;

@@ -10,6 +10,7 @@
 #include <locograph/types/slam3d/expmap.h>
 #include <locograph/types/slam3d/planes_and_lines.h>
 
+#include <iostream>
 #include <memory>
 
 namespace locograph::documentation::in_types {
@@ -17,6 +18,10 @@ namespace locograph::documentation::in_types {
 extern Graph graph;
 extern std::unique_ptr<LinearSolver> solver;
 
+namespace best_guess_h {
+extern Problem problem;
+extern Workspace workspace;
+}  // namespace best_guess_h
 namespace bundle_bal_file_h {
 extern const OptimiserOptions options;
 }

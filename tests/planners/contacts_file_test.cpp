@@ -139,6 +139,17 @@ const Mistake kMistakes[] = {
      "rung without forward"},
     {"NegativeFriction", "mu=\"0.6\"", "mu=\"-0.6\"", 2, "mu is -0.6"},
     {"AHalfSizeOfZero", "half_y=\"0.04\"", "half_y=\"0\"", 2, "half_y is 0"},
+    {"APlaceBeyondAllDistances", "\"0 0.1 0\"", "\"0 1e16 0\"", 2,
+     "position=\"0 1e16 0\", expected numbers up to 1e+06"},
+    {"APlaceOnTheLinkBeyondAllDistances", "\"0 0 0.01\"", "\"0 0 -1e17\"", 3,
+     "point=\"0 0 -1e17\""},
+    {"ASizeBeyondAllSizes", "half_x=\"0.08\"", "half_x=\"1e16\"", 2,
+     "half_x is 1e+16, expected a number from 1e-06 to 1e+06"},
+    {"AForceBeyondAllForces", "max_force=\"200\"", "max_force=\"1e300\"", 3,
+     "max_force is 1e+300, expected a number > 0 to 1e+09"},
+    {"AMomentBeyondAllMoments", "max_moment=\"5\"", "max_moment=\"1e300\"", 4,
+     "max_moment is 1e+300"},
+    {"FrictionBeyondAllFriction", "mu=\"0.6\"", "mu=\"1e300\"", 2, "mu is 1e+300"},
     {"AForceLimitThatIsNone", "max_force=\"200\"", "max_force=\"inf\"", 3, "1 finite number"},
     {"ANegativeMoment", "max_moment=\"5\"", "max_moment=\"-5\"", 4, "max_moment is -5"},
     {"ASurfaceWithARadius", "half_x=", "radius=\"0.1\" half_x=", 2, "unknown attribute 'radius'"},
@@ -163,6 +174,23 @@ TEST(ContactsFile, RefusesNoneAndNoneThatBearsLoad) {
                                  "load=\"no\"/>\n</contacts>"),
                     coman_plus()),
       Error);
+}
+
+TEST(ContactsFile, HoldsNoMoreContactsThanARobotHasUseFor) {
+  std::string text = "<contacts version=\"1\">\n";
+  for (int i = 0; i < 101; ++i) {
+    text += "<contact link=\"l_sole\" kind=\"point\" point=\"0 " + std::to_string(i) +
+            " 0\" position=\"0 " + std::to_string(i) +
+            " 0\" normal=\"0 0 1\" mu=\"0.6\" max_force=\"9\"/>\n";
+  }
+  const TemporaryFolder folder;
+  try {
+    load_contacts(folder.write("many.xml", text + "</contacts>"), coman_plus());
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.line(), 102);
+    EXPECT_NE(std::string(error.what()).find("more than 100"), std::string::npos) << error.what();
+  }
 }
 
 }  // namespace

@@ -183,6 +183,23 @@ TEST(Refine, RefusesAHorizonOfNothingAndANegativeDeadline) {
   expect_same(graph, drive(), 0.0);
 }
 
+TEST(Refine, EndsWithWhatItHasWhenItIsInterrupted) {
+  std::atomic<bool> stop{false};
+  RefineOptions options;
+  options.stop = &stop;
+  options.on_cycle = [&stop](const CycleReport& cycle) { stop = cycle.executed == 4; };
+  Graph graph = drive();
+  EXPECT_FALSE(plan_of(graph).incomplete);
+  const RefineReport report = refine(graph, {}, options);
+  EXPECT_FALSE(report.success);
+  EXPECT_EQ(report.reason.find("stopped at configuration 5: interrupted; after 5 of 49 steps"), 0u)
+      << report.reason;
+  EXPECT_EQ(report.configurations, 6);
+  EXPECT_EQ(configurations(graph).size(), 6u);
+  EXPECT_TRUE(plan_of(graph).incomplete);
+  expect_feasible(check_plan(graph));
+}
+
 TEST(Refine, IsNoSuccessWhereItEndsTooFarFromTheGoal) {
   const Surroundings surroundings{{box_ahead()}, nullptr};
   const WorldDistance world = surroundings.seen();

@@ -207,5 +207,27 @@ TEST(WheeledDrive, RefusesAScenarioWithoutADrive) {
   EXPECT_THROW(plan_wheeled_drive(scenario), Error);
 }
 
+TEST(WheeledDrive, IsNoneWhenItsTimeIsUpWhereverThatHappens) {
+  const Scenario scenario = centauro_drive(1.0, 0.0, 5);
+  EXPECT_FALSE(plan_wheeled_drive(scenario, {.deadline = Deadline::after(0.0)}));
+  std::vector<std::string> parts;
+  JobControl job;
+  job.report = [&parts](std::string_view part, double fraction) {
+    EXPECT_GE(fraction, 0.0);
+    EXPECT_LT(fraction, 1.0);
+    if (parts.empty() || parts.back() != part) parts.emplace_back(part);
+  };
+  ASSERT_TRUE(plan_wheeled_drive(scenario, job));
+  EXPECT_EQ(parts, (std::vector<std::string>{"rolling", "placing configurations", "comparing links",
+                                             "adding constraints"}));
+  for (const std::string& last : parts) {
+    JobControl ended;
+    ended.report = [&](std::string_view part, double) {
+      if (part == last) ended.deadline = Deadline::after(0.0);
+    };
+    EXPECT_FALSE(plan_wheeled_drive(scenario, ended)) << last;
+  }
+}
+
 }  // namespace
 }  // namespace locograph

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "common/sanitized.h"
+#include "robots/mimic_robot.h"
 
 namespace locograph::test {
 
@@ -61,6 +62,14 @@ RobotCase coman_plus(const std::string& name) {
                                                        folder / "coman_plus.srdf", RobotOptions())};
 }
 
+/// An arm with a gripper whose joints follow two active ones.
+RobotCase gripper(const std::string& name) {
+  static const TemporaryFolder folder;  // plans are read together with the robot's file
+  return {name,
+          std::make_shared<const RobotParameter>(folder.write("mimic.urdf", mimic_robot_urdf()),
+                                                 std::filesystem::path(), RobotOptions())};
+}
+
 RobotCase load_robot_case(const std::string& name) {
   if (name == "CentauroLowerBody") return centauro_lower_body();
   if (name == "CentauroAllJoints") return centauro(name, {});
@@ -68,6 +77,7 @@ RobotCase load_robot_case(const std::string& name) {
   if (name == "ComanPlus") return coman_plus(name);
   if (name == "Go2FloatingBase") return go2(name, true);
   if (name == "Go2FixedBase") return go2(name, false);
+  if (name == "Gripper") return gripper(name);
   throw std::runtime_error("no robot case " + name);
 }
 

@@ -42,6 +42,37 @@ TEST_F(RobotParameters, KeepHowTheSrdfWasReadAndWhereFrozenJointsStand) {
   EXPECT_EQ(write_graph_text(graph, folder.path()), line + " lenient frozen raised\n");
 }
 
+TEST_F(RobotParameters, NameARobotThatComesAlong) {
+  const std::string line = "PARAMS_ROBOT 0 model centauro floating 1 lower_body";
+  const Graph graph = read(line);
+  EXPECT_EQ(graph.parameters().get<RobotParameter>(0)->robot->name(), "centauro");
+  EXPECT_EQ(write_graph_text(graph, folder.path()), line + '\n');
+  // By its path it is the same robot.
+  const std::string stem = LOCOGRAPH_SOURCE_DIR "/robots/models/centauro/centauro";
+  const Graph by_path =
+      read("PARAMS_ROBOT 0 " + stem + ".urdf " + stem + ".srdf floating 1 lower_body");
+  EXPECT_EQ(write_graph_text(by_path, folder.path()), line + '\n');
+}
+
+TEST_F(RobotParameters, KeepThePathsOfARobotThatDoesNotComeAlongAsItIs) {
+  const std::string stem = LOCOGRAPH_SOURCE_DIR "/robots/models/centauro/centauro";
+  std::filesystem::copy(stem + ".urdf", folder.file("centauro.urdf"));
+  std::filesystem::copy(stem + ".srdf", folder.file("centauro.srdf"));
+  const std::string copied = "PARAMS_ROBOT 0 centauro.urdf centauro.srdf floating 1 lower_body\n";
+  EXPECT_EQ(write_graph_text(read(copied), folder.path()), copied);
+  const Graph other_srdf =
+      read("PARAMS_ROBOT 0 " + stem + ".urdf centauro.srdf floating 1 lower_body");
+  const std::string text = write_graph_text(other_srdf, folder.path());
+  EXPECT_NE(text.find("centauro.urdf centauro.srdf floating"), std::string::npos) << text;
+}
+
+TEST_F(RobotParameters, HaveAbsolutePathsWhereTheGraphHasNoPlaceOfItsOwn) {
+  const Graph graph = read("PARAMS_ROBOT 0 cart.urdf cart.srdf floating 0\n");
+  const std::string own = std::filesystem::canonical(folder.path()).string();
+  EXPECT_EQ(write_graph_text(graph),
+            "PARAMS_ROBOT 0 " + own + "/cart.urdf " + own + "/cart.srdf floating 0\n");
+}
+
 TEST_F(RobotParameters, LeaveAFrozenWheelItsPlaceButNoJoint) {
   const Graph graph = read(
       "PARAMS_ROBOT 0 cart.urdf - floating 1 arm_joint\n"

@@ -1,4 +1,4 @@
-#include <locograph/common/atomic_file.h>
+#include <locograph/common/input_file.h>
 
 #include <cstring>
 

@@ -16,6 +16,8 @@ std::vector<Contact> some_contacts(const RobotCase& robot, Random& random) {
   const std::vector<std::string> links =
       robot.name == "ComanPlus"
           ? std::vector<std::string>{"l_sole", "TCP_R", "l_ball_tip_d", "r_sole", "TCP_L"}
+      : robot.name == "Gripper"
+          ? std::vector<std::string>{"hand", "right", "thumb", "lower", "left"}
       : !robot.wheels.empty()
           ? std::vector<std::string>{"wheel_1", "wheel_2", "ankle2_3", "wheel_4", "wheel_3"}
           : std::vector<std::string>{"FL_foot", "FR_foot", "RL_calf", "RR_foot", "base"};
@@ -265,10 +267,11 @@ TEST_P(StaticBalance, KeepsEveryBitInAFile) {
 
 INSTANTIATE_TEST_SUITE_P(Plugins, StaticBalance,
                          testing::Values("CentauroAllJoints", "CentauroFixedBase", "ComanPlus",
-                                         "Go2FloatingBase"),
+                                         "Go2FloatingBase", "Gripper"),
                          robot_case_name);
 INSTANTIATE_TEST_SUITE_P(Plugins, FloatingBalance,
-                         testing::Values("CentauroAllJoints", "ComanPlus", "Go2FloatingBase"),
+                         testing::Values("CentauroAllJoints", "ComanPlus", "Go2FloatingBase",
+                                         "Gripper"),
                          robot_case_name);
 
 }  // namespace

@@ -45,13 +45,13 @@ class BadInput : public testing::Test {
 };
 
 TEST_F(BadInput, FileThatIsNotThere) {
-  expect(folder.path() / "none.urdf", {}, "none.urdf", 0, "cannot be read");
+  expect(folder.path() / "none.urdf", {}, "none.urdf", 0, "cannot be opened");
   const std::filesystem::path urdf = folder.write("small.urdf", small_robot_urdf());
-  expect(urdf, folder.path() / "none.srdf", "none.srdf", 0, "cannot be read");
+  expect(urdf, folder.path() / "none.srdf", "none.srdf", 0, "cannot be opened");
 }
 
 TEST_F(BadInput, FolderInsteadOfAFile) {
-  expect(folder.path(), {}, folder.path().filename(), 0, "cannot be read");
+  expect(folder.path(), {}, folder.path().filename(), 0, "is a folder");
 }
 
 TEST_F(BadInput, EmptyFile) {
@@ -154,10 +154,35 @@ TEST_F(BadInput, MassAndInertiaThatNoLinkHas) {
       "link 'arm' has an <inertial> without inertia");
   expect_urdf(changed("iyy=\"2\" iyz=\"0\" izz=\"3\"", "iyy=\"2\" iyz=\"0\""), 5,
               "<inertia> without izz");
-  expect_urdf(changed("ixx=\"1\" ixy=\"0.1\"", "ixx=\"-1\" ixy=\"0\""), 5,
-              "link 'arm' has a negative principal moment of inertia, -1 kg m^2");
-  expect_urdf(changed("ixx=\"1\" ixy=\"0.1\"", "ixx=\"1\" ixy=\"1.5\""), 5,
-              "link 'arm' has a negative principal moment of inertia, -0.0811388 kg m^2");
+}
+
+TEST_F(BadInput, InertiaThatNoBodyHasIsOneWhereTheMassMatrixIsAskedFor) {
+  for (const char* entries : {"ixx=\"-1\" ixy=\"0\"", "ixx=\"1\" ixy=\"1.5\""}) {
+    const Robot robot =
+        Robot::load(folder.write("bad.urdf", changed("ixx=\"1\" ixy=\"0.1\"", entries)), {},
+                    {.floating_base = false});
+    ASSERT_EQ(robot.urdf_warnings().size(), 1u);
+    const std::string& warning = robot.urdf_warnings()[0];
+    EXPECT_NE(warning.find("bad.urdf:5: link 'arm' has an inertia that no body has"),
+              std::string::npos)
+        << warning;
+    Eigen::VectorXd torques(2);
+    gravity_torques(RobotState(robot), standard_gravity(), torques);
+    EXPECT_TRUE(torques.allFinite());
+    EXPECT_THROW(RobotDynamics{robot}, Error);
+  }
+}
+
+TEST_F(BadInput, InertiaThatIsRoundedIsNone) {
+  for (const char* entries :
+       {"ixx=\"-1e-35\" ixy=\"1e-35\" ixz=\"0\" iyy=\"0\" iyz=\"0\" izz=\"0\"",
+        "ixx=\"0.999\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"2\"",
+        "ixx=\"-1e-7\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\""}) {
+    const Robot robot = Robot::load(folder.write(
+        "rounded.urdf",
+        changed("ixx=\"1\" ixy=\"0.1\" ixz=\"0\" iyy=\"2\" iyz=\"0\" izz=\"3\"", entries)));
+    EXPECT_EQ(robot.urdf_warnings(), std::vector<std::string>{}) << entries;
+  }
 }
 
 TEST_F(BadInput, MassesWithoutWhichThereIsNoMotion) {
@@ -231,9 +256,24 @@ TEST_F(BadInput, WhatOnlyUrdfdomNotices) {
               0, "urdfdom refuses it: ");
 }
 
-TEST_F(BadInput, ActiveMimicJoint) {
-  expect_urdf(changed("<axis xyz=\"1 0 1\"/>", "<axis xyz=\"1 0 1\"/><mimic joint=\"turn\"/>"), 12,
-              "mimic joint 'push' is active");
+TEST_F(BadInput, MimicJointThatNobodyLeads) {
+  const auto with = [](const std::string& leader, const std::string& of_turn = "") {
+    std::string text = changed("<axis xyz=\"1 0 1\"/>", "<axis xyz=\"1 0 1\"/>\n<mimic joint=\"" +
+                                                            leader + "\" multiplier=\"2\"/>");
+    return text.insert(text.find("<axis xyz=\"0 3 4\"/>"), of_turn);
+  };
+  expect_urdf(with("trun"), 14,
+              "joint 'push' mimics unknown joint 'trun', expected one like 'turn'");
+  expect_urdf(with("tip_joint"), 14, "joint 'push' mimics fixed joint 'tip_joint'");
+  expect_urdf(with("push"), 14, "joint 'push' follows mimic joints that lead each other");
+  expect_urdf(with("turn", "<mimic joint=\"push\"/>"), 10,
+              "joint 'turn' follows mimic joints that lead each other");
+  expect_urdf(with("turn"), 12,
+              "mimic joint 'push' is active, but not the joint that leads it, "
+              "expected 'turn' among the active joints",
+              {.active_joints = {"push"}});
+  expect_urdf(changed("<axis xyz=\"1 0 1\"/>", "<axis xyz=\"1 0 1\"/><mimic/>"), 13,
+              "<mimic> without joint");
 }
 
 TEST_F(BadInput, UnknownActiveJoint) {
@@ -282,7 +322,7 @@ TEST_F(BadInput, SrdfGroupsThatMakeNoSense) {
   expect_srdf(
       "<robot>\n<group name='a'><group name='b'/></group>\n"
       "<group name='b'><group name='a'/></group></robot>",
-      3, "group 'b' contains itself");
+      2, "group 'a' contains itself");
   expect_srdf("<robot><group name='a'>\n<chain base_link='tip' tip_link='base'/></group></robot>",
               2, "chain from 'tip' to 'base', expected a tip_link below the base_link");
   expect_srdf("<robot><group name='a'>\n<leg name='x'/></group></robot>", 2,

@@ -14,7 +14,7 @@ namespace {
 
 struct DynamicsCase {
   std::string name;
-  std::filesystem::path urdf;  // empty: the small robot
+  std::filesystem::path urdf;  // empty: one of the small robots
   std::filesystem::path srdf = {};
   std::vector<std::string> active = {};
 };
@@ -25,8 +25,7 @@ class Dynamics : public testing::TestWithParam<std::tuple<DynamicsCase, bool>> {
  protected:
   void SetUp() override {
     const DynamicsCase& used = std::get<0>(GetParam());
-    const std::filesystem::path urdf =
-        used.urdf.empty() ? folder.write("small.urdf", small_robot_urdf()) : used.urdf;
+    const std::filesystem::path urdf = file_of(used.name, used.urdf, folder);
     if (!std::filesystem::exists(urdf)) GTEST_SKIP() << urdf << " is not on this machine";
     robot = std::make_unique<Robot>(Robot::load(
         urdf, used.srdf, {.floating_base = std::get<1>(GetParam()), .active_joints = used.active}));
@@ -182,6 +181,7 @@ std::vector<DynamicsCase> dynamics_cases() {
   std::vector<DynamicsCase> all;
   for (const RobotFile& file : public_and_own_robots()) all.push_back({file.name, file.urdf});
   all.push_back({"small", {}});
+  all.push_back({"mimic", {}});
   all.push_back({"centauro_with_frozen_arms",
                  model("centauro/centauro.urdf"),
                  model("centauro/centauro.srdf"),

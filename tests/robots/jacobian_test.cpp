@@ -15,16 +15,18 @@ constexpr double kStep = 1e-6;
 struct Case {
   const char* name;
   bool floating;
-  bool ours;  // else the small robot with a prismatic joint
+  enum { kCentauro, kSmall, kMimic } robot;  // small: with a prismatic joint
 };
 
 class Jacobians : public testing::TestWithParam<Case> {
  protected:
   void SetUp() override {
     const RobotOptions options{.floating_base = GetParam().floating};
-    const std::filesystem::path urdf = GetParam().ours
-                                           ? model("centauro/centauro.urdf")
-                                           : folder.write("small.urdf", small_robot_urdf());
+    const bool mimic = GetParam().robot == Case::kMimic;
+    const std::filesystem::path urdf =
+        GetParam().robot == Case::kCentauro
+            ? model("centauro/centauro.urdf")
+            : folder.write("small.urdf", mimic ? mimic_robot_urdf() : small_robot_urdf());
     robot = std::make_unique<Robot>(Robot::load(urdf, {}, options));
     state = std::make_unique<RobotState>(*robot);
     moved = std::make_unique<RobotState>(*robot);
@@ -128,7 +130,8 @@ TEST_P(Jacobians, OfPointsAreTheLinearRowsOfFrames) {
     std::vector<bool> moves(static_cast<std::size_t>(robot->tangent_size()), false);
     std::fill_n(moves.begin(), robot->base_tangent_size(), true);
     for (const int i : robot->support(link)) {
-      moves[static_cast<std::size_t>(robot->base_tangent_size() + i)] = true;
+      const int active = robot->axes()[static_cast<std::size_t>(i)].active;
+      moves[static_cast<std::size_t>(robot->base_tangent_size() + active)] = true;
     }
     for (int k = 0; k < robot->tangent_size(); ++k) {
       if (moves[static_cast<std::size_t>(k)]) {
@@ -166,8 +169,9 @@ TEST_P(Jacobians, GiveAxisGradientsThatAreTheirRows) {
 TEST_P(Jacobians, OfJointsPassThroughTheirOriginsAlongTheirAxes) {
   std::mt19937 random(8);
   state->update(random_configuration(*robot, random).data());
-  for (int i = 0; i < robot->active_joint_count(); ++i) {
-    const Joint& joint = robot->active_joint(i);
+  for (int i = 0; i < static_cast<int>(robot->axes().size()); ++i) {
+    const int above = robot->axes()[static_cast<std::size_t>(i)].joint;
+    const Joint& joint = robot->joints()[static_cast<std::size_t>(above)];
     const Eigen::Isometry3d& pose = state->world_from_link(joint.child_link);
     EXPECT_LT((state->joint_axis(i) - pose.linear() * joint.axis).norm(), 1e-12);
     const Eigen::Vector3d offset = pose.translation() - state->joint_origin(i);
@@ -176,10 +180,12 @@ TEST_P(Jacobians, OfJointsPassThroughTheirOriginsAlongTheirAxes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Jacobians,
-                         testing::Values(Case{"centauro_floating", true, true},
-                                         Case{"centauro_fixed", false, true},
-                                         Case{"small_floating", true, false},
-                                         Case{"small_fixed", false, false}),
+                         testing::Values(Case{"centauro_floating", true, Case::kCentauro},
+                                         Case{"centauro_fixed", false, Case::kCentauro},
+                                         Case{"small_floating", true, Case::kSmall},
+                                         Case{"small_fixed", false, Case::kSmall},
+                                         Case{"mimic_floating", true, Case::kMimic},
+                                         Case{"mimic_fixed", false, Case::kMimic}),
                          [](const testing::TestParamInfo<Case>& info) { return info.param.name; });
 
 TEST(RobotState, AllocatesNothingOnceBuilt) {

@@ -112,15 +112,6 @@ TEST_F(SmallRobot, AcceptsGroupsAsActiveJoints) {
   EXPECT_EQ(robot.active_joint(0).name, "turn");
 }
 
-TEST_F(SmallRobot, FreezesAMimicJointAtItsOffset) {
-  std::string urdf = small_robot_urdf();
-  urdf.insert(urdf.find("<axis xyz=\"1 0 1\"/>"),
-              "<mimic joint=\"turn\" multiplier=\"2\" offset=\"0.15\"/>");
-  const Robot robot =
-      Robot::load(folder.write("mimic.urdf", urdf), {}, {.active_joints = {"turn"}});
-  EXPECT_EQ(robot.joints()[1].frozen_position, 0.15);
-}
-
 TEST_F(SmallRobot, ListsTheJointsBetweenRootAndLink) {
   const Robot robot = load(groups);
   const auto support = [&](const char* link) {

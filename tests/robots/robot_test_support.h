@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "common/temporary_folder.h"
+#include "robots/mimic_robot.h"
 
 namespace locograph::test {
 
@@ -158,6 +159,13 @@ inline std::string small_robot_urdf() {
     <origin xyz="0 0 0.2" rpy="0 0.5 0"/></joint>
 </robot>
 )";
+}
+
+/// A robot that is a file, or one that is written: "mimic", or the small one.
+inline std::filesystem::path file_of(const std::string& name, const std::filesystem::path& urdf,
+                                     const TemporaryFolder& folder) {
+  if (!urdf.empty()) return urdf;
+  return folder.write(name + ".urdf", name == "mimic" ? mimic_robot_urdf() : small_robot_urdf());
 }
 
 }  // namespace locograph::test

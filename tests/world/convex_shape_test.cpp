@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
-#include <locograph/common/atomic_file.h>
 #include <locograph/common/error.h>
+#include <locograph/common/input_file.h>
 #include <locograph/world/convex_shape.h>
 #include <locograph/world/gjk.h>
 #include <locograph/world/stl_vertices.h>

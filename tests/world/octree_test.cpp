@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
-#include <locograph/common/atomic_file.h>
 #include <locograph/common/error.h>
+#include <locograph/common/input_file.h>
 #include <locograph/world/octree.h>
 #include <octomap/ColorOcTree.h>
 

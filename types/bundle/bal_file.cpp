@@ -1,4 +1,4 @@
-#include <locograph/common/atomic_file.h>
+#include <locograph/common/input_file.h>
 #include <locograph/types/bundle/bal_file.h>
 #include <locograph/types/bundle/camera_bal.h>
 #include <locograph/types/bundle/inverse_depth.h>
@@ -120,7 +120,7 @@ Graph read_bal_text(std::string_view text, const std::string& name) {
 }
 
 Graph read_bal(const std::filesystem::path& file) {
-  return read_bal_text(read_file(file), file.string());
+  return read_bal_text(read_file(file, kMostInputBytes, "a bundle adjustment file"), file.string());
 }
 
 bool looks_like_bal(std::string_view text) {

@@ -206,12 +206,23 @@ export class App implements PageActions {
       this.rig.following = false;
     } else {
       this.radius = 0.56 * robot.bounds(this.centre);
-      this.rig.look(view, this.centre, Math.max(this.radius, 0.3), headingOf(worldFromBase));
-      if (plan) this.rig.startFollowing(worldFromBase);
+      this.views.measureRobot();
+      this.rig.view = view;
+      const radius = this.inSight();
+      this.rig.look(view, this.centre, radius, headingOf(worldFromBase));
+      this.rig.following = plan !== null;
     }
     this.bar.showView(view);
     this.stage.invalidate();
     this.changed = true;
+  }
+
+  /** Middle and radius of what the camera that goes with the robot sees now. */
+  private inSight(): number {
+    const robotAlone = this.rig.view === 'front' || this.rig.view === 'side';
+    const box = robotAlone ? this.views.robotBox() : this.views.nearBox();
+    box.getCenter(this.centre);
+    return Math.max(0.56 * box.min.distanceTo(box.max), 0.3);
   }
 
   /** Goes to the moment and the place of a violation. */
@@ -299,7 +310,10 @@ export class App implements PageActions {
     this.views.update(this.player.time);
     const { worldFromBase, basePosition, path } = this.views;
     if (worldFromBase) {
-      this.rig.follow(worldFromBase);
+      if (this.rig.following) {
+        const radius = this.inSight();
+        this.rig.follow(this.centre, radius);
+      }
       this.stage.lightAt(basePosition, Math.max(2.2 * this.radius, 1.2));
     }
     const executed = this.shownExecuted();

@@ -1,4 +1,4 @@
-/** Camera presets, and the camera that goes with the robot. */
+/** Camera presets, and the camera that goes with the robot and sees what is near it. */
 import { Box3, Matrix4, Vector3 } from 'three';
 import { Stage } from './stage';
 
@@ -18,8 +18,10 @@ export class CameraRig {
   view: ViewName = 'follow';
   following = false;
 
-  private readonly last = new Vector3();
-  private readonly base = new Vector3();
+  /** Of the sphere that is looked at. */
+  private readonly centre = new Vector3();
+  private radius = 1;
+  private readonly offset = new Vector3();
   private readonly shift = new Vector3();
   private readonly direction = new Vector3();
   private readonly up = new Vector3(0, 0, 1);
@@ -29,6 +31,8 @@ export class CameraRig {
   /** Looks from a preset direction at a sphere, turned by the heading [rad]. */
   look(view: ViewName, centre: Vector3, radius: number, heading: number): void {
     this.view = view;
+    this.centre.copy(centre);
+    this.radius = radius;
     const { camera, controls } = this.stage;
     const narrow = Math.min(1, camera.aspect);
     const half = (0.5 * (camera.fov * Math.PI)) / 180;
@@ -50,21 +54,16 @@ export class CameraRig {
     this.look(fromAbove ? 'top' : 'overview', centre, Math.max(0.92 * radius, 0.5), 0);
   }
 
-  startFollowing(world: Matrix4): void {
-    this.following = true;
-    this.last.setFromMatrixPosition(world);
-  }
-
-  /** Carries the camera along with the robot's base. */
-  follow(world: Matrix4): void {
-    this.base.setFromMatrixPosition(world);
-    if (this.following) {
-      this.shift.subVectors(this.base, this.last);
-      this.stage.controls.target.add(this.shift);
-      this.stage.camera.position.add(this.shift);
-      this.stage.controls.update();
-    }
-    this.last.copy(this.base);
+  /** Keeps a sphere in the picture, where and as large as the one that was looked at. */
+  follow(centre: Vector3, radius: number): void {
+    const { camera, controls } = this.stage;
+    this.shift.subVectors(centre, this.centre);
+    this.offset.subVectors(camera.position, controls.target).multiplyScalar(radius / this.radius);
+    controls.target.add(this.shift);
+    camera.position.addVectors(controls.target, this.offset);
+    controls.update();
+    this.centre.copy(centre);
+    this.radius = radius;
   }
 
   /** Aims at a point without turning. */

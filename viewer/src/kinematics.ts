@@ -29,8 +29,10 @@ interface Joint {
   axis: Vector3;
   prismatic: boolean;
   moves: boolean;
+  /** In a configuration's joints, of the joint itself or of the one it follows; -1: stands still. */
   index: number;
-  frozen: number;
+  multiplier: number;
+  offset: number;
 }
 
 export class Kinematics {
@@ -66,7 +68,9 @@ export class Kinematics {
     );
     this.wrenches = new Float64Array(6 * robot.links.length);
     for (const joint of this.joints) {
-      if (joint.moves && joint.index >= 0) this.moving[joint.index] = joint.description;
+      if (joint.moves && joint.index >= 0 && joint.description.mimics === undefined) {
+        this.moving[joint.index] = joint.description;
+      }
     }
   }
 
@@ -91,7 +95,8 @@ export class Kinematics {
       const world = this.worldFromLink[joint.child];
       world.multiplyMatrices(this.worldFromLink[joint.parent], joint.origin);
       if (!joint.moves) continue;
-      const value = joint.index >= 0 ? configuration[offset + joint.index] : joint.frozen;
+      const leader = joint.index >= 0 ? configuration[offset + joint.index] : 0;
+      const value = joint.multiplier * leader + joint.offset;
       if (joint.prismatic) {
         this.motion.makeTranslation(
           joint.axis.x * value,
@@ -125,6 +130,7 @@ export class Kinematics {
   staticTorques(contacts: Contact[], torques: Float32Array): void {
     const w = this.wrenches;
     w.fill(0);
+    torques.fill(0);
     for (let i = 0; i < this.masses.length; ++i) {
       if (this.masses[i] === 0) continue;
       this.point.copy(this.coms[i]).applyMatrix4(this.worldFromLink[i]);
@@ -148,13 +154,12 @@ export class Kinematics {
         const fx = w[c],
           fy = w[c + 1],
           fz = w[c + 2];
-        torques[joint.index] = joint.prismatic
-          ? -(a.x * fx + a.y * fy + a.z * fz)
-          : -(
-              a.x * (w[c + 3] - (p.y * fz - p.z * fy)) +
-              a.y * (w[c + 4] - (p.z * fx - p.x * fz)) +
-              a.z * (w[c + 5] - (p.x * fy - p.y * fx))
-            );
+        const torque = joint.prismatic
+          ? a.x * fx + a.y * fy + a.z * fz
+          : a.x * (w[c + 3] - (p.y * fz - p.z * fy)) +
+            a.y * (w[c + 4] - (p.z * fx - p.x * fz)) +
+            a.z * (w[c + 5] - (p.x * fy - p.y * fx));
+        torques[joint.index] -= joint.multiplier * torque;
       }
       for (let k = 0; k < 6; ++k) w[6 * joint.parent + k] += w[c + k];
     }
@@ -196,6 +201,8 @@ function sortedJoints(robot: RobotDescription): Joint[] {
   for (let head = 0; head < reached.length; ++head) {
     for (const joint of waiting.get(reached[head]) ?? []) {
       const moves = joint.type !== 'fixed';
+      const leader = joint.mimics === undefined ? joint : robot.joints[joint.mimics];
+      const index = leader.index ?? -1;
       sorted.push({
         description: joint,
         parent: joint.parent,
@@ -204,8 +211,9 @@ function sortedJoints(robot: RobotDescription): Joint[] {
         axis: new Vector3().fromArray(joint.axis ?? [1, 0, 0]).normalize(),
         prismatic: joint.type === 'prismatic',
         moves,
-        index: joint.index ?? -1,
-        frozen: joint.frozen ?? 0,
+        index,
+        multiplier: index >= 0 ? (joint.multiplier ?? 1) : 0,
+        offset: index >= 0 ? (joint.offset ?? 0) : (joint.frozen ?? 0),
       });
       reached.push(joint.child);
     }

@@ -128,8 +128,8 @@ export class RobotView {
     }
   }
 
-  /** Middle and size of the robot as it stands. */
-  bounds(centre: Vector3): number {
+  /** Of the robot as it stands; a metre where it has no shape. */
+  box(): Box3 {
     this.shape.makeEmpty();
     const part = new Box3();
     const world = new Matrix4();
@@ -139,10 +139,16 @@ export class RobotView {
       this.shape.union(part.copy(mesh.geometry.boundingBox!).applyMatrix4(world));
     }
     if (this.shape.isEmpty()) {
-      centre.set(0, 0, 0.5);
-      return 1;
+      const metre = new Vector3().setScalar(Math.sqrt(1 / 3));
+      this.shape.setFromCenterAndSize(new Vector3(0, 0, 0.5), metre);
     }
-    this.shape.getCenter(centre);
-    return this.shape.getSize(new Vector3()).length();
+    return this.shape;
+  }
+
+  /** Middle and size of the robot as it stands. */
+  bounds(centre: Vector3): number {
+    const box = this.box();
+    box.getCenter(centre);
+    return box.min.distanceTo(box.max);
   }
 }

@@ -39,6 +39,10 @@ export interface JointDescription {
   effort?: number | null;
   index?: number;
   frozen?: number;
+  /** The joint that leads this one: its position is multiplier · that of the leader + offset. */
+  mimics?: number;
+  multiplier?: number;
+  offset?: number;
 }
 
 export interface RobotDescription {
@@ -203,6 +207,10 @@ function validateRobot(robot: RobotDescription): void {
   require(Array.isArray(robot.links) &&
     robot.links.length > 0, `Robot "${robot.name}" has no links.`);
   for (const joint of robot.joints ?? []) {
+    const leader = joint.mimics;
+    require(leader === undefined ||
+      robot.joints[leader] !==
+        undefined, `Joint "${joint.name}" follows joint ${leader}; the robot has ${robot.joints.length} joints.`);
     for (const end of [joint.parent, joint.child]) {
       require(Number.isInteger(end) &&
         end >= 0 &&

@@ -3,6 +3,7 @@ import { Box3, Matrix4, Object3D, Vector3 } from 'three';
 import { ContactTrack } from './contacts';
 import { ContactView } from './contact_view';
 import { Kinematics } from './kinematics';
+import { NearBox } from './near';
 import { PathView } from './path_view';
 import { Plan } from './plan';
 import { PoseGraphView } from './pose_graph_view';
@@ -33,6 +34,8 @@ export class SceneViews {
   private readonly ghostKinematics: Kinematics | null = null;
   private readonly base = new Vector3();
   private readonly centre = new Vector3();
+  private readonly standing = new Box3();
+  private readonly near = new NearBox();
 
   /** Adds all of it to the drawing, and labels of violations to the overlay. */
   constructor(scene: Scene, drawing: Object3D, overlay: HTMLElement) {
@@ -116,10 +119,34 @@ export class SceneViews {
         box.expandByPoint(point.subScalar(1));
       }
     }
-    if (!this.robot) box.expandByObject(this.voxels?.group ?? this.world.obstacles);
-    if (!this.robot) box.expandByObject(this.world.obstacles).expandByObject(this.world.surfaces);
+    if (this.robot) {
+      this.near.begin(box);
+      this.world.addTo(this.near);
+      return box.copy(this.near.box);
+    }
+    box.expandByObject(this.voxels?.group ?? this.world.obstacles);
+    box.expandByObject(this.world.obstacles).expandByObject(this.world.surfaces);
     if (box.isEmpty()) box.set(new Vector3(-1, -1, 0), new Vector3(1, 1, 1));
     return box;
+  }
+
+  /** From now on nearBox() takes the robot to be as large as it is now. */
+  measureRobot(): void {
+    if (!this.robot) return;
+    this.standing.copy(this.robot.box()).translate(this.centre.copy(this.base).negate());
+  }
+
+  /** The robot at the time shown. */
+  robotBox(): Box3 {
+    return this.near.box.copy(this.standing).translate(this.base);
+  }
+
+  /** The same with what is near it. */
+  nearBox(): Box3 {
+    this.near.begin(this.robotBox());
+    this.world.addTo(this.near);
+    this.voxels?.addTo(this.near, this.near.box.min.z + 0.02);
+    return this.near.box;
   }
 
   applyTheme(theme: Theme): void {

@@ -39,9 +39,10 @@ const COMMON = {
 export const THEMES: Record<ThemeName, Theme> = {
   light: {
     ...COMMON,
-    background: 0xe9edf2,
-    grid: 0x8a97a6,
-    ground: 0xf7f9fb,
+    // Neither white nor dark: robots are often one of the two.
+    background: 0xc3ced9,
+    grid: 0x66727f,
+    ground: 0xb4c0cb,
     shadow: 0x1b2633,
     sky: 0xffffff,
     rest: 0x3b7ddd,

@@ -12,6 +12,7 @@ import {
   MeshLambertMaterial,
   Vector3,
 } from 'three';
+import { NearBox } from './near';
 import { unpackFloats } from './scene_format';
 import { HEIGHT_COLOURS } from './theme';
 
@@ -30,8 +31,13 @@ export class VoxelView {
   readonly lowest: number;
   readonly highest: number;
 
+  private readonly voxels: Float32Array;
+  private readonly lower = new Vector3();
+  private readonly upper = new Vector3();
+
   constructor(packed: string, resolution: number | undefined) {
     const voxels = unpackFloats(packed, 4, 'the map');
+    this.voxels = voxels;
     this.count = voxels.length / 4;
     let lowest = Infinity;
     let highest = -Infinity;
@@ -48,6 +54,18 @@ export class VoxelView {
     const mesh = new Mesh(faceGeometry(voxels, grid), heightMaterial(this.lowest, this.highest));
     mesh.receiveShadow = true;
     this.group.add(mesh);
+  }
+
+  /** Adds the voxels above a height: the floor is everywhere. */
+  addTo(near: NearBox, above: number): void {
+    const { voxels, lower, upper } = this;
+    for (let i = 0; i < voxels.length; i += 4) {
+      const half = 0.5 * voxels[i + 3];
+      if (voxels[i + 2] - half < above) continue;
+      lower.set(voxels[i] - half, voxels[i + 1] - half, voxels[i + 2] - half);
+      upper.set(voxels[i] + half, voxels[i + 1] + half, voxels[i + 2] + half);
+      near.add(lower, upper);
+    }
   }
 }
 

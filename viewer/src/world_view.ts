@@ -1,5 +1,6 @@
 /** Surfaces and obstacles; obstacles with key frames move with the plan's time. */
 import {
+  Box3,
   BoxGeometry,
   BufferGeometry,
   DoubleSide,
@@ -14,6 +15,7 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
+import { NearBox } from './near';
 import { ObstacleDescription, Pose, SurfaceDescription } from './scene_format';
 import { cylinderAlongZ } from './shapes';
 import { Theme } from './theme';
@@ -49,6 +51,7 @@ export class WorldView {
   readonly obstacles = new Group();
   readonly surfaces = new Group();
   private readonly moving: MovingObstacle[] = [];
+  private readonly shape = new Box3();
   private readonly resting = new MeshLambertMaterial();
   private readonly mobile = new MeshLambertMaterial();
   private readonly plane = new MeshLambertMaterial({
@@ -103,6 +106,14 @@ export class WorldView {
     this.mobile.color.set(theme.moving);
     this.plane.color.set(theme.surface);
     this.edges.color.set(theme.grid);
+  }
+
+  /** Adds the obstacles where they are now. */
+  addTo(near: NearBox): void {
+    for (const object of this.obstacles.children) {
+      this.shape.setFromObject(object);
+      near.add(this.shape.min, this.shape.max);
+    }
   }
 
   update(time: number): void {

@@ -88,6 +88,47 @@ export function robot(perLeg = 3) {
   return { name: 'testbot', floating_base: true, links, joints, meshes: [] };
 }
 
+/** Three arms of 1 m, at the joint's position q, at 0.2 - 2 q, and at rest; one a second. */
+export function mimicScene(positions) {
+  const arm = (name) => ({
+    name,
+    mass: 1,
+    com: [1, 0, 0],
+    visual: [{ type: 'sphere', pose: pose(1), radius: 0.1 }],
+  });
+  const joint = (name, child, more) => ({
+    name,
+    type: 'revolute',
+    parent: 0,
+    child,
+    origin: pose(),
+    axis: [0, 0, 1],
+    index: -1,
+    frozen: 0,
+    ...more,
+  });
+  return {
+    version: 1,
+    kind: 'plan',
+    title: 'mimic',
+    robot: {
+      name: 'mimic',
+      links: [{ name: 'base', mass: 0 }, arm('one'), arm('two'), arm('three'), { name: 'held' }],
+      joints: [
+        joint('second', 2, { mimics: 1, multiplier: -2, offset: 0.2 }),
+        joint('first', 1, { index: 0 }),
+        joint('held', 4, { frozen: 0.3 }),
+        joint('third', 3, { mimics: 2, multiplier: 2, frozen: 0.6 }),
+      ],
+    },
+    plan: {
+      times: positions.map((_, i) => i),
+      configurations: pack(positions),
+      configuration_size: 1,
+    },
+  };
+}
+
 /** Drives straight on; legs stay, wheels roll; base at x = SPEED t. */
 export function planScene({ count = 41, step = 0.5, perLeg = 3, voxels = 300 } = {}) {
   const model = robot(perLeg);
@@ -192,6 +233,15 @@ export function planScene({ count = 41, step = 0.5, perLeg = 3, voxels = 300 } =
       ],
     },
   };
+}
+
+/** Ten metres in 40 s, past an orange box that stands beside the way after five metres. */
+export function farScene() {
+  const { map, surfaces, check, ...scene } = planScene({ step: 1 });
+  const place = pose(5, -0.9, 0.15);
+  const keyframes = [{ time: 20, pose: place }];
+  scene.obstacles = [{ name: 'cart', type: 'box', size: [0.3, 0.3, 0.3], pose: place, keyframes }];
+  return scene;
 }
 
 /** Cubes of 5 cm: a wall two cubes thick along y = 2. */

@@ -6,6 +6,8 @@ import { Browser, CHROMIUM, difference, share } from './browser.mjs';
 import { serveLive } from './live_server.mjs';
 import {
   BASE_HEIGHT,
+  farScene,
+  mimicScene,
   page as pageText,
   planScene,
   SPEED,
@@ -19,6 +21,7 @@ if (!CHROMIUM) {
 }
 
 const blue = (r, g, b) => b > 90 && b > r + 45 && b > g + 20;
+const orange = (r, g, b) => r > 120 && r > g + 40 && g > b + 20;
 const red = (r, g, b) => r > 170 && g < 110 && b < 110;
 
 describe('viewer', () => {
@@ -72,6 +75,38 @@ describe('viewer', () => {
       },
     ));
 
+  it('keeps what is near the robot in the picture, and narrows when it has passed', () =>
+    shown(
+      farScene(),
+      { hash: '#t=0&ui=0&hide=contacts,forces,com,base,dots,reference' },
+      async ({ page }) => {
+        const alone = share(await browser.pixels(page), [0, 0, 1, 1], blue);
+        await page.evaluate(() => window.locograph.setTime(20));
+        const picture = await browser.pixels(page);
+        // The whole box: some of it inside, nothing of it on the rim.
+        assert.ok(share(picture, [0, 0, 1, 1], orange) > 0.002);
+        for (const rim of [
+          [0, 0, 0.01, 1],
+          [0.99, 0, 1, 1],
+          [0, 0, 1, 0.01],
+          [0, 0.99, 1, 1],
+        ]) {
+          assert.equal(share(picture, rim, orange), 0);
+        }
+        assert.ok(share(picture, [0, 0, 1, 1], blue) < 0.9 * alone);
+        await page.evaluate(() => window.locograph.setTime(40));
+        const after = share(await browser.pixels(page), [0, 0, 1, 1], blue);
+        assert.ok(Math.abs(after - alone) < 0.1 * alone);
+      },
+    ));
+
+  it('shows a white robot and a black one before a background that is neither', () =>
+    shown(planScene(), { hash: '#t=5&view=side&ui=0&theme=light' }, async ({ page }) => {
+      const picture = await browser.pixels(page);
+      const grey = (r, g, b) => Math.min(r, g, b) > 110 && Math.max(r, g, b) < 225;
+      assert.ok(share(picture, [0, 0, 0.2, 1], grey) > 0.95);
+    }));
+
   it('puts the base where the plan has it, also between configurations', () =>
     shown(planScene(), {}, async ({ page }) => {
       for (const time of [0, 1.3, 7.77, 20]) {
@@ -85,6 +120,26 @@ describe('viewer', () => {
         assert.ok(Math.abs(centreOfMass[0] - SPEED * time) < 1e-5);
         assert.ok(Math.abs(centreOfMass[1]) < 1e-6);
         assert.ok(centreOfMass[2] < BASE_HEIGHT - 0.05);
+      }
+    }));
+
+  it('moves mimic joints with the joint that leads them', () =>
+    shown(mimicScene([0, 0.4, 0.8]), {}, async ({ page }) => {
+      const at = (t) =>
+        page.evaluate((time) => {
+          window.locograph.setTime(time);
+          return window.locograph.state().centreOfMass;
+        }, t);
+      for (const [time, q] of [
+        [0, 0],
+        [1, 0.4],
+        [1.5, 0.6],
+      ]) {
+        const [x, y] = await at(time);
+        // The second arm turns by 0.2 - 2 q; the third one follows a joint that stands at 0.3.
+        const arms = [q, 0.2 - 2 * q, 0.6];
+        assert.ok(Math.abs(x - arms.reduce((sum, a) => sum + Math.cos(a), 0) / 3) < 1e-5);
+        assert.ok(Math.abs(y - arms.reduce((sum, a) => sum + Math.sin(a), 0) / 3) < 1e-5);
       }
     }));
 

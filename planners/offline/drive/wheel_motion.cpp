@@ -33,7 +33,7 @@ bool WheelMotion::steer(Eigen::VectorXd& q, int number, const Eigen::Vector3d& d
   const int above = robot_.links()[static_cast<std::size_t>(carrier)].parent_joint;
   const int active = above < 0 ? -1 : robot_.joints()[static_cast<std::size_t>(above)].index;
   if (active < 0) return std::min(std::abs(turn), std::abs(other)) < 1e-9;
-  const double upright = state_.joint_axis(active).dot(normal);
+  const double upright = state_.joint_axis(robot_.axes_of(active).front()).dot(normal);
   if (std::abs(upright) < kUpright) return false;
   const Joint& limits = robot_.active_joint(active);
   double& joint = q[robot_.base_configuration_size() + active];

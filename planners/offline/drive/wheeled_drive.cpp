@@ -41,9 +41,12 @@ class WheeledDrive {
     steer();
   }
 
-  std::vector<Eigen::VectorXd> configurations() {
+  /// As far as the job lets it.
+  std::vector<Eigen::VectorXd> configurations(const JobControl& job) {
     std::vector<Eigen::VectorXd> all;
+    const std::size_t count = static_cast<std::size_t>(drive_.configurations);
     for (int i = 0; i < drive_.configurations; ++i) {
+      if (!job.go_on("rolling", all.size(), count)) break;
       const double distance = drive_.distance_m * i / (drive_.configurations - 1);
       const PathPoint at = path_point(drive_, distance);
       Eigen::VectorXd q = stand_;
@@ -94,6 +97,10 @@ class WheeledDrive {
 }  // namespace
 
 Graph plan_wheeled_drive(const Scenario& scenario) {
+  return *plan_wheeled_drive(scenario, JobControl());
+}
+
+std::optional<Graph> plan_wheeled_drive(const Scenario& scenario, const JobControl& job) {
   if (!scenario.drive) throw Error(scenario.source, 0, "the scenario has no drive", "<drive …/>");
   Graph graph;
   const auto robot =
@@ -110,12 +117,13 @@ Graph plan_wheeled_drive(const Scenario& scenario) {
   motion.stances = {all_wheels(scenario)};
   require_sound_stance(*robot->robot, motion.stances.front());
   motion.configurations =
-      WheeledDrive(scenario, *robot->robot, motion.stances.front()).configurations();
+      WheeledDrive(scenario, *robot->robot, motion.stances.front()).configurations(job);
+  if (motion.configurations.size() < static_cast<std::size_t>(drive.configurations)) return {};
   for (int i = 0; i < drive.configurations; ++i) {
     motion.time_s.push_back(drive.distance_m / drive.speed_m_s * i / (drive.configurations - 1));
     motion.stance_from.push_back(0);
   }
-  add_wheeled_plan(graph, motion);
+  if (!add_wheeled_plan(graph, motion, {}, job)) return {};
   return graph;
 }
 

@@ -11,13 +11,18 @@
 /// above the origin, heading +x, wheels already steered into the arc. Its one stance is that of all
 /// wheels on the ground.
 
+#include <locograph/common/job_control.h>
 #include <locograph/core/graph.h>
 #include <locograph/planners/scenario/scenario.h>
+
+#include <optional>
 
 namespace locograph {
 
 /// Throws Error when the scenario has no drive, when its wheels do not stand on one level in the
 /// start state, or when a wheel cannot be steered.
 Graph plan_wheeled_drive(const Scenario& scenario);
+/// Nothing when the job ends before the plan is whole.
+std::optional<Graph> plan_wheeled_drive(const Scenario& scenario, const JobControl& job);
 
 }  // namespace locograph

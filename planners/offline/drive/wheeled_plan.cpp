@@ -72,14 +72,16 @@ std::optional<EdgeVelocityLimits> step_limit(const Robot& robot, const Eigen::Ve
   return edge;
 }
 
-/// Keeps links apart that are apart in every one of the configurations.
+/// Keeps links apart that are apart in every one of the configurations that the job lets it see.
 EdgeSelfCollision self_collision_edge(const std::shared_ptr<const RobotParameter>& robot,
                                       const std::vector<Eigen::VectorXd>& configurations,
-                                      double margin_m, double weight) {
+                                      double margin_m, double weight, const JobControl& job) {
   EdgeSelfCollision edge(*robot, margin_m, weight);
   Eigen::VectorXd lack(edge.weights.size());
   ConfigurationState state(robot);
+  std::size_t seen = 0;
   for (const Eigen::VectorXd& q : configurations) {
+    if (!job.go_on("comparing links", seen++, configurations.size())) break;
     state.update(q.data());
     edge.error(state, lack);
     for (Eigen::Index p = 0; p < lack.size(); ++p) {
@@ -91,7 +93,8 @@ EdgeSelfCollision self_collision_edge(const std::shared_ptr<const RobotParameter
 
 }  // namespace
 
-void add_wheeled_plan(Graph& graph, const Motion& motion, const PlanEdgeOptions& options) {
+bool add_wheeled_plan(Graph& graph, const Motion& motion, const PlanEdgeOptions& options,
+                      const JobControl& job) {
   const auto robot = graph.parameters().get<RobotParameter>(kRobotNumber);
   const Robot& model = *robot->robot;
   const std::vector<int> numbers = add_stances(graph, robot, motion.stances);
@@ -122,6 +125,7 @@ void add_wheeled_plan(Graph& graph, const Motion& motion, const PlanEdgeOptions&
   const std::vector<Eigen::VectorXd>& configurations = motion.configurations;
   std::vector<VertexId<VertexConfiguration>> ids;
   for (std::size_t i = 0; i < configurations.size(); ++i) {
+    if (!job.go_on("placing configurations", i, configurations.size())) return false;
     ids.push_back(graph.add_vertex(static_cast<int>(i),
                                    VertexConfiguration(kRobotNumber, robot, motion.time_s[i],
                                                        configurations[i], number_from[i])));
@@ -130,9 +134,10 @@ void add_wheeled_plan(Graph& graph, const Motion& motion, const PlanEdgeOptions&
   Eigen::VectorXd goal = track;
   goal[0] = goal[1] = goal[5] = options.track_goal;
   const EdgeSelfCollision apart =
-      self_collision_edge(robot, configurations, options.self_margin_m, options.limit_weight);
+      self_collision_edge(robot, configurations, options.self_margin_m, options.limit_weight, job);
   Eigen::VectorXd step(model.tangent_size());
   for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (!job.go_on("adding constraints", i, ids.size())) return false;
     graph.add_edge(EdgePlanTracking(configurations[i], i + 1 < ids.size() ? track : goal), ids[i]);
     graph.add_edge(EdgeJointLimits(model, options.joint_margin_rad, options.limit_weight), ids[i]);
     for (const int number : contacts_at(from, i)) {
@@ -171,6 +176,7 @@ void add_wheeled_plan(Graph& graph, const Motion& motion, const PlanEdgeOptions&
                                           options.acceleration_weight),
                    ids[i - 2], ids[i - 1], ids[i]);
   }
+  return true;
 }
 
 }  // namespace locograph

@@ -6,6 +6,7 @@
 ///     add_wheeled_plan(graph, motion);
 
 #include <locograph/check/motion.h>
+#include <locograph/common/job_control.h>
 #include <locograph/core/graph.h>
 
 namespace locograph {
@@ -46,7 +47,9 @@ struct PlanEdgeOptions {
 /// kRobotNumber and kWorldNumber (plan.h) must be set. Pairs of links that the shapes of
 /// EDGE_SELF_COLLISION see too near to each other in the motion already have no weight there.
 /// Joints that steer (a carrier of a wheel turns about them) and wheels are not tracked: rolling
-/// decides them. Throws Error for a motion whose stances are not known everywhere.
-void add_wheeled_plan(Graph& graph, const Motion& motion, const PlanEdgeOptions& options = {});
+/// decides them. Throws Error for a motion whose stances are not known everywhere. Returns false
+/// when the job ended before the plan was whole.
+bool add_wheeled_plan(Graph& graph, const Motion& motion, const PlanEdgeOptions& options = {},
+                      const JobControl& job = {});
 
 }  // namespace locograph

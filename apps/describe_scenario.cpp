@@ -1,0 +1,87 @@
+#include <locograph/apps/describe.h>
+#include <locograph/common/data_folder.h>
+#include <locograph/planners/posture/contacts_file.h>
+#include <locograph/planners/scenario/scenario.h>
+
+namespace locograph {
+namespace {
+
+Json direction_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+/// What it can bear, and where it is on the robot.
+Json effector_json(const EndEffector& effector) {
+  Json json = {{"name", effector.name.empty() ? effector.link : effector.name},
+               {"link", effector.link},
+               {"touches_as", contact_kind_name(effector.kind)}};
+  if (effector.kind == ContactKind::kSurface) {
+    json["half_x_m"] = effector.half_x_m;
+    json["half_y_m"] = effector.half_y_m;
+  }
+  if (effector.radius_m > 0.0) json["radius_m"] = effector.radius_m;
+  if (effector.kind == ContactKind::kRung) {
+    json["max_moment_Nm"] = effector.max_moment_Nm;
+  } else {
+    json["friction"] = effector.friction;
+  }
+  json["max_force_N"] = effector.max_force_N;
+  return json;
+}
+
+Json drive_json(const DriveTask& drive) {
+  return {{"distance_m", drive.distance_m},
+          {"curvature_1_m", drive.curvature_1_m},
+          {"speed_m_s", drive.speed_m_s},
+          {"configurations", drive.configurations}};
+}
+
+/// The file, null if none is named; what is not there is added to missing.
+Json file_json(const std::filesystem::path& file, Json& missing) {
+  if (file.empty()) return nullptr;
+  if (!std::filesystem::exists(file)) missing.push_back(file.string());
+  return file.string();
+}
+
+}  // namespace
+
+Json describe_scenario(const std::filesystem::path& path) {
+  const Scenario scenario = load_scenario(path.string(), data_folder());
+  Json missing = Json::array(), effectors = Json::array();
+  for (const EndEffector& effector : scenario.end_effectors) {
+    effectors.push_back(effector_json(effector));
+  }
+  Json json = {{"file", path.string()},
+               {"kind", "scenario"},
+               {"name", scenario.name},
+               {"task", scenario.drive ? "drive" : "contacts"}};
+  if (scenario.drive) json["drive"] = drive_json(*scenario.drive);
+  json["robot"] = {{"urdf", file_json(scenario.urdf, missing)},
+                   {"srdf", file_json(scenario.srdf, missing)},
+                   {"state", scenario.start_state}};
+  json["end_effectors"] = std::move(effectors);
+  json["limits"] = {{"base_linear_m_s", scenario.limits.base_linear_m_s},
+                    {"base_angular_rad_s", scenario.limits.base_angular_rad_s},
+                    {"joint_acceleration_rad_s2", scenario.limits.joint_acceleration_rad_s2}};
+  json["torque_limits"] = scenario.enforce_torque_limits ? "enforce" : "report";
+  json["map"] = file_json(scenario.map, missing);
+  json["obstacles"] = file_json(scenario.obstacles, missing);
+  json["missing_files"] = std::move(missing);
+  return json;
+}
+
+Json describe_contacts(const std::filesystem::path& path) {
+  Json contacts = Json::array();
+  for (const Contact& contact : load_contacts(path).contacts) {
+    Json json = effector_json(contact.effector);
+    json["position_m"] = direction_json(contact.position);
+    json["normal"] = direction_json(contact.normal);
+    json["forward"] = contact.forward ? direction_json(*contact.forward) : Json(nullptr);
+    json["bears_load"] = contact.bears_load;
+    contacts.push_back(std::move(json));
+  }
+  return {{"file", path.string()},
+          {"kind", "contacts"},
+          {"count", contacts.size()},
+          {"contacts", std::move(contacts)}};
+}
+
+}  // namespace locograph

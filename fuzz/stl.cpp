@@ -1,0 +1,12 @@
+// Meshes.
+
+#include <locograph/robots/stl_file.h>
+
+#include "fuzz_target.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static locograph::MemoryFile file;
+  file.assign(data, size);
+  locograph::accept_or_refuse(file.path().string(), [] { locograph::stl_triangles(file.path()); });
+  return 0;
+}

@@ -1,0 +1,12 @@
+// Robot descriptions, up to the robot that they make.
+
+#include <locograph/robots/robot.h>
+
+#include "fuzz_target.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static locograph::MemoryFile file;
+  file.assign(data, size);
+  locograph::accept_or_refuse(file.path().string(), [] { locograph::Robot::load(file.path()); });
+  return 0;
+}

@@ -1,0 +1,101 @@
+#include <apps/command_runner.h>
+#include <locograph/apps/progress.h>
+
+namespace locograph {
+namespace {
+
+TEST(Manners, AMistypedCommandIsAnsweredWithTheOneThatIsMeant) {
+  const CommandRunner runner;
+  expect_refusal(runner.run("optmize a.g2o"), "", "did you mean 'optimize'?");
+  expect_refusal(runner.run("optmize a.g2o"), "", "unknown command 'optmize'");
+  expect_refusal(runner.run("inof a.g2o"), "", "did you mean 'info'?");
+  expect_refusal(runner.run("dance"), "", "expected one of optimize, plan");
+  EXPECT_EQ(runner.run("dance").err.find("did you mean"), std::string::npos);
+}
+
+TEST(Manners, AMistypedOptionIsAnsweredWithTheOneThatIsMeant) {
+  const CommandRunner runner;
+  expect_refusal(runner.run("optimize a.g2o --itertions 3"), "", "did you mean '--iterations'?");
+  expect_refusal(runner.run("plan centauro_drive --ouput=p.g2o"), "", "did you mean '--output'?");
+  expect_refusal(runner.run("check p.g2o --torque_limits report"), "",
+                 "did you mean '--torque-limits'?");
+  expect_refusal(runner.run("info a.g2o b.g2o"), "", "unexpected 'b.g2o'");
+}
+
+TEST(Manners, AMistypedNameIsAnsweredWithTheOneThatIsMeant) {
+  const CommandRunner runner;
+  runner.write("a.g2o", "VERTEX_XY 0 0 0\nVERTEX_XY 1 0 0\nEDGE_POINTXY 0 1 1 0 1 0 1\n");
+  const auto answered = [&runner](const std::string& arguments, const std::string& place,
+                                  const std::string& name) {
+    expect_refusal(runner.run(arguments), place, "did you mean '" + name + "'?");
+  };
+  answered("optimize a.g2o --linear-solver shcur", "", "schur");
+  answered("optimize a.g2o --kernel hubre:2", "", "huber");
+  answered("optimize a.g2o --algorithm dogelg", "", "dogleg");
+  answered("optimize a.g2o --initial-guess spaning-tree", "", "spanning-tree");
+  answered("posture centuaro --contacts c.xml", "centuaro", "centauro");
+  answered("plan centauro_drvie -o p.g2o", "centauro_drvie", "centauro_drive");
+  answered("list solver", "", "solvers");
+  runner.write("s.xml",
+               "<scenario version=\"1\" name=\"s\">\n<robot model=\"centaur\"/>\n</scenario>");
+  answered("plan s.xml -o p.g2o", "s.xml:2", "centauro");
+}
+
+TEST(Manners, AnUnknownTagIsAnsweredWithTheOptionsThatHelp) {
+  const CommandRunner runner;
+  runner.write("a.g2o", "VERTEX_SE9 0 0 0\n");
+  expect_refusal(runner.run("optimize a.g2o"), "a.g2o:1", "--plugin LIB.so loads more types");
+  expect_refusal(runner.run("optimize a.g2o"), "a.g2o:1", "--lenient leaves out unknown lines");
+  // Only options that the command has.
+  expect_refusal(runner.run("check a.g2o"), "a.g2o:1", "--plugin");
+  EXPECT_EQ(runner.run("check a.g2o").err.find("--lenient"), std::string::npos);
+}
+
+TEST(Manners, QuietLeavesOutWarnings) {
+  const CommandRunner runner;
+  runner.write("a.g2o",
+               "VERTEX_XY 0 0 0\nVERTEX_XY 1 0 0\nFIX 0\nEDGE_POINTXY 0 1 1 0 1 0 1\nUNKNOWN 3\n");
+  EXPECT_NE(runner.run("optimize a.g2o --lenient").err, "");
+  const Outcome quiet = runner.run("optimize a.g2o --lenient --quiet");
+  EXPECT_EQ(quiet.exit_code, 0);
+  EXPECT_EQ(quiet.err, "");
+  EXPECT_NE(quiet.out, "");
+}
+
+TEST(Progress, TellsTheShareThatIsDoneAndTheTimeToGo) {
+  EXPECT_EQ(progress_line("reading a.g2o", 3.0, 0.25, ""),
+            "reading a.g2o [#####---------------] 25 %, 9 s to go");
+  EXPECT_EQ(progress_line("refining", 3.0, 0.5, "step 4"),
+            "refining [##########----------] 50 %, 3 s to go, step 4");
+  EXPECT_EQ(progress_line("refining", 600.0, 0.5, ""),
+            "refining [##########----------] 50 %, 10 min to go");
+  EXPECT_EQ(progress_line("refining", 4.0, 0.0, ""), "refining [--------------------] 0 %");
+}
+
+TEST(Progress, WithoutAShareTellsTheTimeThatHasPassed) {
+  EXPECT_EQ(progress_line("checking p.g2o", 4.0, {}, ""), "checking p.g2o, 4 s");
+  EXPECT_EQ(progress_line("optimising", 4.0, {}, "iteration 7"), "optimising, 4 s, iteration 7");
+}
+
+/// What a terminal shows while the command waits for its input.
+std::string on_a_terminal(const CommandRunner& runner, const std::string& arguments) {
+  runner.write("a.g2o", "VERTEX_XY 0 0 0\nVERTEX_XY 1 0 0\nFIX 0\nEDGE_POINTXY 0 1 1 0 1 0 1\n");
+  const std::string line = "cd '" + runner.folder().string() +
+                           "' && script -qec \"(sleep 2; cat a.g2o) | '" LOCOGRAPH_COMMAND "' " +
+                           arguments + "\" /dev/null >seen </dev/null";
+  EXPECT_EQ(std::system(line.c_str()), 0);
+  return runner.read("seen");
+}
+
+TEST(Progress, IsShownOnATerminalAndErasedInTheEnd) {
+  if (std::system("command -v script >/dev/null") != 0) GTEST_SKIP() << "no script (bsdutils)";
+  const CommandRunner runner;
+  const std::string seen = on_a_terminal(runner, "optimize -");
+  const std::size_t shown = seen.find("\r\033[Kreading stdin");
+  ASSERT_NE(shown, std::string::npos) << seen;
+  EXPECT_NE(seen.find("\r\033[K", seen.rfind("reading stdin")), std::string::npos) << seen;
+  EXPECT_EQ(on_a_terminal(runner, "optimize - --quiet").find("reading"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace locograph

@@ -1,0 +1,111 @@
+// Which pairs of links meet in random postures.
+#include <gtest/gtest.h>
+#include <locograph/world/link_pairs.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "common/temporary_folder.h"
+
+namespace locograph::test {
+namespace {
+
+constexpr int kPostures = 4000;
+
+/// A ball that swings round the base on an arm of 0.5 m, through a second one, inside of a third
+/// one, which hangs on it.
+class SwingingBall : public testing::Test {
+ protected:
+  SwingingBall() {
+    const auto ball = [](const std::string& link, const std::string& centre) {
+      return "<link name='" + link + "'><collision><origin xyz='" + centre +
+             "'/><geometry><sphere radius='0.1'/></geometry></collision></link>";
+    };
+    const auto joint = [](const std::string& child, const std::string& parent,
+                          const std::string& origin) {
+      return "<joint name='turn_" + child + "' type='continuous'><parent link='" + parent +
+             "'/><child link='" + child + "'/><origin xyz='" + origin +
+             "'/><axis xyz='0 0 1'/></joint>";
+    };
+    const std::filesystem::path urdf = folder.write(
+        "balls.urdf", "<robot name='balls'>" + ball("base", "0 0 0") + ball("swing", "0.5 0 0") +
+                          ball("post", "0 0 0") + ball("shell", "0 0 0.02") +
+                          joint("swing", "base", "0 0 0") + joint("post", "base", "0.5 0 0") +
+                          joint("shell", "swing", "0.5 0 0") + "</robot>");
+    const std::filesystem::path srdf =
+        folder.write("balls.srdf",
+                     "<robot name='balls'><disable_collisions link1='swing' link2='post'/>"
+                     "<disable_collisions link1='base' link2='shell'/></robot>");
+    robot = std::make_unique<Robot>(Robot::load(urdf, srdf));
+  }
+
+  LinkPair pair(const LinkPairs& found, const std::string& one, const std::string& other) const {
+    const auto [first, second] = std::minmax({robot->link_index(one), robot->link_index(other)});
+    for (const LinkPair& pair : found.pairs) {
+      if (pair.first == first && pair.second == second) return pair;
+    }
+    ADD_FAILURE() << "no pair " << one << ", " << other;
+    return {};
+  }
+
+  TemporaryFolder folder;
+  std::unique_ptr<Robot> robot;
+};
+
+TEST_F(SwingingBall, MeetsTheSecondOneAsOftenAsItsAngleSays) {
+  const LinkPairs found = sample_link_pairs(*robot, {.samples = kPostures, .seed = 3});
+  EXPECT_EQ(found.pairs.size(), 6u);
+  const LinkPair met = pair(found, "swing", "post");
+  // Nearer than two radii: 2 * 0.5 m * sin(angle / 2) < 0.2 m, on either side.
+  const double expected = 2.0 * std::asin(0.2) / std::numbers::pi;
+  EXPECT_NEAR(static_cast<double>(met.meets) / kPostures, expected, 0.02);
+  EXPECT_FALSE(met.on);
+  EXPECT_FALSE(met.adjacent);
+  EXPECT_FALSE(met.may_be_off(kPostures));
+}
+
+TEST_F(SwingingBall, MayIgnoreWhatItNeverMeetsAlwaysMeetsOrHangsOn) {
+  const LinkPairs found = sample_link_pairs(*robot, {.samples = kPostures, .seed = 3});
+  const LinkPair never = pair(found, "base", "shell"), always = pair(found, "swing", "shell");
+  EXPECT_EQ(never.meets, 0);
+  EXPECT_FALSE(never.on);
+  EXPECT_TRUE(never.may_be_off(kPostures));
+  EXPECT_EQ(always.meets, kPostures);
+  EXPECT_TRUE(always.on);
+  EXPECT_TRUE(always.always_meets(kPostures));
+  EXPECT_TRUE(pair(found, "base", "swing").adjacent);
+  EXPECT_TRUE(pair(found, "base", "post").adjacent);
+}
+
+TEST_F(SwingingBall, IsSeenTheSameByAnyNumberOfThreads) {
+  const LinkPairs one = sample_link_pairs(*robot, {.samples = 777, .seed = 5, .threads = 1});
+  const LinkPairs three = sample_link_pairs(*robot, {.samples = 777, .seed = 5, .threads = 3});
+  const LinkPairs other = sample_link_pairs(*robot, {.samples = 777, .seed = 6, .threads = 3});
+  int differences = 0;
+  for (std::size_t p = 0; p < one.pairs.size(); ++p) {
+    EXPECT_EQ(one.pairs[p].meets, three.pairs[p].meets);
+    differences += one.pairs[p].meets == other.pairs[p].meets ? 0 : 1;
+  }
+  EXPECT_GT(differences, 0);
+}
+
+class ShippedRobots : public testing::TestWithParam<const char*> {};
+
+TEST_P(ShippedRobots, LeaveOutOnlyPairsThatCannotMeetOrAlwaysDo) {
+  const std::filesystem::path folder =
+      std::filesystem::path(LOCOGRAPH_SOURCE_DIR) / "robots/models" / GetParam();
+  const std::string name = GetParam();
+  const Robot robot = Robot::load(folder / (name + ".urdf"), folder / (name + ".srdf"));
+  const LinkPairs found = sample_link_pairs(robot, {.samples = 1000, .seed = 1, .threads = 2});
+  for (const LinkPair& pair : found.pairs) {
+    EXPECT_TRUE(pair.on || pair.may_be_off(found.samples))
+        << robot.links()[static_cast<std::size_t>(pair.first)].name << " and "
+        << robot.links()[static_cast<std::size_t>(pair.second)].name << " meet in " << pair.meets;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedRobots, testing::Values("centauro"),
+                         [](const auto& info) { return std::string(info.param); });
+
+}  // namespace
+}  // namespace locograph::test

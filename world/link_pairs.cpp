@@ -1,0 +1,131 @@
+#include <locograph/common/error.h>
+#include <locograph/common/thread_pool.h>
+#include <locograph/common/uniform.h>
+#include <locograph/robots/kinematic_tree.h>
+#include <locograph/robots/robot_state.h>
+#include <locograph/world/link_pairs.h>
+#include <locograph/world/link_solid.h>
+
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <numbers>
+#include <random>
+#include <set>
+
+namespace locograph {
+namespace {
+
+constexpr int kSamplesPerChunk = 50;
+
+struct PlacedSolid {
+  ConvexShape shape;
+  Eigen::Isometry3d link_from_shape;
+};
+
+/// Whether one joint that moves is between the links, and otherwise only fixed joints of links that
+/// have no shapes.
+bool are_adjacent(const Robot& robot, int first, int second) {
+  for (const auto& [above, below] : {std::pair(first, second), std::pair(second, first)}) {
+    int moving = 0;
+    for (int link = below; link != above;) {
+      const int joint = robot.links()[static_cast<std::size_t>(link)].parent_joint;
+      if (joint < 0) break;
+      const Joint& between = robot.joints()[static_cast<std::size_t>(joint)];
+      moving += between.type == JointType::kFixed ? 0 : 1;
+      link = between.parent_link;
+      if (link == above) {
+        if (moving == 1) return true;
+      } else if (!robot.links()[static_cast<std::size_t>(link)].collision.empty()) {
+        break;
+      }
+    }
+  }
+  return false;
+}
+
+std::vector<LinkPair> movable_pairs(const Robot& robot) {
+  const std::set<std::pair<int, int>> on(robot.self_collision_pairs().begin(),
+                                         robot.self_collision_pairs().end());
+  const std::vector<int>& body_of = robot.tree().body_of_link;
+  std::vector<LinkPair> pairs;
+  const int links = static_cast<int>(robot.links().size());
+  for (int a = 0; a < links; ++a) {
+    if (robot.links()[static_cast<std::size_t>(a)].collision.empty()) continue;
+    for (int b = a + 1; b < links; ++b) {
+      if (robot.links()[static_cast<std::size_t>(b)].collision.empty()) continue;
+      if (body_of[static_cast<std::size_t>(a)] == body_of[static_cast<std::size_t>(b)]) continue;
+      pairs.push_back({a, b, on.contains({a, b}), are_adjacent(robot, a, b), 0});
+    }
+  }
+  return pairs;
+}
+
+Eigen::VectorXd random_posture(const Robot& robot, std::mt19937_64& random) {
+  Eigen::VectorXd q = robot.neutral_configuration();
+  for (int i = 0; i < robot.active_joint_count(); ++i) {
+    const Joint& joint = robot.active_joint(i);
+    const bool turns = joint.type == JointType::kContinuous;
+    q[robot.base_configuration_size() + i] = uniform(
+        random, turns ? -std::numbers::pi : joint.lower, turns ? std::numbers::pi : joint.upper);
+  }
+  return q;
+}
+
+bool meet(const std::vector<PlacedSolid>& first, const Eigen::Isometry3d& world_from_first,
+          const std::vector<PlacedSolid>& second, const Eigen::Isometry3d& world_from_second) {
+  for (const PlacedSolid& a : first) {
+    const Eigen::Isometry3d world_from_a = world_from_first * a.link_from_shape;
+    const Eigen::Vector3d centre = world_from_a * a.shape.center();
+    for (const PlacedSolid& b : second) {
+      const Eigen::Isometry3d world_from_b = world_from_second * b.link_from_shape;
+      const double reach = a.shape.bounding_radius() + b.shape.bounding_radius();
+      if ((world_from_b * b.shape.center() - centre).squaredNorm() >= reach * reach) continue;
+      if (shape_distance(a.shape, world_from_a, b.shape, world_from_b).distance < 0.0) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+LinkPairs sample_link_pairs(const Robot& robot, const LinkPairOptions& options) {
+  if (options.samples < 1) {
+    throw Error(std::to_string(options.samples) + " samples", "one or more");
+  }
+  std::vector<std::vector<PlacedSolid>> solids;
+  for (const Link& link : robot.links()) {
+    std::vector<PlacedSolid>& of_link = solids.emplace_back();
+    for (const CollisionShape& shape : link.collision) {
+      of_link.push_back({link_solid(robot, shape), shape.link_from_shape});
+    }
+  }
+  LinkPairs found{options.samples, movable_pairs(robot)};
+  std::mutex mutex;
+  ThreadPool threads(options.threads);
+  const int chunks = (options.samples + kSamplesPerChunk - 1) / kSamplesPerChunk;
+  threads.run(chunks, [&](int chunk) {
+    std::seed_seq seed{static_cast<std::uint32_t>(options.seed),
+                       static_cast<std::uint32_t>(options.seed >> 32),
+                       static_cast<std::uint32_t>(chunk)};
+    std::mt19937_64 random(seed);
+    RobotState state(robot);
+    std::vector<int> meets(found.pairs.size(), 0);
+    const int last = std::min(options.samples, (chunk + 1) * kSamplesPerChunk);
+    for (int sample = chunk * kSamplesPerChunk; sample < last; ++sample) {
+      state.update(random_posture(robot, random).data());
+      for (std::size_t p = 0; p < meets.size(); ++p) {
+        const std::size_t a = static_cast<std::size_t>(found.pairs[p].first);
+        const std::size_t b = static_cast<std::size_t>(found.pairs[p].second);
+        const bool touching = meet(solids[a], state.world_from_link(found.pairs[p].first),
+                                   solids[b], state.world_from_link(found.pairs[p].second));
+        meets[p] += touching ? 1 : 0;
+      }
+    }
+    const std::lock_guard<std::mutex> lock(mutex);
+    for (std::size_t p = 0; p < meets.size(); ++p) found.pairs[p].meets += meets[p];
+  });
+  return found;
+}
+
+}  // namespace locograph
