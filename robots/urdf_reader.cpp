@@ -403,6 +403,14 @@ Joint convert(const urdf::Joint& source) {
   return joint;
 }
 
+/// urdfdom reads XML by another parser than ours: stray characters become another name.
+Error unreadable_name(const XmlFile& xml, const XmlFile::Element& element) {
+  return xml.error(element,
+                   "<" + std::string(element.Name()) + "> with the name '" +
+                       element.Attribute("name") + "', which is not well-formed XML",
+                   "a name without control characters or a bare '&'");
+}
+
 }  // namespace
 
 UrdfModel read_urdf(const std::filesystem::path& file) {
@@ -418,9 +426,13 @@ UrdfModel read_urdf(const std::filesystem::path& file) {
   for (const std::string& name : structure.order()) {
     const int link_index = static_cast<int>(model.links.size());
     index[name] = link_index;
-    Link link = convert(*source->getLink(name), xml, structure.link(name), link_index, file);
+    const urdf::LinkConstSharedPtr link_source = source->getLink(name);
+    if (!link_source) throw unreadable_name(xml, structure.link(name));
+    Link link = convert(*link_source, xml, structure.link(name), link_index, file);
     if (const Element* element = structure.parent_joint(name)) {
-      const urdf::Joint& joint_source = *source->getJoint(element->Attribute("name"));
+      const urdf::JointConstSharedPtr found = source->getJoint(element->Attribute("name"));
+      if (!found) throw unreadable_name(xml, *element);
+      const urdf::Joint& joint_source = *found;
       Joint joint = convert(joint_source);
       joint.parent_link = index.at(joint_source.parent_link_name);
       joint.child_link = link_index;
