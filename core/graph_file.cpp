@@ -124,8 +124,11 @@ class GraphReader {
     bool quoted = false;
     for (std::size_t i = 0; i < line.size(); ++i) {
       if (line[i] == '"') quoted = !quoted;
-      if (line[i] == '\\' && quoted) ++i;
-      if (line[i] == '#' && !quoted) return i;
+      if (line[i] == '\\' && quoted) {
+        ++i;
+      } else if (line[i] == '#' && !quoted) {
+        return i;
+      }
     }
     return line.size();
   }

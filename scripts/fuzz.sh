@@ -33,7 +33,7 @@ failed=()
 for target in "${targets[@]}"; do
   say "fuzzing $target"
   mkdir -p "$folder/corpus/$target"
-  options=(-max_len=4096 -timeout=5 -rss_limit_mb=1024 -malloc_limit_mb=256 -print_final_stats=1
+  options=(-max_len=4096 -timeout=5 -rss_limit_mb=1024 -malloc_limit_mb=256 -print_final_stats=1 -seed=1
     -artifact_prefix="$folder/findings/$target-" -close_fd_mask=1 "${limit[@]}")
   [ -f "$folder/$target.dict" ] && options+=(-dict="$folder/$target.dict")
   ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=0 \

@@ -46,7 +46,7 @@ build build-tsan --target planners_thread_tests
 say "running planners_thread_tests under ThreadSanitizer"
 TSAN_OPTIONS=halt_on_error=1 run_tests build-tsan --tests-regex '^planners_thread_tests$' >&2
 
-"$root/scripts/fuzz.sh" 5
+"$root/scripts/fuzz.sh" 20000x
 
 say "running all tests"
 run_tests build

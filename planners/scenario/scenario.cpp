@@ -67,7 +67,8 @@ class ScenarioReader {
     if (by_model) {
       const std::string model = xml_.attribute(*robot, "model");
       const std::filesystem::path folder = data_folder_ / "robots/models" / model;
-      if (!std::filesystem::exists(folder / (model + ".urdf"))) {
+      std::error_code too_long;
+      if (!std::filesystem::exists(folder / (model + ".urdf"), too_long)) {
         throw xml_.error(*robot, "unknown robot model '" + model + "'",
                          "one that `locograph list robots` names" +
                              did_you_mean(model, robot_names(data_folder_)));
@@ -210,9 +211,11 @@ class ScenarioReader {
 
 Scenario load_scenario(const std::string& name_or_file, const std::filesystem::path& data_folder) {
   const std::filesystem::path own = data_folder / "scenarios" / (name_or_file + ".xml");
-  const bool by_name = name_or_file.find('/') == std::string::npos && std::filesystem::exists(own);
+  std::error_code too_long;
+  const bool by_name =
+      name_or_file.find('/') == std::string::npos && std::filesystem::exists(own, too_long);
   const std::filesystem::path file = by_name ? own : std::filesystem::path(name_or_file);
-  if (!by_name && !std::filesystem::exists(file)) {
+  if (!by_name && !std::filesystem::exists(file, too_long)) {
     const std::vector<std::string> names = scenario_names(data_folder);
     throw Error(name_or_file, 0, "no such scenario",
                 "a file, or one of " + joined_names(names) + did_you_mean(name_or_file, names));
