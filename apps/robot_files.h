@@ -19,9 +19,10 @@ namespace locograph {
 /// there is no such robot.
 inline RobotFiles robot_files(const std::string& name_or_file, const std::string& srdf) {
   RobotFiles files;
+  std::error_code too_long;
   if (const auto ours = shipped_robot(name_or_file)) {
     files = *ours;
-  } else if (std::filesystem::exists(name_or_file)) {
+  } else if (std::filesystem::exists(name_or_file, too_long)) {
     files.urdf = files.srdf = name_or_file;
     files.srdf.replace_extension(".srdf");
     if (!std::filesystem::exists(files.srdf)) files.srdf.clear();
