@@ -15,6 +15,26 @@ namespace {
 
 constexpr double kMimicTolerance = 1e-12;  // of the largest entry
 
+// KDL's matrices are aligned as its own compilation saw fit, which is less than ours: number by
+// number.
+Eigen::VectorXd numbers_of(const KDL::JntArray& array) {
+  Eigen::VectorXd numbers(array.rows());
+  for (unsigned i = 0; i < array.rows(); ++i) numbers[i] = array(i);
+  return numbers;
+}
+
+Eigen::MatrixXd numbers_of(const KDL::Jacobian& jacobian) {
+  Eigen::MatrixXd numbers(jacobian.rows(), jacobian.columns());
+  for (unsigned c = 0; c < jacobian.columns(); ++c) {
+    for (unsigned r = 0; r < jacobian.rows(); ++r) numbers(r, c) = jacobian(r, c);
+  }
+  return numbers;
+}
+
+void give_numbers(const Eigen::VectorXd& numbers, KDL::JntArray& array) {
+  for (unsigned i = 0; i < array.rows(); ++i) array(i) = numbers[i];
+}
+
 /// mimic_robot_urdf(), written out joint by joint.
 class HandWrittenGripper {
  public:
@@ -48,9 +68,9 @@ class HandWrittenGripper {
   /// How fast the six joints move for speeds of shoulder and slide_left: 6 x 2.
   Eigen::MatrixXd rates() const {
     Eigen::MatrixXd result(6, 2);
-    result.col(0) = in_kdl_order({{"shoulder", 1.0}, {"elbow", 2.0}, {"wrist", -1.0}}).data;
-    result.col(1) =
-        in_kdl_order({{"slide_left", 1.0}, {"slide_right", -1.0}, {"thumb_turn", 30.0}}).data;
+    result.col(0) = numbers_of(in_kdl_order({{"shoulder", 1.0}, {"elbow", 2.0}, {"wrist", -1.0}}));
+    result.col(1) = numbers_of(
+        in_kdl_order({{"slide_left", 1.0}, {"slide_right", -1.0}, {"thumb_turn", 30.0}}));
     return result;
   }
 
@@ -103,12 +123,12 @@ class MimicJoints : public testing::Test {
                           const Eigen::Vector2d& acceleration, const Eigen::Vector3d& gravity) {
     KDL::TreeIdSolver_RNE solver(kdl.tree, KDL::Vector(gravity.x(), gravity.y(), gravity.z()));
     KDL::JntArray speeds(6), changes(6), result(6);
-    speeds.data = kdl.rates() * velocity;
-    changes.data = kdl.rates() * acceleration;
+    give_numbers(kdl.rates() * velocity, speeds);
+    give_numbers(kdl.rates() * acceleration, changes);
     if (solver.CartToJnt(kdl.positions(q), speeds, changes, {}, result) < 0) {
       ADD_FAILURE() << "KDL refuses";
     }
-    return kdl.rates().transpose() * result.data;
+    return kdl.rates().transpose() * numbers_of(result);
   }
 
   void compare(const Eigen::MatrixXd& ours, const Eigen::MatrixXd& expected) {
@@ -150,7 +170,7 @@ TEST_F(MimicJoints, MoveTheLinksAsInKdl) {
       KDL::Jacobian theirs(6);
       ASSERT_GE(solver.JntToJac(positions, theirs, link.name), 0);
       state->frame_jacobian(robot->link_index(link.name), Eigen::Isometry3d::Identity(), ours);
-      compare(ours, theirs.data * kdl.rates());
+      compare(ours, numbers_of(theirs) * kdl.rates());
     }
   }
 }
