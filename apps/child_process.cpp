@@ -25,11 +25,16 @@ struct SpawnSettings {
   posix_spawn_file_actions_t files;
   posix_spawnattr_t attributes;
 
-  explicit SpawnSettings(const std::filesystem::path& output) {
+  SpawnSettings(const std::filesystem::path& output, const std::filesystem::path& errors) {
     posix_spawn_file_actions_init(&files);
     posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&files, 1, output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    posix_spawn_file_actions_adddup2(&files, 1, 2);
+    constexpr int kNewFile = O_WRONLY | O_CREAT | O_TRUNC;
+    posix_spawn_file_actions_addopen(&files, 1, output.c_str(), kNewFile, 0600);
+    if (errors == output) {
+      posix_spawn_file_actions_adddup2(&files, 1, 2);
+    } else {
+      posix_spawn_file_actions_addopen(&files, 2, errors.c_str(), kNewFile, 0600);
+    }
     // A process group of its own, so that its children can be ended with it.
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
@@ -81,37 +86,61 @@ std::string ProcessResult::last_line() const {
   return output.substr(begin, end + 1 - begin);
 }
 
-ProcessResult run_process(const std::filesystem::path& program,
-                          const std::vector<std::string>& arguments, double timeout_s) {
-  const ScratchFolder folder;
-  const std::filesystem::path output = folder.path() / "output";
+ChildProcess::ChildProcess(const std::filesystem::path& program,
+                           const std::vector<std::string>& arguments,
+                           const std::filesystem::path& output,
+                           const std::filesystem::path& errors) {
   std::vector<std::string> words = {program.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
 
-  const SpawnSettings settings(output);
-  pid_t child = -1;
-  if (::posix_spawn(&child, program.c_str(), &settings.files, &settings.attributes, argv.data(),
+  const SpawnSettings settings(output, errors);
+  if (::posix_spawn(&child_, program.c_str(), &settings.files, &settings.attributes, argv.data(),
                     environ) != 0) {
     throw Error(program.string(), 0, "cannot be started", "an executable program");
   }
-  ProcessResult result;
+}
+
+ChildProcess::~ChildProcess() { end(); }
+
+std::optional<int> ChildProcess::exit_code() {
+  int status = 0;
+  if (!exit_code_ && ::waitpid(child_, &status, WNOHANG) != 0) take(status);
+  return exit_code_;
+}
+
+void ChildProcess::end() {
+  if (exit_code_) return;
+  int status = 0;
+  ::kill(-child_, SIGKILL);
+  ::waitpid(child_, &status, 0);
+  take(status);
+}
+
+void ChildProcess::take(int status) {
+  exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+ProcessResult run_process(const std::filesystem::path& program,
+                          const std::vector<std::string>& arguments, double timeout_s) {
+  const ScratchFolder folder;
+  const std::filesystem::path output = folder.path() / "output";
   const FinishOnSignal finish;
   const Deadline deadline = Deadline::after(timeout_s);
-  int status = 0;
-  while (::waitpid(child, &status, WNOHANG) == 0) {
+  ChildProcess child(program, arguments, output, output);
+  ProcessResult result;
+  while (!child.exit_code()) {
     if (deadline.passed() || stop_requested()) {
       result.timed_out = true;
-      ::kill(-child, SIGKILL);
-      ::waitpid(child, &status, 0);
+      child.end();
       if (stop_requested()) throw Interrupted();
       break;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  result.exit_code = *child.exit_code();
   result.output = read_file(output);
   return result;
 }

@@ -7,6 +7,7 @@
 ///     }
 
 #include <locograph/common/file_descriptor.h>
+#include <sys/types.h>
 
 #include <filesystem>
 #include <optional>
@@ -30,6 +31,34 @@ struct ProcessResult {
 /// empty. Throws Error when it cannot be started, Interrupted when Ctrl-C ended it.
 ProcessResult run_process(const std::filesystem::path& program,
                           const std::vector<std::string>& arguments, double timeout_s);
+
+/// A program that runs beside this one, without input and in a process group of its own: Ctrl-C on
+/// the terminal does not reach it.
+///
+///     ChildProcess child(*gnuplot, {"-d", "plot.gp"}, "output", "errors");
+///     while (!child.exit_code()) do_something_else();
+class ChildProcess {
+ public:
+  /// output, errors: files for its standard output and error, replaced; they may be the same one.
+  /// Throws Error when it cannot be started.
+  ChildProcess(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+               const std::filesystem::path& output, const std::filesystem::path& errors);
+  /// As end().
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  /// Nothing while it runs; 128 + signal when a signal ended it.
+  std::optional<int> exit_code();
+  /// Kills it with all its children, unless it has ended.
+  void end();
+
+ private:
+  void take(int status);
+
+  pid_t child_ = -1;
+  std::optional<int> exit_code_;
+};
 
 /// A fresh folder that is removed with all that is in it, by the next one made if the program is
 /// killed.

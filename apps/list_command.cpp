@@ -3,6 +3,7 @@
 #include <locograph/apps/output.h>
 #include <locograph/common/data_folder.h>
 #include <locograph/core/robust_kernel.h>
+#include <locograph/planners/offline/stance/stance_planner.h>
 #include <locograph/planners/scenario/scenario.h>
 #include <locograph/solvers/linear_solvers.h>
 
@@ -19,6 +20,7 @@ std::vector<std::string> names_of(const std::string& what,
   if (what == "solvers") return linear_solver_names();
   if (what == "kernels") return RobustKernel::names();
   if (what == "robots") return robot_names(data_folder());
+  if (what == "planners") return stance_planner_names();
   return scenario_names(data_folder());
 }
 
@@ -31,9 +33,9 @@ Command add_list(OptionParser& app) {
   };
   const auto options = std::make_shared<Options>();
   OptionParser parser = app.add_subcommand("list", "What is registered, one name per line");
-  parser.add_option("WHAT", options->what, "types, solvers, kernels, robots or scenarios")
+  parser.add_option("WHAT", options->what, "types, solvers, kernels, robots, scenarios or planners")
       .required()
-      .one_of({"types", "solvers", "kernels", "robots", "scenarios"});
+      .one_of({"types", "solvers", "kernels", "robots", "scenarios", "planners"});
   add_plugin_option(parser, options->plugins);
   return {parser, [options] {
             std::string text;

@@ -1,5 +1,6 @@
 // The `locograph` command: parses the command line and runs the command that was named.
 
+#include <locograph/apps/campaign_command.h>
 #include <locograph/apps/check_command.h>
 #include <locograph/apps/info_command.h>
 #include <locograph/apps/list_command.h>
@@ -45,9 +46,9 @@ ExitCode run_chosen(const std::vector<Command>& commands) {
 int run(int argc, char** argv) {
   OptionParser app("Hyper-graph optimisation and loco-manipulation planning", "locograph");
   app.add_version("locograph " LOCOGRAPH_VERSION);
-  std::vector<Command> commands = {add_optimize(app), add_plan(app), add_refine(app),
-                                   add_check(app),    add_info(app), add_list(app),
-                                   add_view(app),     add_plot(app), add_posture(app)};
+  std::vector<Command> commands = {
+      add_optimize(app), add_plan(app), add_refine(app), add_check(app),   add_info(app),
+      add_list(app),     add_view(app), add_plot(app),   add_posture(app), add_campaign(app)};
   bool quiet = false;
   for (Command& command : commands) {
     command.parser.add_flag("--quiet", quiet, "Neither progress nor warnings on stderr");

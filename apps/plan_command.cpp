@@ -3,8 +3,11 @@
 #include <locograph/apps/progress.h>
 #include <locograph/common/data_folder.h>
 #include <locograph/common/deadline.h>
+#include <locograph/common/stop_signals.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
+#include <locograph/planners/offline/stance/stance_graph.h>
+#include <locograph/planners/offline/stance/stance_problem.h>
 #include <locograph/planners/plan/judging.h>
 
 #include <cmath>
@@ -16,7 +19,8 @@ namespace locograph {
 namespace {
 
 struct PlanOptions {
-  std::string scenario, output, torques;
+  std::string scenario, output, torques, planner = "guided";
+  bool stances_only = false;
   unsigned seed = 0;
   double timeout_s = 0.0;
   int threads = 1;
@@ -55,10 +59,7 @@ Planned plan_and_judge(const Scenario& scenario, const PlanOptions& options,
   return planned;
 }
 
-ExitCode plan_scenario(const PlanOptions& options) {
-  check_output(options.output, options.json);
-  const Stopwatch total;
-  const Scenario scenario = load_scenario(options.scenario, data_folder());
+ExitCode plan_drive(const Scenario& scenario, const PlanOptions& options, const Stopwatch& total) {
   Planned planned;
   {
     Progress progress("planning " + options.scenario);
@@ -103,6 +104,101 @@ ExitCode plan_scenario(const PlanOptions& options) {
   return planned.success ? kDone : kNo;
 }
 
+Json failures_json(const StancePlan& plan) {
+  Json all = Json::array();
+  for (const StanceFailure& failure : plan.failures) {
+    all.push_back(
+        {{"end_effector", failure.end_effector}, {"what", failure.what}, {"count", failure.count}});
+  }
+  return all;
+}
+
+ExitCode plan_stances_of(const Scenario& scenario, const PlanOptions& options) {
+  const auto planner = make_stance_planner(options.planner);
+  const Stopwatch total;
+  StartedProblem started = stance_problem(scenario);
+  StanceProblem& problem = started.problem;
+  if (!options.torques.empty()) {
+    problem.check.enforce_torque_limits = options.torques == "enforce";
+  }
+  StancePlannerOptions asked;
+  asked.seed = options.seed;
+  if (options.timeout_s > 0.0) asked.deadline = Deadline::after(options.timeout_s);
+  const FinishOnSignal finish;
+  asked.stop = &stop_flag();
+  StancePlan plan;
+  Graph graph;
+  double total_s = 0.0;
+  {
+    const Progress progress("planning " + options.scenario);
+    plan = planner->plan(problem, asked);
+    graph = stance_graph(scenario, problem, plan);
+    total_s = total.seconds();
+  }
+  write_graph(graph, options.output);
+  Json json = {
+      {"success", plan.success},
+      {"reason", plan.reason},
+      {"seed", options.seed},
+      {"planner", planner->name()},
+      {"stances", plan.stances.size()},
+      {"vertices_in_tree", plan.vertices_in_tree},
+      {"iterations", plan.iterations},
+      {"configurations", plan.configurations.size()},
+      {"duration_s", 0.0},
+      {"segments", 0},
+      {"goals_reached", plan.goals_reached},
+      {"transitions", {{"tried", plan.transitions}, {"found", plan.transitions_found}}},
+      {"start_moved", {{"base_m", started.moved_base_m}, {"joint_rad", started.moved_joint_rad}}},
+      {"failures", failures_json(plan)},
+      {"time",
+       {{"stance_planner", plan.total_s},
+        {"transitions", plan.transitions_s},
+        {"whole_body", 0.0},
+        {"timing", 0.0},
+        {"judge", plan.judge_s},
+        {"total", total_s}}},
+  };
+  if (!plan.success) {
+    json["best"] = {{"stances", plan.stances.size()},
+                    {"goal_contacts_reached", plan.best_contacts}};
+  }
+  if (options.json) {
+    print_result(json, true);
+    return plan.success ? kDone : kNo;
+  }
+  std::string text = scenario.name + ": ";
+  if (started.moved_base_m > 0.0 || started.moved_joint_rad > 0.0) {
+    text += "the start is not feasible as given; the nearest is " +
+            short_number(started.moved_base_m) + " m and " + short_number(started.moved_joint_rad) +
+            " rad away\n" + scenario.name + ": ";
+  }
+  text += plan.success ? "" : "no plan: " + plan.reason + "; so far ";
+  text += counted(json["stances"], "stance", "stances") + ", " +
+          counted(json["transitions"]["tried"], "transition", "transitions") + " tried, in " +
+          short_number(total_s) + " s\nwritten: " + options.output + '\n';
+  print_text(text);
+  return plan.success ? kDone : kNo;
+}
+
+ExitCode plan_scenario(const PlanOptions& options) {
+  check_output(options.output, options.json);
+  const Stopwatch total;
+  const Scenario scenario = load_scenario(options.scenario, data_folder());
+  if (scenario.drive) {
+    if (options.stances_only) {
+      throw Error(scenario.source, scenario.drive->line, "a drive has no stances to plan",
+                  "a scenario with <start> and <goal>, or no --stances-only");
+    }
+    return plan_drive(scenario, options, total);
+  }
+  if (!options.stances_only) {
+    throw Error(scenario.source, scenario.contacts->start_line,
+                "the motion between stances is not planned in this version", "--stances-only");
+  }
+  return plan_stances_of(scenario, options);
+}
+
 }  // namespace
 
 Command add_plan(OptionParser& app) {
@@ -114,6 +210,12 @@ Command add_plan(OptionParser& app) {
       .required();
   parser.add_option("-o,--output", o.output, "Plan file to write (.g2o); - is standard output")
       .required();
+  parser.add_flag("--stances-only", o.stances_only,
+                  "Stances and the configurations between them, no motion");
+  parser
+      .add_option("--planner", o.planner, "Of stances; `locograph list planners` gives their names")
+      .one_of(stance_planner_names())
+      .show_default();
   parser.add_option("--seed", o.seed, "Of everything random (a drive has nothing random)")
       .show_default();
   parser.add_option("--timeout", o.timeout_s, "Seconds the planner may take; 0: no limit")

@@ -35,7 +35,8 @@ Json plan_scene(PlanFile file, const SceneOptions& options) {
                 {"kind", "plan"},
                 {"title", std::filesystem::path(file.name).filename().string()},
                 {"robot", robot_scene(robot)}};
-  add_plan_scene(file, options, scene);
+  const std::optional<Judging> judging = known_judging(file, options);
+  add_plan_scene(file, judging ? &*judging : nullptr, options, scene);
   Eigen::AlignedBox3d near;
   if (robot.floating_base()) {
     for (const int slot : file.plan.slots) {
@@ -44,7 +45,6 @@ Json plan_scene(PlanFile file, const SceneOptions& options) {
   } else {
     near.extend(Eigen::Vector3d::Zero());
   }
-  const std::optional<Judging> judging = known_judging(file, options);
   add_world_scene(judging ? judging->world : load_world(options.map, options.obstacles), near,
                   scene);
   if (!options.check || !judging) return scene;

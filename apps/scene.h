@@ -39,11 +39,14 @@ Json make_scene(const std::string& file, const SceneOptions& options);
 
 /// `robot`: links with visual and collision shapes, joints, meshes, missing.
 Json robot_scene(const Robot& robot);
-/// `plan`, `stances`: times, configurations, reference, contacts.
-void add_plan_scene(const PlanFile& file, const SceneOptions& options, Json& scene);
+/// `plan`, `stances`: times, configurations, reference, contacts. judging says what the contacts
+/// lie on; null: not known.
+void add_plan_scene(const PlanFile& file, const Judging* judging, const SceneOptions& options,
+                    Json& scene);
 /// `check`
 Json check_scene(const PlanFile& file, const CheckReport& report);
-/// `map`, `obstacles`; voxels nearest to `near` when there are too many for a page.
+/// `map`, `obstacles`, `surfaces` that end, `bars`; voxels nearest to `near` when there are too
+/// many for a page.
 void add_world_scene(const World& world, const Eigen::AlignedBox3d& near, Json& scene);
 /// The same with the robot's covering capsules as its collision shapes, and without visual ones.
 /// Throws Error for a mesh that cannot be read.

@@ -1,6 +1,7 @@
 #include <locograph/apps/check_json.h>
 #include <locograph/apps/packed.h>
 #include <locograph/apps/scene.h>
+#include <locograph/check/judged_stance.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/plugins/static_balance/static_rows.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
@@ -80,7 +81,79 @@ void add_wrench(const ContactParameter& contact, const RobotState& state, const 
   if (!contact.axes_in_world) json["moment"] = vector_json(applied.moment);
 }
 
-Json contact_json(const ContactParameter& parameter, const RobotState& state) {
+/// What the stances of a plan lie on, by whose word it is judged.
+class TouchedWorld {
+ public:
+  TouchedWorld(const Robot& robot, const Judging* judging) : robot_(robot) {
+    if (judging == nullptr) return;
+    world_ = judging->world;
+    known_ = judging->options.known;
+  }
+
+  /// Of each contact, where the robot is in this state.
+  std::vector<Support> supports(const StanceParameter& stance, const RobotState& state) {
+    const JudgedStance& judged =
+        judged_.try_emplace(&stance, robot_, world_, stance.stance, known_).first->second;
+    std::vector<Eigen::Isometry3d> poses;
+    for (int link = 0; link < static_cast<int>(robot_.links().size()); ++link) {
+      poses.push_back(state.world_from_link(link));
+    }
+    std::vector<Support> supports;
+    for (const JudgedContact& contact : judged.contacts) {
+      supports.push_back(support_of(contact, world_, poses));
+    }
+    return supports;
+  }
+
+ private:
+  const Robot& robot_;
+  World world_;
+  std::vector<EndEffector> known_;
+  std::map<const StanceParameter*, JudgedStance> judged_;
+};
+
+/// Corners as they go round, counterclockwise (Andrew's monotone chain).
+std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
+  std::sort(points.begin(), points.end(), [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
+  });
+  if (points.size() < 3) return points;
+  std::vector<Eigen::Vector2d> hull;
+  const auto add = [&hull](const Eigen::Vector2d& point, std::size_t kept) {
+    const auto turns_left = [&] {
+      const Eigen::Vector2d a = hull.back() - hull[hull.size() - 2], b = point - hull.back();
+      return a.x() * b.y() - a.y() * b.x() > 0.0;
+    };
+    while (hull.size() > kept && !turns_left()) hull.pop_back();
+    hull.push_back(point);
+  };
+  for (const Eigen::Vector2d& point : points) add(point, 1);
+  const std::size_t lower = hull.size();
+  for (std::size_t i = points.size() - 1; i-- > 0;) add(points[i], lower);
+  hull.pop_back();
+  return hull;
+}
+
+/// In the world; all of the sole where it is not known what it lies on.
+Json area_json(const Support& support, const ContactParameter& parameter, const RobotState& state) {
+  const EndEffector& sole = parameter.contact.effector;
+  std::vector<Eigen::Vector2d> corners = support.area;
+  if (!support.known) {
+    for (const auto& [x, y] :
+         {std::pair(1, 1), std::pair(-1, 1), std::pair(-1, -1), std::pair(1, -1)})
+      corners.emplace_back(x * sole.half_x_m, y * sole.half_y_m);
+  }
+  const Eigen::Isometry3d& pose = state.world_from_link(parameter.link);
+  const Eigen::Matrix3d axes = pose.linear() * axes_in_link(sole);
+  Json area = Json::array();
+  for (const Eigen::Vector2d& corner : convex_hull(std::move(corners))) {
+    area.push_back(vector_json(pose * sole.point + axes.leftCols<2>() * corner));
+  }
+  return area;
+}
+
+Json contact_json(const ContactParameter& parameter, const RobotState& state,
+                  const Support& support) {
   const Contact& contact = parameter.contact;
   Eigen::Vector3d position = contact.position;
   if (parameter.kind() == ContactKind::kWheel) {
@@ -94,7 +167,9 @@ Json contact_json(const ContactParameter& parameter, const RobotState& state) {
                {"position", vector_json(position)},
                {"normal", vector_json(contact.normal.stableNormalized())}};
   if (contact.effector.radius_m > 0.0) json["radius"] = contact.effector.radius_m;
-  if (contact.effector.friction > 0.0) json["friction"] = contact.effector.friction;
+  if (support.friction > 0.0) json["friction"] = support.friction;
+  if (parameter.kind() == ContactKind::kSurface)
+    json["area"] = area_json(support, parameter, state);
   if (contact.locked) json["locked"] = true;
   return json;
 }
@@ -119,10 +194,12 @@ Json stances_json(const Plan& plan) {
 
 }  // namespace
 
-void add_plan_scene(const PlanFile& file, const SceneOptions& options, Json& scene) {
+void add_plan_scene(const PlanFile& file, const Judging* judging, const SceneOptions& options,
+                    Json& scene) {
   const Robot& robot = *file.plan.robot->robot;
   const std::map<int, Eigen::VectorXd> planned = references(file.graph);
   const WrenchPlaces wrenches = wrench_places(file.graph);
+  TouchedWorld touched(robot, judging);
   RobotState state(robot);
   std::vector<float> configurations, reference;
   Json times = Json::array(), ids = Json::array(), contacts = Json::array();
@@ -137,8 +214,9 @@ void add_plan_scene(const PlanFile& file, const SceneOptions& options, Json& sce
     state.update(vertex.state.data());
     Json here = Json::array();
     if (const StanceParameter* stance = file.plan.stance_from[i].get()) {
+      const std::vector<Support> supports = touched.supports(*stance, state);
       for (std::size_t k = 0; k < stance->contacts.size(); ++k) {
-        here.push_back(contact_json(*stance->contacts[k], state));
+        here.push_back(contact_json(*stance->contacts[k], state, supports[k]));
         const auto place = wrenches.find({slot, stance->contact_numbers[k]});
         if (place != wrenches.end()) {
           add_wrench(*stance->contacts[k], state, place->second, here.back());
@@ -152,6 +230,7 @@ void add_plan_scene(const PlanFile& file, const SceneOptions& options, Json& sce
                {"configurations", packed_floats(configurations)},
                {"configuration_size", robot.configuration_size()},
                {"ids", std::move(ids)}};
+  if (file.plan.stances_only) plan["stances_only"] = true;
   if (!planned.empty()) plan["reference"] = packed_floats(reference);
   if (options.executed >= 0) {
     if (options.executed >= count) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace locograph {
 namespace {
@@ -60,10 +61,37 @@ Json obstacle_json(const Obstacle& obstacle) {
   return json;
 }
 
+/// The unlimited ones are the ground, which every page has.
+Json surfaces_json(const std::vector<Surface>& surfaces) {
+  Json all = Json::array();
+  for (const Surface& surface : surfaces) {
+    if (!std::isfinite(surface.half_x_m) || !std::isfinite(surface.half_y_m)) continue;
+    all.push_back({{"name", surface.name},
+                   {"pose", pose_json(surface.world_from_surface)},
+                   {"size", {rounded(2.0 * surface.half_x_m), rounded(2.0 * surface.half_y_m)}}});
+  }
+  return all;
+}
+
+Json bars_json(const std::vector<Bar>& bars) {
+  Json all = Json::array();
+  for (const Bar& bar : bars) {
+    all.push_back({{"name", bar.name},
+                   {"from", vector_json(bar.from)},
+                   {"to", vector_json(bar.to)},
+                   {"radius", rounded(bar.radius_m)}});
+  }
+  return all;
+}
+
 }  // namespace
 
 void add_world_scene(const World& world, const Eigen::AlignedBox3d& near, Json& scene) {
   if (world.map) scene["map"] = map_json(*world.map, near);
+  if (Json surfaces = surfaces_json(world.surfaces); !surfaces.empty()) {
+    scene["surfaces"] = std::move(surfaces);
+  }
+  if (!world.bars.empty()) scene["bars"] = bars_json(world.bars);
   if (world.obstacles.empty()) return;
   scene["obstacles"] = Json::array();
   for (const Obstacle& obstacle : world.obstacles) {

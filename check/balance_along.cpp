@@ -11,8 +11,10 @@ namespace {
 
 constexpr double kFall = 10.0;  // of a margin, per metre
 
-/// How far apart the farthest two corners are along the narrowest of both axes, halved.
+/// How far apart the farthest two corners are along the narrowest of both axes, halved; of a line,
+/// half its length.
 double half_size(const std::vector<Eigen::Vector2d>& area) {
+  if (area.size() == 2) return std::max(1e-3, 0.5 * (area[1] - area[0]).norm());
   Eigen::Vector2d least = area.front(), most = area.front();
   for (const Eigen::Vector2d& corner : area) {
     least = least.cwiseMin(corner);
@@ -65,6 +67,7 @@ BalanceOptions BalanceAlong::options_for(const JudgedStance& stance, const LinkP
                                          std::vector<Contact>& contacts) {
   BalanceOptions options;
   options.enforce_torque_limits = context_.options.enforce_torque_limits;
+  options.effort_scale = context_.options.effort_scale;
   for (const JudgedContact& judged : stance.contacts) {
     Contact contact = judged.contact;
     const Support support = support_of(judged, context_.world, poses);

@@ -6,9 +6,9 @@
 ///     balance.run();
 ///     balance.report(report.violations);
 ///
-/// What bears is what of each contact lies on the surfaces of the world (judged_stance.h), with
-/// their friction. Where the motion has times, inertial forces count (motion_rates.h); they change
-/// at once in the middle of a step, so each half is looked at by itself.
+/// What bears is what of each contact lies on the surfaces and bars of the world (judged_stance.h),
+/// with their friction. Where the motion has times, inertial forces count (motion_rates.h); they
+/// change at once in the middle of a step, so each half is looked at by itself.
 ///
 /// How far a margin can fall is estimated, not bounded: by 10 for each metre that contacts move as
 /// seen from the centre of mass, or that gravity turns at 1 m; on an area of half size h below

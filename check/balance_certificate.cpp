@@ -76,6 +76,9 @@ class Programme {
     if (options.facets < 3 || options.facets > 64) {
       throw Error("friction pyramids of " + std::to_string(options.facets) + " sides", "3 to 64");
     }
+    if (!(options.effort_scale > 0.0) || std::isinf(options.effort_scale)) {
+      throw Error("efforts scaled by " + std::to_string(options.effort_scale), "a positive number");
+    }
     place_robot(configuration);
     gravity_.resize(robot.tangent_size());
     take_motion();
@@ -231,6 +234,10 @@ class Programme {
     }
   }
 
+  double effort_limit(int active_joint) const {
+    return options_.effort_scale * robot_.active_joint(active_joint).max_effort;
+  }
+
   /// Joints that no contact loads bound the margin and the ratio, the others get rows.
   void limit_torques() {
     if (!options_.enforce_torque_limits && !options_.least_torques) return;
@@ -241,12 +248,12 @@ class Programme {
                         std::to_string(joint.max_effort) + ", with which it cannot hold anything",
                     "a positive effort in the URDF, or none");
       }
-      if (std::isinf(joint.max_effort)) continue;
+      if (std::isinf(effort_limit(i))) continue;
       if (moving_joint_[std::size_t(i)]) {
         limited_.push_back(i);
         continue;
       }
-      const double ratio = std::abs(gravity_[base_ + i]) / joint.max_effort;
+      const double ratio = std::abs(gravity_[base_ + i]) / effort_limit(i);
       if (ratio <= least_ratio_) continue;
       least_ratio_ = ratio;
       least_ratio_joint_ = i;
@@ -274,7 +281,7 @@ class Programme {
     }
     for (int i = 0; i < torque_rows() / 2; ++i) {
       const int joint = limited_[std::size_t(i)], row = base_rows() + 2 * i;
-      column[row] = -unknown.torques[base_ + joint] / robot_.active_joint(joint).max_effort;
+      column[row] = -unknown.torques[base_ + joint] / effort_limit(joint);
       column[row + 1] = -column[row];
     }
     int row = base_rows() + torque_rows();
@@ -327,7 +334,7 @@ class Programme {
     }
     for (int i = 0; i < torque_rows() / 2; ++i) {
       const int joint = limited_[std::size_t(i)], row = base_rows() + 2 * i;
-      const double ratio = gravity_[base_ + joint] / robot_.active_joint(joint).max_effort;
+      const double ratio = gravity_[base_ + joint] / effort_limit(joint);
       upper[row] -= ratio;
       upper[row + 1] += ratio;
     }
@@ -415,7 +422,7 @@ class Programme {
       left_over = std::max(left_over, std::abs(torques[i]) / base_scale(i));
     }
     for (int i = 0; i < robot_.active_joint_count(); ++i) {
-      const double limit = robot_.active_joint(i).max_effort;
+      const double limit = effort_limit(i);
       if (!(limit > 0.0) || std::isinf(limit)) continue;
       result.max_torque_ratio =
           std::max(result.max_torque_ratio, std::abs(torques[base_ + i]) / limit);

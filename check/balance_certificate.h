@@ -19,6 +19,8 @@
 ///   rung             |component| <= (1 - s) limit                  of each force and moment
 ///   torque limits    |g - sum J^T w| <= (1 - s) tau_max            each active joint
 ///
+/// tau_max is the URDF's effort times BalanceOptions::effort_scale.
+///
 /// So a margin of 0.1 says: with one and the same wrenches, every limit is used to 90 % at most and
 /// every friction cone has a tenth of the weight in reserve (a surface as a whole; then its centre
 /// of pressure, too, has a tenth of weight times half size to the edge, for mu <= 1). If nothing
@@ -42,7 +44,7 @@
 /// enforced or least torques asked for: it cannot hold anything.
 /// Throws Error for a configuration of another size, one that is not finite or has a quaternion
 /// far from norm 1, an end effector that is not sound (robots/contact.h), axes that are none, fewer
-/// than 3 facets, and a robot without mass.
+/// than 3 facets, a scale of efforts that is not positive, and a robot without mass.
 
 #include <locograph/robots/contact.h>
 #include <locograph/robots/robot.h>
@@ -62,12 +64,13 @@ struct BalanceMotion {
 
 struct BalanceOptions {
   bool enforce_torque_limits = true;
-  int facets = 16;  ///< sides of the friction pyramids, 3 to 64
+  double effort_scale = 1.0;  ///< of the efforts of the URDF
+  int facets = 16;            ///< sides of the friction pyramids, 3 to 64
   /// A second programme: max_torque_ratio becomes the least with which the contacts can balance the
   /// robot, at a margin of zero; at most one exactly if torque limits can be kept.
   bool least_torques = false;
   /// For each contact, the corners of the area that bears, in the axes of a surface contact about
-  /// its point [m]; none: its rectangle. No list at all: rectangles.
+  /// its point [m]; two are a line; none: its rectangle. No list at all: rectangles.
   std::vector<std::vector<Eigen::Vector2d>> areas = {};
   std::optional<BalanceMotion> motion = std::nullopt;  ///< none: at rest
 };

@@ -41,6 +41,7 @@ void CheckOptions::validate() const {
   limit(base_linear_m_s, "base_linear_m_s");
   limit(base_angular_rad_s, "base_angular_rad_s");
   limit(joint_acceleration_rad_s2, "joint_acceleration_rad_s2");
+  positive(effort_scale, "effort_scale");
   if (until_s) require(std::isfinite(*until_s), "until_s", *until_s, "a time");
   not_negative(min_clearance_m, "min_clearance_m");
   not_negative(min_self_clearance_m, "min_self_clearance_m");

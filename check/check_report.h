@@ -30,12 +30,14 @@ struct CheckOptions {
   /// kind, link or place) violates `contact_claims`. False: it is judged by what is known alone.
   bool compare_claims = true;
   /// False: contacts may also be on what the world does not describe, as in contacts files. What
-  /// lies on no surface is then taken on trust. A world without surfaces describes nothing anyway.
+  /// lies on no surface and no bar is then taken on trust. A world without any describes nothing
+  /// anyway.
   bool surfaces_known = true;
 
   double base_linear_m_s = 0.0;            ///< largest speed; 0 or infinity: not limited
   double base_angular_rad_s = 0.0;         ///< the same
   double joint_acceleration_rad_s2 = 0.0;  ///< the same; m/s² for prismatic joints
+  double effort_scale = 1.0;               ///< of the efforts of the URDF: the torque limits
   /// Whether the robot stands still before the first vertex and after the last one. False for a
   /// window of a longer motion: there is no acceleration then at that end.
   bool starts_at_rest = true, ends_at_rest = true;

@@ -78,7 +78,7 @@ ClearanceSearch::Sample ClearanceSearch::sample(int vertex, double fraction,
   sample.distances = {around.obstacle.distance_m, around.surface.distance_m,
                       around.touched.distance_m};
   add(0, around.obstacle, vertex, time_s);
-  if (!context_.world.surfaces.empty()) add(1, around.surface, vertex, time_s);
+  if (has_places(context_.world)) add(1, around.surface, vertex, time_s);
   if (stance != nullptr) add(2, around.touched, vertex, time_s);
   return sample;
 }

@@ -56,6 +56,11 @@ bool same_contacts(const JudgedStance& a, const JudgedStance& b) {
   return true;
 }
 
+const std::string& name_of_place(const JudgedContact& contact, const World& world) {
+  if (!contact.surfaces.empty()) return world.surfaces[std::size_t(contact.surfaces.front())].name;
+  return world.bars[std::size_t(contact.bars.front())].name;
+}
+
 ViolationTally at_most(const char* name, const char* unit, double limit, std::size_t vertices) {
   return ViolationTally(name, unit, limit, Worse::kHigher, vertices);
 }
@@ -131,19 +136,20 @@ void ContactCheck::check_vertex(const Sample& sample) {
 }
 
 void ContactCheck::check_surface(const JudgedContact& contact, const Sample& sample) {
-  if (context_.world.surfaces.empty() || contact.contact.effector.kind == ContactKind::kRung)
-    return;
+  if (!has_places(context_.world)) return;
   const Eigen::Vector3d at = touching_point(contact, sample.poses);
-  if (contact.surfaces.empty()) {
+  if (!contact.is_placed()) {
     if (!context_.options.surfaces_known) return;
-    surface_.add(contact.off_surface_m, sample.vertex, sample.time_s, at,
-                 [&] { return contact.name() + " touches no surface of the world"; });
+    surface_.add(contact.off_surface_m, sample.vertex, sample.time_s, at, [&] {
+      return contact.name() + (contact.is_grasp() ? " holds no bar of the world"
+                                                  : " touches no surface of the world");
+    });
     return;
   }
   const Support support = support_of(contact, context_.world, sample.poses);
   surface_.add(support.outside_m, sample.vertex, sample.time_s, at, [&] {
     return contact.name() + (support.outside_m > 0.0 ? " is beyond the border of " : " on ") +
-           context_.world.surfaces[std::size_t(contact.surfaces.front())].name;
+           name_of_place(contact, context_.world);
   });
 }
 
@@ -268,9 +274,9 @@ void ContactCheck::report(std::vector<Violation>& violations) const {
   violations.push_back(motion_.result(held));
   violations.push_back(turn_.result(held));
   violations.push_back(relabelled_.result("the stance does not change"));
-  violations.push_back(surface_.result(context_.world.surfaces.empty()
-                                           ? "the world has no surfaces"
-                                           : "no contact is on a surface that the world has"));
+  violations.push_back(surface_.result(has_places(context_.world)
+                                           ? "no contact is on a surface that the world has"
+                                           : "the world has no surfaces"));
   const std::string wheels = context_.moves() ? "no wheel is in contact" : still;
   violations.push_back(lateral_.result(wheels));
   violations.push_back(longitudinal_.result(wheels));

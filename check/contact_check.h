@@ -1,5 +1,5 @@
 #pragma once
-/// Judges contacts along a motion: closed, kept, on their surfaces, and wheels rolling.
+/// Judges contacts along a motion: closed, kept, on their surfaces and bars, and wheels rolling.
 ///
 ///     ContactCheck check(context);
 ///     check.run();

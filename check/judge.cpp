@@ -119,7 +119,7 @@ class Check {
     const std::string no_vertex = "no vertex can be looked at";
     violations.push_back(obstacle_distance_.result(no_vertex));
     violations.push_back(ground_penetration_.result(
-        context_.world.surfaces.empty() ? "the world has no surfaces" : no_vertex));
+        has_places(context_.world) ? no_vertex : "the world has no surfaces"));
     violations.push_back(touching_depth_.result("no contact is known"));
     violations.push_back(self_collision_.result(no_vertex));
   }
@@ -133,11 +133,9 @@ class Check {
     for (const JudgedStance& stance : context_.stances) {
       for (const std::string& name : stance.unknown) add(name + ": what it can bear");
       for (const JudgedContact& contact : stance.contacts) {
-        if (contact.contact.effector.kind == ContactKind::kRung)
-          add(contact.name() + ": that there is a bar");
-        else if (context_.world.surfaces.empty() ||
-                 (contact.surfaces.empty() && !context_.options.surfaces_known))
-          add(contact.name() + ": that there is a surface");
+        if (!has_places(context_.world) ||
+            (!contact.is_placed() && !context_.options.surfaces_known))
+          add(contact.name() + ": that there is a " + (contact.is_grasp() ? "bar" : "surface"));
       }
     }
     return trusted;

@@ -31,11 +31,12 @@
 ///   contact_turn        *+ how far it turns; a locked wheel, about its joint (rad)
 ///   contact_relabelled  *+ contacts whose place differs in stances that follow each other, and
 ///                          stances of a plan of stances that follow their like (count)
-///   contact_on_surface   + of the contact to the surface it lies on, or outside its border (m)
+///   contact_on_surface   + of the contact to the surface or bar it lies on, or outside its border;
+///                          of a grasp to the axis of its bar, or beyond its ends (m)
 ///   lateral_slip        *- across a wheel's heading, see wheel_rolling.h (m)
 ///   longitudinal_slip   *- along it (m)
 ///   obstacle_distance      to voxels and obstacles that the link does not touch (m)
-///   ground_penetration     into surfaces that the link does not touch, the ground is one (m)
+///   ground_penetration     into surfaces and bars that the link does not touch (m)
 ///   touching_depth         of links in what they touch (m)
 ///   self_collision         see Robot::self_collision_pairs() (m)
 ///   static_balance       + margin of balance_certificate.h, with the torque limits if they are
@@ -67,7 +68,7 @@ namespace locograph {
 
 class Judge {
  public:
-  /// Throws Error for collision shapes that cannot be used.
+  /// Throws Error for collision shapes, surfaces and bars that cannot be used.
   Judge(std::shared_ptr<const Robot> robot, World world);
   ~Judge();
   Judge(Judge&&) noexcept;

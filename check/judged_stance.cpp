@@ -1,3 +1,4 @@
+#include <locograph/check/bar_contact.h>
 #include <locograph/check/judged_stance.h>
 #include <locograph/check/limits.h>
 #include <locograph/robots/kinematic_tree.h>
@@ -122,7 +123,6 @@ Polygon sole_on(const Surface& surface, const EndEffector& sole, const Eigen::Is
 }
 
 void place_on_surfaces(const World& world, JudgedContact& judged) {
-  judged.off_surface_m = world.surfaces.empty() ? 0.0 : std::numeric_limits<double>::infinity();
   for (std::size_t s = 0; s < world.surfaces.size(); ++s) {
     const Eigen::Isometry3d& pose = world.surfaces[s].world_from_surface;
     if (angle_between(judged.normal, pose.linear().col(2)) > limits::kClosed_rad) continue;
@@ -130,6 +130,17 @@ void place_on_surfaces(const World& world, JudgedContact& judged) {
         (judged.contact.position - pose.translation()).dot(Eigen::Vector3d(pose.linear().col(2))));
     judged.off_surface_m = std::min(judged.off_surface_m, off);
     if (off <= limits::kClosed_m) judged.surfaces.push_back(int(s));
+  }
+}
+
+void place(const World& world, JudgedContact& judged) {
+  if (!has_places(world)) return;
+  judged.off_surface_m = std::numeric_limits<double>::infinity();
+  if (!judged.is_grasp()) place_on_surfaces(world, judged);
+  for (std::size_t b = 0; b < world.bars.size(); ++b) {
+    const double off = off_bar_m(judged.contact, world.bars[b]);
+    judged.off_surface_m = std::min(judged.off_surface_m, off);
+    if (off <= limits::kClosed_m) judged.bars.push_back(int(b));
   }
 }
 
@@ -188,7 +199,7 @@ JudgedStance::JudgedStance(const Robot& robot, const World& world, const Stance&
       judged.axle = joint.axis;
       judged.wheel_joint = joint.index;
     }
-    place_on_surfaces(world, judged);
+    place(world, judged);
     contacts.push_back(std::move(judged));
   }
 }
@@ -201,6 +212,7 @@ std::vector<CollisionWorld::Touch> JudgedStance::touches(
         {.position = contact.is_wheel() ? touching_point(contact, poses) : contact.contact.position,
          .normal = contact.normal,
          .surfaces = contact.surfaces,
+         .bars = contact.bars,
          .links = contact.links});
     // A wheel touches its plane, wherever its own height is.
     if (contact.is_wheel())
@@ -257,30 +269,41 @@ ContactError closure_error(const JudgedContact& judged,
 Support support_of(const JudgedContact& judged, const World& world,
                    std::span<const Eigen::Isometry3d> world_from_link) {
   const EndEffector& effector = judged.contact.effector;
+  const Eigen::Isometry3d& pose = world_from_link[std::size_t(judged.link)];
   Support support;
-  support.known = !judged.surfaces.empty();
+  support.known = judged.is_placed();
   support.friction = effector.friction;
   if (!support.known) return support;
   support.outside_m = std::numeric_limits<double>::infinity();
   double friction = std::numeric_limits<double>::infinity();
   const Eigen::Vector3d point = touching_point(judged, world_from_link);
+  const auto lies_on = [&](double outside, double own_friction, const Polygon& area) {
+    support.outside_m = std::min(support.outside_m, outside);
+    support.area.insert(support.area.end(), area.begin(), area.end());
+    // A border is as exact as a contact is closed.
+    if (outside > limits::kClosed_m) return;
+    friction = std::min(friction, own_friction > 0.0 ? own_friction : effector.friction);
+  };
   for (const int s : judged.surfaces) {
     const Surface& surface = world.surfaces[std::size_t(s)];
     double outside = outside_border(surface, point);
+    Polygon area;
     if (effector.kind == ContactKind::kSurface) {
-      const Polygon area = sole_on(surface, effector, world_from_link[std::size_t(judged.link)]);
+      area = sole_on(surface, effector, pose);
       constexpr double kNoArea_m2 = 1e-8;
-      if (area_of(area) > kNoArea_m2) {
-        outside = 0.0;
-        support.area.insert(support.area.end(), area.begin(), area.end());
-      } else {
-        outside = std::max(outside, limits::kHeld_m);
-      }
+      if (!(area_of(area) > kNoArea_m2)) area.clear();
+      outside = area.empty() ? std::max(outside, limits::kHeld_m) : 0.0;
     }
-    support.outside_m = std::min(support.outside_m, outside);
-    // A border is as exact as a contact is closed.
-    if (outside > limits::kClosed_m) continue;
-    friction = std::min(friction, surface.friction > 0.0 ? surface.friction : effector.friction);
+    lies_on(outside, surface.friction, area);
+  }
+  for (const int b : judged.bars) {
+    const Bar& bar = world.bars[std::size_t(b)];
+    if (effector.kind == ContactKind::kSurface) {
+      const SoleOnBar sole = sole_on_bar(bar, judged.contact, pose);
+      lies_on(sole.outside_m, bar.friction, sole.line);
+    } else {
+      lies_on(beyond_ends_m(bar, point), bar.friction, {});
+    }
   }
   if (std::isfinite(friction)) support.friction = friction;
   return support;

@@ -1,10 +1,13 @@
 #pragma once
-/// A stance as the judge takes it: with what is known of its end effectors, the surfaces that its
-/// contacts lie on, and the links that touch there.
+/// A stance as the judge takes it: with what is known of its end effectors, the surfaces and bars
+/// that its contacts lie on, and the links that touch there.
 ///
 ///     JudgedStance stance(robot, world, motion.stances[0], options.known);
 ///     ContactError error = closure_error(stance.contacts[0], world_from_link);
 ///     Support support = support_of(stance.contacts[0], world, world_from_link);
+///
+/// Surface contacts, points and wheels lie on surfaces; surface contacts, points and grasps on
+/// bars, see bar_contact.h.
 ///
 /// Closure (robots/contact.h) is worked out here anew, from the poses of links: nothing is shared
 /// with the rows that solvers close contacts with.
@@ -26,17 +29,28 @@ struct JudgedContact {
   int link = -1, body = -1;
   Eigen::Vector3d normal;  ///< of the contact in the world, of length 1
   std::vector<int> links;  ///< that touch
-  /// Of World::surfaces: those in the plane of the contact.
+  /// Of World::surfaces: those in the plane of the contact; a grasp is on none.
   std::vector<int> surfaces;
-  double off_surface_m = 0.0;  ///< to the nearest plane that has its normal; 0 without surfaces
+  std::vector<int> bars;  ///< of World::bars: those it is on, or beyond an end of
+  /// To the nearest plane that has its normal, or to a bar with a direction that fits; infinite if
+  /// there is neither. 0 in a world without surfaces and bars.
+  double off_surface_m = 0.0;
   Eigen::Vector3d axle = Eigen::Vector3d::Zero();  ///< wheel: of its joint, link frame
   int wheel_joint = -1;                            ///< active joint that turns it; -1: none
 
   bool is_wheel() const { return contact.effector.kind == ContactKind::kWheel; }
+  bool is_grasp() const { return contact.effector.kind == ContactKind::kRung; }
+  /// On something that the world has.
+  bool is_placed() const { return !surfaces.empty() || !bars.empty(); }
   /// Stays where it is: no wheel, or a locked one.
   bool is_held() const { return !is_wheel() || contact.locked; }
   const std::string& name() const { return contact.name(); }
 };
+
+/// The world says what there is to touch.
+inline bool has_places(const World& world) {
+  return !world.surfaces.empty() || !world.bars.empty();
+}
 
 struct JudgedStance {
   std::vector<JudgedContact> contacts;
@@ -67,13 +81,13 @@ ContactError closure_error(const JudgedContact& contact,
 Eigen::Vector3d touching_point(const JudgedContact& contact,
                                std::span<const Eigen::Isometry3d> world_from_link);
 
-/// What of a contact lies on the surfaces of the world.
+/// What of a contact lies on the surfaces and bars of the world.
 struct Support {
-  bool known = false;      ///< some surface of the world is in its plane
+  bool known = false;      ///< it is on something that the world has, or beyond its border
   double outside_m = 0.0;  ///< beyond the border of the nearest one; 0: some of it lies on one
-  double friction = 0.0;   ///< the least of the surfaces it lies on, else the end effector's
+  double friction = 0.0;   ///< the least of what it lies on, else the end effector's
   /// Corners of the area that bears, about the point in the end effector's axes; of a surface
-  /// contact only.
+  /// contact only. On a single bar they are the two ends of a line.
   std::vector<Eigen::Vector2d> area;
 };
 

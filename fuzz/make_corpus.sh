@@ -8,7 +8,7 @@ build=$1
 seeds=$build/fuzz/seeds
 data=$root/../shared/data
 rm -rf "$seeds"
-mkdir -p "$seeds"/{bal,contacts,graph,map,plan,obstacles,scenario,srdf,stl,urdf}
+mkdir -p "$seeds"/{bal,cloud,contacts,graph,map,plan,obstacles,scenario,srdf,stl,urdf}
 
 # raw_string FILE NAME: the text of a raw string literal NAME = R"(…)" of a test.
 raw_string() { sed -n "/$2 = R\"(/,/)\";/p" "$root/$1" | sed -e '1s/.*R"(//' -e '$s/)";.*//'; }
@@ -70,6 +70,19 @@ printf '%s' '<scenario version="1" name="s"><robot urdf="r.urdf" srdf="r.srdf" a
   'base_angular="1" joint_acceleration="1"/><environment map="m.bt" obstacles="o.xml" ' \
   'friction="0.8"/><drive distance="4" curvature="0.1" speed="0.1" configurations="50"/>' \
   '<planner torque_limits="report"/></scenario>' >"$seeds/scenario/all"
+printf '%s' '<scenario version="1" name="s"><robot urdf="r.urdf" effort_scale="2"><camera name="c" ' \
+  'link="l" position="0 0 1" rpy="0 1 0" width="640" height="480" fov_x="1.2" range_min="0.2" ' \
+  'range_max="5"/></robot><end_effectors><end_effector name="f" link="l" kind="surface" ' \
+  'half_x="0.1" half_y="0.1" max_force="9"/><end_effector name="g" link="h" kind="rung" ' \
+  'max_force="9" max_moment="1"/></end_effectors><environment friction="0.8"><plane name="p" ' \
+  'center="0 0 0" normal="0 0 1" forward="1 0 0" size="2 2"/><box name="b" center="1 0 0" ' \
+  'size="1 1 1" rpy="0 0 1" friction="0.5"/><rung name="r" from="0 0 1" to="0 1 1" ' \
+  'radius="0.02"/><mesh name="m" file="m.stl" position="0 0 1" rpy="0 0 1" scale="0.1"/>' \
+  '<cloud name="c" file="c.pcd" voxel="0.1" friction="0.5"/><octomap name="o" file="o.bt"/>' \
+  '</environment><start base="0 0 1 0 0 0 1"><joint name="k" position="0.5"/><contact ' \
+  'end_effector="f" position="0 0 0" normal="0 0 1" forward="1 0 0"/></start><goal><contact ' \
+  'end_effector="f" position="1 0 0" normal="0 0 1"/></goal><goal><contact end_effector="g" ' \
+  'position="0 0.5 1" normal="0 0 1" forward="1 0 0"/></goal></scenario>' >"$seeds/scenario/contacts"
 printf '%s' '<contacts version="1" name="n"><contact link="base" kind="surface" position="0 0 0" ' \
   'normal="0 0 1" forward="1 0 0" half_x="0.1" half_y="0.1" mu="0.5" max_force="9"/>' \
   '<contact link="arm" kind="point" radius="0.1" point="0 0 0.1" position="1 0 1" ' \
@@ -77,6 +90,23 @@ printf '%s' '<contacts version="1" name="n"><contact link="base" kind="surface" 
   'radius="0.1" position="0 0 0" normal="0 0 1" mu="0.5" max_force="9"/><contact link="lift" ' \
   'kind="rung" position="0 1 1" normal="0 0 1" forward="1 0 0" link_normal="0 0 1" ' \
   'link_forward="1 0 0" max_force="9" max_moment="1"/></contacts>' >"$seeds/contacts/kinds"
+
+# Clouds: as text, in binary records among other fields, and compressed with a copy of itself.
+pcd() {
+  printf '# .PCD v0.7\nVERSION 0.7\nFIELDS %s\nSIZE %s\nTYPE %s\nCOUNT %s\nWIDTH %s\n' "${@:1:5}"
+  printf 'HEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS %s\nDATA %s\n' "$5" "$6"
+}
+{ pcd 'x y z rgb' '4 4 4 4' 'F F F U' '1 1 1 1' 2 ascii; printf '0 1 2.5 9\n-1e-3 nan 4 9\n'; } \
+  >"$seeds/cloud/text"
+{
+  pcd 'ring x y z' '1 4 4 4' 'U F F F' '2 1 1 1' 1 binary
+  printf '\x01\x02\x00\x00\x80\x3f\x00\x00\x80\x3f\x00\x00\x00\x40'
+} >"$seeds/cloud/binary"
+{
+  pcd 'x y z' '4 4 4' 'F F F' '1 1 1' 2 binary_compressed
+  printf '\x11\x00\x00\x00\x18\x00\x00\x00\x07\x00\x00\x80\x3f\x00\x00\x80\x3f'
+  printf '\x03\x00\x00\x00\x40\xe0\x03\x03'
+} >"$seeds/cloud/compressed"
 
 # Binary files: of maps a root with leaves, a chain of nodes, log-odds; one triangle of a mesh.
 map() { printf '# Octomap OcTree %sfile\nid OcTree\nsize %s\nres %s\ndata\n' "$1" "$2" "$3"; }

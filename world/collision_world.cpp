@@ -16,7 +16,7 @@ namespace {
 
 /// What links may touch at a place reaches no further out of its plane, and is no further away.
 constexpr double kTouchedHeight_m = 0.012, kTouchedReach_m = 0.3;
-/// Of surfaces it matters whether links reach into them, not how far away they are.
+/// Of surfaces and bars it matters whether links reach into them, not how far away they are.
 constexpr double kSurfaceCutoff_m = 0.15;
 constexpr double kPlate_m = 2e-4;      // thickness of a surface that ends
 constexpr double kEndless_m = 1000.0;  // a side without an end of a surface that ends elsewhere
@@ -71,6 +71,39 @@ struct Plate {
   }
 };
 
+/// A bar as a solid.
+struct Rod {
+  std::string name;
+  Eigen::Vector3d from, axis;  // axis: of length 1
+  double length_m;
+  ConvexShape shape;
+  Eigen::Isometry3d world_from_shape;
+
+  explicit Rod(const Bar& bar)
+      : name(bar.name.empty() ? "bar" : bar.name),
+        from(bar.from),
+        axis(bar.to - bar.from),
+        length_m(axis.norm()),
+        shape(solid(name, bar.radius_m, length_m)),
+        world_from_shape(Eigen::Translation3d(0.5 * (bar.from + bar.to))) {
+    axis /= length_m;
+    world_from_shape.rotate(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis));
+  }
+
+  static ConvexShape solid(const std::string& name, double radius_m, double length_m) {
+    const auto is_size = [](double size) { return size > 0.0 && std::isfinite(size); };
+    if (!is_size(radius_m) || !is_size(length_m))
+      throw Error("bar " + name + " has a length or a radius that is not positive",
+                  "finite numbers");
+    return ConvexShape::cylinder(radius_m, length_m);
+  }
+
+  double distance_from_axis(const Eigen::Vector3d& point) const {
+    const double along = std::clamp(axis.dot(point - from), 0.0, length_m);
+    return (point - from - along * axis).norm();
+  }
+};
+
 /// How far a shape reaches along a direction: the least n . x, and where.
 double least_along(const ConvexShape& shape, const Eigen::Isometry3d& world_from_shape,
                    const Eigen::Vector3d& n, Eigen::Vector3d& where) {
@@ -99,6 +132,7 @@ struct CollisionWorld::Parts {
   std::vector<Obstacle> obstacles;
   std::vector<ConvexShape> obstacle_shapes;
   std::vector<Plate> plates;
+  std::vector<Rod> rods;
   double ground_z = -std::numeric_limits<double>::infinity();  // voxels up to here do not count
 
   struct Search;
@@ -157,6 +191,7 @@ CollisionWorld::CollisionWorld(const Robot& robot, const World& world,
                                const CollisionWorldOptions& options)
     : CollisionWorld(robot, world.map, world.obstacles, options) {
   for (const Surface& surface : world.surfaces) parts_->plates.emplace_back(surface);
+  for (const Bar& bar : world.bars) parts_->rods.emplace_back(bar);
   parts_->ground_z = ground_height(world);
 }
 
@@ -213,7 +248,7 @@ namespace {
 /// The parts of a query that what is touched depends on.
 struct Touching {
   using Bits = std::uint64_t;  // one for each touch
-  std::vector<Bits> of_link, of_obstacle, of_plate;
+  std::vector<Bits> of_link, of_obstacle, of_plate, of_rod;
 
   static Bits bit(std::size_t touch) { return Bits{1} << touch; }
 };
@@ -246,6 +281,7 @@ struct CollisionWorld::Parts::Search {
     touching.of_link.assign(parts.link_names.size(), 0);
     touching.of_obstacle.assign(parts.obstacles.size(), 0);
     touching.of_plate.assign(parts.plates.size(), 0);
+    touching.of_rod.assign(parts.rods.size(), 0);
     for (std::size_t t = 0; t < query.touches.size(); ++t) add(query.touches[t], Touching::bit(t));
   }
 
@@ -265,6 +301,7 @@ struct CollisionWorld::Parts::Search {
     }
     for (const int surface : touch.surfaces)
       touching.of_plate[static_cast<std::size_t>(surface)] |= bit;
+    for (const int bar : touch.bars) touching.of_rod[static_cast<std::size_t>(bar)] |= bit;
     // Surfaces below the plane, as the sides of a box that a foot stands on.
     for (std::size_t p = 0; p < parts.plates.size(); ++p) {
       const Plate& plate = parts.plates[p];
@@ -352,6 +389,29 @@ struct CollisionWorld::Parts::Search {
     }
   }
 
+  void bars() {
+    for (std::size_t r = 0; r < parts.rods.size(); ++r) {
+      const Rod& rod = parts.rods[r];
+      for (std::size_t b = 0; b < parts.bodies.size(); ++b) {
+        const Body& body = parts.bodies[b];
+        const Touching::Bits touches =
+            touching.of_link[static_cast<std::size_t>(body.link)] & touching.of_rod[r];
+        const double nearest = touches != 0 ? 0.0 : found.surface.distance_m;
+        // A lower bound: the bar is within a capsule, the body within a ball.
+        const double least = rod.distance_from_axis(world_from_body[b] * body.shape.center()) -
+                             rod.shape.radius() - body.shape.bounding_radius();
+        if (least >= nearest) continue;
+        const ShapeDistance distance =
+            shape_distance(body.shape, world_from_body[b], rod.shape, rod.world_from_shape);
+        if (distance.distance >= nearest) continue;
+        if (touches != 0)
+          touch(b, touches, distance, rod.shape, rod.world_from_shape, rod.name);
+        else
+          found.surface = closest_to(distance, body.link, rod.name);
+      }
+    }
+  }
+
   void surface(const Plate& plate, std::size_t b, Touching::Bits touches) {
     const Body& body = parts.bodies[b];
     const Eigen::Isometry3d& pose = world_from_body[b];
@@ -388,6 +448,7 @@ CollisionWorld::Surroundings CollisionWorld::surroundings(const Query& query) co
   search.obstacles();
   search.voxels();
   search.surfaces();
+  search.bars();
   return std::move(search.found);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 /// Exact distances between a robot's collision shapes, the voxels of a map, primitive obstacles,
-/// surfaces and the robot itself, for checkers.
+/// surfaces, bars and the robot itself, for checkers.
 ///
 ///     CollisionWorld exact(robot, world);
 ///     CollisionWorld::Closest c = exact.environment_distance(world_from_link, time_s);
@@ -16,10 +16,11 @@
 /// others are certified to 1e-5 m, see convex_shape.h. A mesh (STL) counts as its convex hull, and
 /// a missing one is an error. A surface without an end is solid below; a rectangle is a plate of
 /// 0.2 mm, so that what is behind it is free; both count from the side of their normal where they
-/// are touched. world_from_link has one pose per link of the robot, in the robot's
-/// order. Lengths in metres, world frame. The constructor copies what it needs of the robot, the
-/// map and the obstacles: later changes to them are not seen. Const members are thread-safe. Throws
-/// Error when the number of poses is not the number of links.
+/// are touched. A bar is a cylinder with flat ends. world_from_link has one pose per link of the
+/// robot, in the robot's order. Lengths in metres, world frame. The constructor copies what it
+/// needs of the robot, the map and the obstacles: later changes to them are not seen. Const members
+/// are thread-safe. Throws Error when the number of poses is not the number of links, and for
+/// surfaces and bars whose sizes are not positive.
 
 #include <locograph/world/obstacles.h>
 #include <locograph/world/world.h>
@@ -59,12 +60,14 @@ class CollisionWorld {
 
   /// A place that links may touch, and which links. What they touch there is what lies behind the
   /// plane through `position` along `normal`: the surfaces named; obstacles at rest that come no
-  /// further than 12 mm out of the plane, and voxels whose centres do not, all within 0.3 m of the
-  /// position.
+  /// further than 12 mm out of the plane, voxels whose centres do not, and surfaces that end and
+  /// lie below it, all within 0.3 m of the position. Of bars, those named, and no other: one may
+  /// hold what is in front of the next one.
   struct Touch {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< of length 1
     std::vector<int> surfaces = {};                     ///< of World::surfaces
+    std::vector<int> bars = {};                         ///< of World::bars
     std::vector<int> links = {};
   };
   struct Query {
@@ -75,7 +78,7 @@ class CollisionWorld {
   };
   struct Surroundings {
     Closest obstacle;  ///< of the voxels and obstacles that the link does not touch
-    Closest surface;   ///< of the surfaces that it does not touch, up to 0.15 m
+    Closest surface;   ///< of the surfaces and bars that it does not touch, up to 0.15 m
     /// Minus the largest depth of a link in what it touches; 0 and link -1 if there is none.
     Closest touched;
   };
@@ -83,14 +86,14 @@ class CollisionWorld {
   /// tree may be null: obstacles only.
   CollisionWorld(const Robot& robot, std::shared_ptr<const octomap::OcTree> tree,
                  std::vector<Obstacle> obstacles, const CollisionWorldOptions& options = {});
-  /// Map, obstacles and surfaces. Voxels whose top is at or below the highest level surface without
-  /// an end are that surface, for all links.
+  /// Map, obstacles, surfaces and bars. Voxels whose top is at or below the highest level surface
+  /// without an end are that surface, for all links.
   CollisionWorld(const Robot& robot, const World& world, const CollisionWorldOptions& options = {});
   ~CollisionWorld();
   CollisionWorld(CollisionWorld&&) noexcept;
   CollisionWorld& operator=(CollisionWorld&&) noexcept;
 
-  /// Map, obstacles and surfaces, touched or not.
+  /// Map, obstacles, surfaces and bars, touched or not.
   Surroundings surroundings(const Query& query) const;
 
   /// Map and obstacles. Returns early with the first distance below stop_below, if there is one.

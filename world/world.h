@@ -7,7 +7,8 @@
 ///     WorldDistance field = distance_view(world, options);     // what edges see
 ///
 /// A snapshot: a world does not change; a newer one replaces it. Map and obstacles are only in the
-/// way. Surfaces are in the way, too, and may be touched from the side of their normal.
+/// way. Surfaces are in the way, too, and may be touched from the side of their normal; so are
+/// bars, from all sides.
 
 #include <locograph/world/obstacles.h>
 #include <octomap/OcTree.h>
@@ -30,10 +31,20 @@ struct Surface {
   double friction = 0.0;  ///< Coulomb's coefficient; 0: what the end effector says
 };
 
+/// A round bar. Points touch it anywhere around, soles along one line of it; a grasp holds its
+/// axis.
+struct Bar {
+  std::string name;
+  Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::UnitY();  ///< its axis, m
+  double radius_m = 0.0;
+  double friction = 0.0;  ///< as of surfaces
+};
+
 struct World {
   std::shared_ptr<const octomap::OcTree> map;  ///< null: none
   std::vector<Obstacle> obstacles;
   std::vector<Surface> surfaces;
+  std::vector<Bar> bars;
 };
 
 /// The plane z = 0 without an end.

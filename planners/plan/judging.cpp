@@ -31,6 +31,7 @@ void take_word_of(const Scenario& scenario, CheckOptions& options) {
   options.base_angular_rad_s = scenario.limits.base_angular_rad_s;
   options.joint_acceleration_rad_s2 = scenario.limits.joint_acceleration_rad_s2;
   options.enforce_torque_limits = scenario.enforce_torque_limits;
+  options.effort_scale = scenario.effort_scale;
 }
 
 /// What PARAMS_WORLD names and the scenario does not.

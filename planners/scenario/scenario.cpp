@@ -1,15 +1,24 @@
 #include <locograph/common/suggestion.h>
+#include <locograph/planners/scenario/contact_task_element.h>
 #include <locograph/planners/scenario/effector_element.h>
+#include <locograph/planners/scenario/environment_element.h>
 #include <locograph/planners/scenario/scenario.h>
 #include <locograph/robots/xml_file.h>
+#include <locograph/world/octree.h>
+#include <locograph/world/point_cloud.h>
+#include <locograph/world/surfaces_of.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <set>
 
 namespace locograph {
 namespace {
 
 using Element = XmlFile::Element;
+
+constexpr double kMostEffortScale = 1e3, kMostPixels = 1e5;
 
 class ScenarioReader {
  public:
@@ -19,29 +28,46 @@ class ScenarioReader {
   Scenario read() {
     const Element& root = xml_.root();
     xml_.allow(root, {"version", "name"},
-               {"robot", "wheels", "end_effectors", "limits", "environment", "drive", "planner"});
+               {"robot", "wheels", "end_effectors", "limits", "environment", "drive", "start",
+                "goal", "planner"});
     if (const std::string version = xml_.attribute(root, "version"); version != "1") {
       throw xml_.error(root, "scenario version '" + version + "'", "version=\"1\"");
     }
     scenario_.name = xml_.attribute(root, "name");
     read_robot(only(root, "robot", true));
-    read_environment(only(root, "environment", false));
+    take_environment(only(root, "environment", false));
     read_wheels(only(root, "wheels", false));
     read_end_effectors(only(root, "end_effectors", false));
     read_limits(only(root, "limits", false));
     read_drive(only(root, "drive", false));
+    scenario_.contacts = read_contact_task(xml_, scenario_.end_effectors);
     read_planner(only(root, "planner", false));
+    require_one_task(root);
+    return std::move(scenario_);
+  }
+
+ private:
+  void require_one_task(const Element& root) const {
+    if (scenario_.drive && scenario_.contacts) {
+      throw xml_.error(*only(root, "start", true), "a scenario with both a <drive> and a <start>",
+                       "one of them");
+    }
+    if (scenario_.contacts) {
+      if (has_places(environment_)) return;
+      const Element* environment = only(root, "environment", false);
+      throw xml_.error(
+          environment != nullptr ? *environment : root, "nothing to stand on",
+          "a <plane>, <box>, <rung>, <mesh>, <cloud> or <octomap> in the <environment>");
+    }
     if (!scenario_.drive) {
-      throw xml_.error(root, "the scenario has no task", "a <drive> element");
+      throw xml_.error(root, "the scenario has no task", "a <drive>, or a <start> and a <goal>");
     }
     if (std::none_of(scenario_.end_effectors.begin(), scenario_.end_effectors.end(),
                      [](const EndEffector& one) { return one.kind == ContactKind::kWheel; })) {
       throw xml_.error(root, "a drive without wheels", "a <wheels> element");
     }
-    return std::move(scenario_);
   }
 
- private:
   const Element* only(const Element& parent, const char* name, bool required) const {
     const auto all = xml_.children(parent, name);
     if (all.size() > 1) {
@@ -59,7 +85,7 @@ class ScenarioReader {
   }
 
   void read_robot(const Element* robot) {
-    xml_.allow(*robot, {"model", "urdf", "srdf", "active", "state"}, {});
+    xml_.allow(*robot, {"model", "urdf", "srdf", "active", "state", "effort_scale"}, {"camera"});
     const bool by_model = robot->Attribute("model") != nullptr;
     if (by_model == (robot->Attribute("urdf") != nullptr)) {
       throw xml_.error(*robot, "the robot is not named", "either model=\"…\" or urdf=\"…\"");
@@ -84,6 +110,45 @@ class ScenarioReader {
     }
     if (robot->Attribute("state")) scenario_.start_state = xml_.attribute(*robot, "state");
     scenario_.robot.frozen_state = scenario_.start_state;
+    scenario_.effort_scale = positive_or(*robot, "effort_scale", 1.0, kMostEffortScale);
+    check_cameras(*robot);
+  }
+
+  /// Cameras are well-formed; nothing here has a use for them.
+  void check_cameras(const Element& robot) const {
+    std::set<std::string> names;
+    for (const Element& camera : xml_.children(robot, "camera")) {
+      xml_.allow(
+          camera,
+          {"name", "link", "position", "rpy", "width", "height", "fov_x", "range_min", "range_max"},
+          {});
+      const std::string name = xml_.attribute(camera, "name");
+      if (!names.insert(name).second) {
+        throw xml_.error(camera, "a second camera '" + name + "'", "each name once");
+      }
+      xml_.attribute(camera, "link");
+      for (const char* place : {"position", "rpy"}) {
+        if (camera.Attribute(place) != nullptr) read_vector(xml_, camera, place);
+      }
+      for (const char* pixels : {"width", "height"}) {
+        const double count = read_positive(xml_, camera, pixels, kMostPixels, 1.0);
+        if (count == std::floor(count)) continue;
+        throw xml_.error(camera,
+                         std::string(pixels) + "=\"" + xml_.attribute(camera, pixels) + "\"",
+                         "a whole number of pixels");
+      }
+      const double fov = xml_.number(camera, "fov_x");
+      if (!(fov > 0.0 && fov < std::numbers::pi)) {
+        throw xml_.error(camera, "fov_x=\"" + xml_.attribute(camera, "fov_x") + "\"",
+                         "an angle between 0 and pi");
+      }
+      const double nearest = xml_.number(camera, "range_min");
+      const double farthest = read_size(xml_, camera, "range_max");
+      if (!(nearest >= 0.0 && nearest < farthest)) {
+        throw xml_.error(camera, "range_min=\"" + xml_.attribute(camera, "range_min") + "\"",
+                         "zero or more, less than range_max");
+      }
+    }
   }
 
   void read_wheels(const Element* wheels) {
@@ -95,8 +160,8 @@ class ScenarioReader {
       effector.name = effector.link = xml_.attribute(wheel, "link");
       effector.kind = ContactKind::kWheel;
       effector.radius_m = read_size(xml_, wheel, "radius");
-      effector.friction =
-          positive_or(wheel, "friction", friction_.value_or(kWheelFriction), ranges::kFriction);
+      effector.friction = positive_or(
+          wheel, "friction", environment_.friction.value_or(kWheelFriction), ranges::kFriction);
       effector.max_force_N = positive_or(wheel, "max_force", kWheelForce_N, ranges::kForce_N);
       add(wheel, std::move(effector));
     }
@@ -105,6 +170,7 @@ class ScenarioReader {
   void read_end_effectors(const Element* all) {
     if (all == nullptr) return;
     xml_.allow(*all, {}, {"end_effector"});
+    std::optional<double> friction;
     for (const Element& element : xml_.children(*all, "end_effector")) {
       const ContactKind kind = read_contact_kind(xml_, element);
       std::set<std::string> allowed = effector_attributes(kind);
@@ -113,11 +179,12 @@ class ScenarioReader {
       EndEffector effector = read_effector(xml_, element, kind);
       effector.name = xml_.attribute(element, "name");
       if (kind != ContactKind::kRung) {
-        if (!friction_) {
+        if (!friction) friction = effector_friction(xml_, environment_);
+        if (!friction) {
           throw xml_.error(element, "the friction of " + effector.name + " is not known",
                            "<environment friction=\"…\">");
         }
-        effector.friction = *friction_;
+        effector.friction = *friction;
       }
       add(element, std::move(effector));
     }
@@ -135,6 +202,7 @@ class ScenarioReader {
       }
     }
     scenario_.end_effectors.push_back(std::move(effector));
+    scenario_.end_effector_lines.push_back(element.GetLineNum());
   }
 
   double positive_or(const Element& element, const char* name, double otherwise,
@@ -164,17 +232,16 @@ class ScenarioReader {
     scenario_.enforce_torque_limits = torques == "enforce";
   }
 
-  void read_environment(const Element* environment) {
-    if (environment == nullptr) return;
-    xml_.allow(*environment, {"map", "obstacles", "friction"}, {});
-    if (environment->Attribute("friction")) {
-      friction_ = read_positive(xml_, *environment, "friction", ranges::kFriction);
-    }
-    if (environment->Attribute("map")) {
-      scenario_.map = beside_file(xml_.attribute(*environment, "map"));
-    }
-    if (environment->Attribute("obstacles")) {
-      scenario_.obstacles = beside_file(xml_.attribute(*environment, "obstacles"));
+  void take_environment(const Element* element) {
+    if (element == nullptr) return;
+    environment_ = read_environment(xml_, *element);
+    if (!environment_.map.empty()) scenario_.map = beside_file(environment_.map);
+    if (!environment_.obstacles.empty()) scenario_.obstacles = beside_file(environment_.obstacles);
+    scenario_.surfaces = environment_.surfaces;
+    scenario_.bars = environment_.bars;
+    scenario_.scanned = environment_.scanned;
+    for (ScannedSurface& scanned : scenario_.scanned) {
+      scanned.file = beside_file(scanned.file.string());
     }
   }
 
@@ -204,8 +271,44 @@ class ScenarioReader {
   std::filesystem::path file_, data_folder_;
   XmlFile xml_;
   Scenario scenario_;
-  std::optional<double> friction_;  ///< of the environment
+  Environment environment_;
 };
+
+PatchOptions patch_options(const ScannedSurface& scanned) {
+  PatchOptions options;
+  options.voxel_m = scanned.voxel_m;
+  options.least_length_m = 0.2;
+  options.least_width_m = 0.1;
+  return options;
+}
+
+/// The voxels behind rectangles that are left out stay in the map.
+void add_octomap_without_ceilings(World& world, const ScannedSurface& scanned) {
+  constexpr double kDown = -0.5;
+  const auto before = static_cast<std::ptrdiff_t>(world.surfaces.size());
+  add_octomap(world, scanned.name, load_octree(scanned.file), scanned.friction,
+              patch_options(scanned));
+  const auto looks_down = [](const Surface& surface) {
+    return surface.world_from_surface.linear()(2, 2) < kDown;
+  };
+  world.surfaces.erase(
+      std::remove_if(world.surfaces.begin() + before, world.surfaces.end(), looks_down),
+      world.surfaces.end());
+}
+
+void add_scanned(World& world, const ScannedSurface& scanned) {
+  switch (scanned.kind) {
+    case ScannedSurface::Kind::kMesh:
+      return add_mesh(world, scanned.name, scanned.file, scanned.world_from_mesh, scanned.scale,
+                      scanned.friction);
+    case ScannedSurface::Kind::kCloud:
+      // Of what is not steep, clouds have no rectangles that look down.
+      return add_cloud(world, scanned.name, load_point_cloud(scanned.file), scanned.friction,
+                       patch_options(scanned));
+    case ScannedSurface::Kind::kOctomap:
+      return add_octomap_without_ceilings(world, scanned);
+  }
+}
 
 }  // namespace
 
@@ -227,7 +330,24 @@ Scenario load_scenario(const std::string& name_or_file, const std::filesystem::p
 
 World world_of(const Scenario& scenario) {
   World world = load_world(scenario.map, scenario.obstacles);
-  if (scenario.drive) world.surfaces.push_back(ground());
+  world.surfaces = scenario.surfaces;
+  world.bars = scenario.bars;
+  for (const ScannedSurface& scanned : scenario.scanned) {
+    try {
+      add_scanned(world, scanned);
+    } catch (const Error& error) {
+      if (!error.file().empty()) throw;
+      throw Error(scanned.file.string(), 0, error.what(), "");
+    }
+  }
+  if (!scenario.scanned.empty() && world.surfaces.empty() && world.bars.empty()) {
+    const ScannedSurface& first = scenario.scanned.front();
+    throw Error(scenario.source, first.line, "nothing to stand on in " + first.file.string(),
+                "flat places or bars");
+  }
+  if (scenario.drive && world.surfaces.empty() && scenario.scanned.empty()) {
+    world.surfaces.push_back(ground());
+  }
   return world;
 }
 

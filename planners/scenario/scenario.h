@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace locograph {
@@ -24,6 +25,38 @@ struct DriveTask {
   double curvature_1_m = 0.0;  ///< > 0 turns left
   double speed_m_s = 0.1;
   int configurations = 50;
+  int line = 0;
+};
+
+/// Where a joint of the start stands [rad or m].
+struct GivenJoint {
+  std::string name;
+  double position = 0.0;
+  int line = 0;
+};
+
+/// From a start stance to goal stances, one after the other. Each stance is exactly its contacts.
+struct ContactTask {
+  /// Of the start: x y z qx qy qz qw, the quaternion normalised; none: wherever the posture solver
+  /// finds it from the robot's state.
+  std::optional<Eigen::Matrix<double, 7, 1>> base = std::nullopt;
+  std::vector<GivenJoint> joints = {};  ///< that do not stand as in the robot's state
+  Stance start;
+  std::vector<Stance> goals;  ///< one or more
+  int start_line = 0;
+  std::vector<int> goal_lines = {};
+};
+
+/// A mesh, cloud or octree of the environment, as the file says it; it is opened by world_of().
+struct ScannedSurface {
+  enum class Kind { kMesh, kCloud, kOctomap };
+  Kind kind = Kind::kMesh;
+  std::string name;
+  std::filesystem::path file;
+  Eigen::Isometry3d world_from_mesh = Eigen::Isometry3d::Identity();
+  double scale = 1.0;     ///< of a mesh, before it is moved
+  double voxel_m = 0.05;  ///< of a cloud
+  double friction = 0.0;  ///< as of surfaces
   int line = 0;
 };
 
@@ -43,20 +76,30 @@ struct Scenario {
   std::filesystem::path urdf, srdf;
   RobotOptions robot;
   std::string start_state = "home";
+  double effort_scale = 1.0;               ///< of the URDF's efforts
   std::vector<EndEffector> end_effectors;  ///< each with its friction; the links are not looked for
+  std::vector<int> end_effector_lines;     ///< of the file
   MotionLimits limits;
   std::filesystem::path map;        ///< empty: none
   std::filesystem::path obstacles;  ///< empty: none
+  std::vector<Surface> surfaces;    ///< that may be touched, in the order of the file
+  std::vector<Bar> bars;
+  std::vector<ScannedSurface> scanned;  ///< where more of both are found
   bool enforce_torque_limits = true;
+  /// One of the two.
   std::optional<DriveTask> drive;
+  std::optional<ContactTask> contacts;
 };
 
 /// name_or_file: the name of a scenario that comes with locograph, or a path. data_folder: holds
 /// scenarios/NAME.xml, and robots/models/NAME/NAME.urdf and .srdf for `<robot model="NAME">`.
 Scenario load_scenario(const std::string& name_or_file, const std::filesystem::path& data_folder);
 
-/// Its map and obstacles, and what may be touched: for a drive the ground, the plane z = 0 without
-/// an end. Throws Error for files that cannot be used.
+/// Its map and obstacles, and what may be touched: surfaces and bars, then those that are found in
+/// meshes, clouds and octrees (world/surfaces_of.h), called NAME 1 … and NAME bar 1 …; for a drive
+/// without any of these the ground, the plane z = 0 without an end. Of clouds and octrees
+/// rectangles of 0.2 m x 0.1 m or more, of octrees none that look down. Throws Error for files that
+/// cannot be used and, with the line of the scenario, if there is nothing in them to stand on.
 World world_of(const Scenario& scenario);
 
 /// Names of the scenarios that come with locograph, sorted.

@@ -95,6 +95,23 @@ void add_slope(const RobotState& kinematics, std::span<const int> support, std::
   }
 }
 
+/// row += scale * gradient of the distance. The nearest points move along with their links: how
+/// they slide along the shapes does not matter to first order. What moves both links alike, base
+/// and common axes, does not change it.
+void add_gradient(const ConfigurationState& q, const SelfCollisionShapes::Pair& pair,
+                  const Nearest& found, double scale, double* row) {
+  const int a = q.robot->bounds[pair.first].link, b = q.robot->bounds[pair.second].link;
+  const Eigen::Isometry3d& world_from_first = q.kinematics.world_from_link(a);
+  const Eigen::Vector3d direction = world_from_first.linear() * (-scale * found.direction);
+  const std::span<const int> first = q.model().support(a), second = q.model().support(b);
+  std::size_t common = 0;
+  while (common < std::min(first.size(), second.size()) && first[common] == second[common]) {
+    ++common;
+  }
+  add_slope(q.kinematics, first, common, world_from_first * found.on_first, direction, row);
+  add_slope(q.kinematics, second, common, world_from_first * found.on_second, -direction, row);
+}
+
 }  // namespace
 
 void EdgeSelfCollision::error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const {
@@ -108,8 +125,6 @@ void EdgeSelfCollision::error(const ConfigurationState& q, Eigen::Ref<Eigen::Vec
   }
 }
 
-// The nearest points move along with their links: how they slide along the shapes does not matter
-// to first order. What moves both links alike, base and common axes, does not change d.
 void EdgeSelfCollision::jacobians(const ConfigurationState& q,
                                   JacobianRef<EdgeSelfCollision, 0> j) const {
   const std::vector<SelfCollisionShapes::Pair>& pairs = q.robot->self_collision.pairs;
@@ -117,17 +132,23 @@ void EdgeSelfCollision::jacobians(const ConfigurationState& q,
     if (weights[static_cast<Eigen::Index>(p)] == 0.0 || !near(q, pairs[p], margin_m)) continue;
     const Nearest found = nearest(q, pairs[p], margin_m);
     if (found.distance >= margin_m) continue;
-    const int a = q.robot->bounds[pairs[p].first].link, b = q.robot->bounds[pairs[p].second].link;
-    const Eigen::Isometry3d& world_from_first = q.kinematics.world_from_link(a);
-    const Eigen::Vector3d direction = world_from_first.linear() * found.direction;
-    const std::span<const int> first = q.model().support(a), second = q.model().support(b);
-    std::size_t common = 0;
-    while (common < std::min(first.size(), second.size()) && first[common] == second[common]) {
-      ++common;
-    }
-    double* row = j.row(static_cast<Eigen::Index>(p)).data();
-    add_slope(q.kinematics, first, common, world_from_first * found.on_first, direction, row);
-    add_slope(q.kinematics, second, common, world_from_first * found.on_second, -direction, row);
+    add_gradient(q, pairs[p], found, -1.0, j.row(static_cast<Eigen::Index>(p)).data());
+  }
+}
+
+void find_near_pairs(const ConfigurationState& q, const Eigen::VectorXd& weights, double limit,
+                     std::vector<NearPair>& near_pairs, std::vector<double>& gradients) {
+  near_pairs.clear();
+  gradients.clear();
+  const std::vector<SelfCollisionShapes::Pair>& pairs = q.robot->self_collision.pairs;
+  const std::size_t size = static_cast<std::size_t>(q.model().tangent_size());
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    if (weights[static_cast<Eigen::Index>(p)] == 0.0 || !near(q, pairs[p], limit)) continue;
+    const Nearest found = nearest(q, pairs[p], limit);
+    if (found.distance >= limit) continue;
+    near_pairs.push_back({static_cast<int>(p), found.distance});
+    gradients.resize(gradients.size() + size, 0.0);
+    add_gradient(q, pairs[p], found, 1.0, gradients.data() + gradients.size() - size);
   }
 }
 

@@ -18,6 +18,8 @@
 #include <locograph/plugins/configuration/limit_kind.h>
 #include <locograph/plugins/configuration/row_labels.h>
 
+#include <vector>
+
 namespace locograph {
 
 struct EdgeSelfCollision : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
@@ -39,6 +41,18 @@ struct EdgeSelfCollision : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
   double row_tolerance(int) const { return margin_tolerance(margin_m); }
   RowLabel row_label(int row, const VertexConfiguration& q) const;
 };
+
+/// A pair of RobotParameter::self_collision and its distance.
+struct NearPair {
+  int pair;
+  double distance_m;
+};
+
+/// The pairs with a weight whose distance is below `limit`, in their order, and, one behind the
+/// other, the gradients of their distances: tangent_size numbers each.
+void find_near_pairs(const ConfigurationState& q, const Eigen::VectorXd& weights, double limit,
+                     std::vector<NearPair>& pairs, std::vector<double>& gradients);
+
 LOCOGRAPH_REGISTER_EDGE(EdgeSelfCollision::kTag, EdgeSelfCollision)
 extern template class TypedEdgePool<EdgeSelfCollision>;
 

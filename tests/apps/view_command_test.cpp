@@ -1,5 +1,6 @@
 #include <apps/view_test_support.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -163,6 +164,43 @@ TEST(View, PostureShowsTheForcesThatHoldTheRobot) {
   EXPECT_NEAR(lifted_N, weight_N, 0.01 * weight_N);
   // The wall pushes back, along its normal.
   EXPECT_LE(contacts[2]["force"][0], 1e-6);
+}
+
+TEST(View, StancesShowWhatTheyStandOnAndWhatBears) {
+  LOCOGRAPH_NEEDS_VIEWER();
+  const CommandRunner runner;
+  ASSERT_EQ(runner.run("plan ladder_climbing --stances-only -o s.g2o").exit_code, 0);
+  const nlohmann::json scene = view(runner, "s.g2o");
+  EXPECT_EQ(scene["plan"]["stances_only"], true);
+  EXPECT_EQ(scene["stances"].size(), scene["plan"]["times"].size());
+  EXPECT_GT(scene["surfaces"].size(), 10u) << "floor and rungs";
+  double shortest_m = 1.0;
+  for (const nlohmann::json& here : scene["plan"]["contacts"]) {
+    for (const nlohmann::json& contact : here) {
+      EXPECT_GT(contact["friction"], 0.0);
+      ASSERT_EQ(contact.contains("area"), contact["kind"] == "surface") << contact["name"];
+      if (contact["kind"] != "surface") continue;
+      ASSERT_GE(contact["area"].size(), 4u);
+      double first_m = 1e9, last_m = -1e9;
+      for (const nlohmann::json& corner : contact["area"]) {
+        EXPECT_NEAR(corner[2].get<double>(), contact["position"][2].get<double>(), 1e-3);
+        first_m = std::min(first_m, corner[0].get<double>());
+        last_m = std::max(last_m, corner[0].get<double>());
+      }
+      shortest_m = std::min(shortest_m, last_m - first_m);
+    }
+  }
+  EXPECT_NEAR(shortest_m, 0.1, 1e-3) << "a rung is less deep than a sole is long";
+}
+
+TEST(View, BarsAreShown) {
+  LOCOGRAPH_NEEDS_VIEWER();
+  const CommandRunner runner;
+  ASSERT_EQ(runner.run("plan gap_with_handrail --stances-only -o s.g2o").exit_code, 0);
+  const nlohmann::json bars = view(runner, "s.g2o --no-check")["bars"];
+  ASSERT_EQ(bars.size(), 1u);
+  EXPECT_GT(bars[0]["radius"], 0.0);
+  EXPECT_NE(bars[0]["from"], bars[0]["to"]);
 }
 
 TEST(View, RefusesWhatItCannotShow) {

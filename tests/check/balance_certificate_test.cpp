@@ -213,6 +213,34 @@ TEST(BalanceCertificate, ReachesATorqueLimitExactly) {
   EXPECT_NEAR(certify(robot, standing(robot), {foot}, least).max_torque_ratio, 2.0, 1e-5);
 }
 
+TEST(BalanceCertificate, ScalesEveryEffortAlike) {
+  const double needed = 2.0 * kGravity;
+  const Robot robot = arm(1.6 * needed, true);
+  GivenContact foot = contact_at("foot", ContactKind::kSurface, 0.5);
+  foot.half_x_m = 2.0;
+  GivenContact hand = contact_at("arm", ContactKind::kPoint, 0.5);
+  hand.point = Vector3d::UnitX();
+  hand.max_force_N = 0.4 * needed;
+  BalanceOptions half;
+  half.effort_scale = 0.5;
+  const BalanceCertificate weak = certify(robot, standing(robot), {foot}, half);
+  EXPECT_FALSE(weak.balanced);
+  EXPECT_NEAR(weak.margin, 1.0 - 2.0 / 1.6, 1e-5);
+  EXPECT_NEAR(weak.max_torque_ratio, 2.0 * certify(robot, standing(robot), {foot}).max_torque_ratio,
+              1e-8);
+  // As a robot that has half the effort, with joints that contacts load, too.
+  const Robot halved = arm(0.8 * needed, true);
+  for (const bool least : {false, true}) {
+    BalanceOptions whole;
+    whole.least_torques = half.least_torques = least;
+    const BalanceCertificate scaled = certify(robot, standing(robot), {foot, hand}, half),
+                             own = certify(halved, standing(halved), {foot, hand}, whole);
+    EXPECT_TRUE(scaled.balanced);
+    EXPECT_NEAR(scaled.margin, own.margin, 1e-8);
+    EXPECT_NEAR(scaled.max_torque_ratio, own.max_torque_ratio, 1e-8);
+  }
+}
+
 TEST(BalanceCertificate, AsksAFixedBaseForTorquesOnly) {
   const double needed = 2.0 * kGravity;
   const Robot strong = arm(2.0 * needed, false), weak = arm(0.5 * needed, false);
@@ -446,7 +474,8 @@ TEST(BalanceCertificate, GainsNothingByFewerSidesOrByMoreLimits) {
   for (int i = 0; i < 20; ++i) {
     const RandomStance stance = random_stance(random);
     const auto margin = [&](int facets, bool enforce) {
-      return certify(coman_plus(), stance.configuration, stance.contacts, {enforce, facets, false})
+      return certify(coman_plus(), stance.configuration, stance.contacts,
+                     {.enforce_torque_limits = enforce, .facets = facets})
           .margin;
     };
     // Below zero the cones are shifted down, blunt ones by less.
@@ -516,11 +545,15 @@ TEST(BalanceCertificate, RefusesWhatMakesNoSenseByName) {
   EXPECT_NE(error([](C, Q q, O) { q[6] = 2.0; }).find("quaternion"), std::string::npos);
   EXPECT_NE(error([](C, Q, O o) { o.facets = 2; }).find("2 sides"), std::string::npos);
   EXPECT_NE(error([](C, Q, O o) { o.facets = 65; }).find("65 sides"), std::string::npos);
+  for (const double scale : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
+    EXPECT_NE(error([&](C, Q, O o) { o.effort_scale = scale; }).find("efforts"), std::string::npos);
+  }
 
   const Robot powerless = arm(0.0, true);
   const GivenContact foot = contact_at("foot", ContactKind::kSurface, 0.5);
   EXPECT_THROW(certify(powerless, standing(powerless), {foot}), Error);
-  EXPECT_NO_THROW(certify(powerless, standing(powerless), {foot}, {false, 16, false}));
+  EXPECT_NO_THROW(
+      certify(powerless, standing(powerless), {foot}, {.enforce_torque_limits = false}));
 }
 
 }  // namespace

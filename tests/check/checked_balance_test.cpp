@@ -132,6 +132,16 @@ TEST(CheckedBalance, TellsTorquesFromBalance) {
   EXPECT_TRUE(arm.check().constraint("static_balance").violated);
 }
 
+TEST(CheckedBalance, TakesEffortsAsTheyAreScaled) {
+  WeakArm arm;
+  arm.options.effort_scale = 0.5;
+  EXPECT_NEAR(arm.check().max_torque_ratio.value(), 4.0, 1e-6);
+  arm.options.effort_scale = 4.0;
+  const CheckReport report = arm.check();
+  EXPECT_TRUE(report.feasible);
+  EXPECT_NEAR(report.max_torque_ratio.value(), 0.5, 1e-5);
+}
+
 TEST(CheckedBalance, RefusesContactsAndOptionsThatMakeNoSense) {
   WeakArm arm;
   arm.options.min_balance_margin = 1.0;

@@ -74,7 +74,7 @@ std::vector<Obstacle> random_obstacles(Random& random, int count, bool moving) {
 struct Searched {
   Searched(const Robot& robot, std::vector<Obstacle> obstacles, const Motion& motion,
            double cutoff_m = 0.5)
-      : world{nullptr, std::move(obstacles), {}},
+      : world{nullptr, std::move(obstacles), {}, {}},
         exact(robot, world),
         shapes(robot),
         sampler(robot, motion),

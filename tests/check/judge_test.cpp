@@ -99,7 +99,7 @@ TEST(Judge, DrivesOverAMappedFloorButNotThroughAMappedWall) {
   boxes[0].world_from_box.translation() << 1.0, 0.0, -0.025;
   boxes[0].size << 4.0, 2.0, 0.04;
   const Motion motion = centauro().drive(11, 0.08, 0.8);
-  World world{octree_from_boxes(boxes, 0.05), {}, {ground()}};
+  World world{octree_from_boxes(boxes, 0.05), {}, {ground()}, {}};
   const CheckReport floor = Judge(centauro().shared, world).check(motion);
   EXPECT_EQ(violated(floor), std::set<std::string>{});
   boxes.push_back({Eigen::Isometry3d::Identity(), {0.05, 2.0, 1.0}});
@@ -165,6 +165,11 @@ TEST(Judge, RefusesCallsThatMakeNoSense) {
   options = {};
   options.until_s = kInfinity;
   refused(good, options);
+  for (const double scale : {0.0, -1.0, kNaN, kInfinity}) {
+    options = {};
+    options.effort_scale = scale;
+    refused(good, options);
+  }
   EXPECT_THROW(check_with({}, good).constraint("beauty"), Error);
 }
 

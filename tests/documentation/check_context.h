@@ -38,6 +38,11 @@ extern MovingShapes shapes;
 extern MotionSampler sampler;
 void use(const JudgedStance& stance);
 }  // namespace check_context_h
+namespace bar_contact_h {
+extern const Contact contact;
+extern const Bar bar;
+extern const Eigen::Isometry3d world_from_link;
+}  // namespace bar_contact_h
 namespace check_report_h {
 extern const Judge judge;
 }

@@ -3,6 +3,11 @@
 
 #include <locograph/check/judge.h>
 #include <locograph/core/graph_file.h>
+#include <locograph/planners/offline/stance/plan_stances.h>
+#include <locograph/planners/offline/stance/stance_graph.h>
+#include <locograph/planners/offline/stance/stance_path.h>
+#include <locograph/planners/offline/stance/stance_problem.h>
+#include <locograph/planners/offline/stance/transition_rows.h>
 #include <locograph/planners/online/refine.h>
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
@@ -10,6 +15,7 @@
 #include <locograph/planners/posture/posture_graph.h>
 #include <locograph/planners/posture/posture_solver.h>
 #include <locograph/planners/scenario/scenario.h>
+#include <locograph/planners/scenario/snap_to_places.h>
 #include <locograph/robots/xml_file.h>
 
 #include <filesystem>
@@ -35,6 +41,55 @@ extern const std::shared_ptr<const RobotParameter> robot;
 extern const std::shared_ptr<const WorldParameter> world;
 extern const Motion motion;
 }  // namespace offline_drive_wheeled_plan_h
+namespace offline_stance_balance_region_h {
+extern const std::vector<BearingContact> bearing;
+extern const RobotState state;
+}  // namespace offline_stance_balance_region_h
+namespace offline_stance_plan_stances_h {
+extern const StanceProblem problem;
+extern const StancePlannerOptions options;
+bool search(StanceSpace& space, const Footing& goal, StancePath& path);
+}  // namespace offline_stance_plan_stances_h
+namespace offline_stance_rrt_planner_h {
+extern const StanceProblem problem;
+}
+namespace offline_stance_stance_path_h {
+extern StanceSpace space;
+extern const Judge judge;
+extern const Footing footing;
+extern const Eigen::VectorXd configuration;
+}  // namespace offline_stance_stance_path_h
+namespace offline_stance_stance_planner_h {
+extern const Scenario scenario;
+}
+namespace offline_stance_torque_programme_h {
+extern const std::vector<BearingContact> bearing;
+extern const RobotState state;
+extern Eigen::VectorXd gradient;
+}  // namespace offline_stance_torque_programme_h
+namespace offline_stance_transition_rows_h {
+extern const std::shared_ptr<const RobotParameter> robot;
+extern const TransitionProblem problem;
+extern const TransitionOptions options;
+extern const Eigen::VectorXd q;
+extern double worst;
+}  // namespace offline_stance_transition_rows_h
+namespace offline_stance_stance_graph_h {
+extern const Scenario scenario;
+extern const StanceProblem problem;
+extern const StancePlan plan;
+}  // namespace offline_stance_stance_graph_h
+namespace offline_stance_stance_space_h {
+extern const StanceProblem problem;
+extern const StancePlannerOptions options;
+extern const Eigen::VectorXd q;
+}  // namespace offline_stance_stance_space_h
+namespace offline_stance_transition_solver_h {
+extern const std::shared_ptr<const RobotParameter> robot;
+extern const Stance larger;
+extern const BalanceRegion region_of_smaller;
+extern const Eigen::VectorXd q, home;
+}  // namespace offline_stance_transition_solver_h
 namespace online_detour_search_h {
 extern const std::shared_ptr<const RobotParameter> robot;
 extern const DetourOptions options;
@@ -81,6 +136,10 @@ extern const std::filesystem::path urdf, srdf;
 extern const RobotOptions options;
 extern const Eigen::VectorXd home;
 }  // namespace posture_posture_solver_h
+namespace scenario_snap_to_places_h {
+extern const Scenario scenario;
+extern ContactTask task;
+}  // namespace scenario_snap_to_places_h
 namespace scenario_effector_element_h {
 extern const XmlFile xml;
 extern const XmlFile::Element element;

@@ -6,6 +6,8 @@
 #include <locograph/world/convex_shape.h>
 #include <locograph/world/distance_field.h>
 #include <locograph/world/octree.h>
+#include <locograph/world/point_cloud.h>
+#include <locograph/world/surfaces_of.h>
 #include <locograph/world/world.h>
 
 #include <memory>
@@ -37,6 +39,23 @@ extern const int sole;
 }  // namespace collision_world_h
 namespace distance_view_h {
 extern const World world;
+}
+namespace leftover_map_h {
+extern World world;
+extern const Surface surface;
+extern const std::vector<Eigen::Vector3d> points;
+extern const std::vector<Bar> bars;
+}  // namespace leftover_map_h
+namespace planar_patches_h {
+extern const std::vector<Eigen::Vector3d> points;
+extern const Eigen::Vector3d camera_position;
+}  // namespace planar_patches_h
+namespace point_grid_h {
+extern const std::vector<Eigen::Vector3d> points;
+extern const int v;
+}  // namespace point_grid_h
+namespace surfaces_of_h {
+extern const Eigen::Isometry3d world_from_mesh;
 }
 
 }  // namespace locograph::documentation::in_world

@@ -6,6 +6,11 @@
 #include <locograph/world/distance_view.h>
 #include <locograph/world/octree.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
 #include "common/temporary_folder.h"
 
 namespace locograph {
@@ -15,11 +20,14 @@ namespace {
 class BallAround : public ::testing::Test {
  protected:
   CollisionWorld::Surroundings at(const World& world, double x, double height, bool touches,
-                                  std::vector<int> surfaces = {0}) const {
+                                  std::vector<int> surfaces = {0},
+                                  std::vector<int> bars = {}) const {
     std::vector<Eigen::Isometry3d> poses(1, Eigen::Isometry3d::Identity());
     poses[0].translation() << x, 0.0, 0.1 + height;
-    const CollisionWorld::Touch touch{
-        .position = {x, 0.0, 0.0}, .surfaces = std::move(surfaces), .links = {0}};
+    const CollisionWorld::Touch touch{.position = {x, 0.0, 0.0},
+                                      .surfaces = std::move(surfaces),
+                                      .bars = std::move(bars),
+                                      .links = {0}};
     CollisionWorld::Query query{.world_from_link = poses};
     if (touches) query.touches = {&touch, 1};
     return CollisionWorld(robot_, world).surroundings(query);
@@ -78,7 +86,7 @@ TEST_F(BallAround, TouchesObstaclesAndVoxelsBehindThePlaneOfItsContactOnly) {
   std::vector<Box> boxes(1);
   boxes[0].world_from_box.translation().z() = -0.1;
   boxes[0].size << 1.0, 1.0, 0.2;
-  world = {octree_from_boxes(boxes, 0.05), {}, {}};
+  world = {octree_from_boxes(boxes, 0.05), {}, {}, {}};
   EXPECT_LT(at(world, 0.0, -0.01, false, {}).obstacle.distance_m, 0.0);
   EXPECT_GT(at(world, 0.0, -0.01, true, {}).obstacle.distance_m, 0.0);
   EXPECT_LT(at(world, 0.0, -0.01, true, {}).touched.distance_m, -0.005);
@@ -97,13 +105,84 @@ TEST_F(BallAround, RefusesSurfacesThatAreNone) {
   EXPECT_THROW(CollisionWorld(robot_, on_plate(-1.0)), Error);
 }
 
+/// Along y, its top at z = 0.
+Bar rung() {
+  return {.name = "rung", .from = {0.0, -0.5, -0.02}, .to = {0.0, 0.5, -0.02}, .radius_m = 0.02};
+}
+
+TEST_F(BallAround, HasTheDistanceOfACylinderFromABar) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto some = [&] {
+    return Eigen::Vector3d(uniform(random), uniform(random), uniform(random));
+  };
+  int near = 0;
+  for (int i = 0; i < 400; ++i) {
+    World world;
+    world.bars = {{.name = "", .from = some(), .to = some(), .radius_m = 0.03}};
+    const Bar& bar = world.bars[0];
+    const Eigen::Vector3d axis = (bar.to - bar.from).normalized();
+    const std::vector<Eigen::Isometry3d> poses = {Eigen::Isometry3d(Eigen::Translation3d(
+        bar.from + 0.6 * (1.0 + uniform(random)) * (bar.to - bar.from) + 0.2 * some()))};
+    const double length = (bar.to - bar.from).norm(),
+                 along = axis.dot(poses[0].translation() - bar.from),
+                 aside = (poses[0].translation() - bar.from - along * axis).norm() - 0.03,
+                 beyond = std::max(-along, along - length);
+    const double expected = std::hypot(std::max(0.0, aside), std::max(0.0, beyond)) - 0.1;
+    if (aside < 0.0 && beyond < 0.0) continue;  // the ball's centre is in the bar
+    const CollisionWorld::Closest closest =
+        CollisionWorld(robot_, world).surroundings({.world_from_link = poses}).surface;
+    const bool found = expected < 0.15;
+    EXPECT_NEAR(closest.distance_m, found ? expected : 0.15, expected < 0.0 ? 1e-4 : 1e-5);
+    if (std::abs(expected - 0.15) < 1e-4) continue;
+    EXPECT_EQ(closest.link, found ? 0 : -1);
+    EXPECT_EQ(closest.what, found ? "bar" : "");
+    near += found ? 1 : 0;
+  }
+  EXPECT_GT(near, 50);
+}
+
+TEST_F(BallAround, TouchesTheBarThatItIsSaidToTouchAndNoOther) {
+  World world;
+  world.bars = {rung(), rung()};
+  world.bars[1].name = "rung_2";
+  world.bars[1].from.x() = world.bars[1].to.x() = 0.1;
+  EXPECT_NEAR(at(world, 0.0, 0.05, false, {}).surface.distance_m, 0.05, 1e-5);
+  EXPECT_EQ(at(world, 0.0, -0.01, false, {}).surface.what, "rung");
+  const CollisionWorld::Surroundings touching = at(world, 0.0, -0.01, true, {}, {0});
+  EXPECT_NEAR(touching.touched.distance_m, -0.01, 1e-9);
+  EXPECT_EQ(touching.touched.what, "rung");
+  EXPECT_NEAR(touching.surface.distance_m, std::hypot(0.1, 0.11) - 0.12, 1e-5);
+  EXPECT_EQ(touching.surface.what, "rung_2");
+  // Being below the plane of the contact is no excuse.
+  const CollisionWorld::Surroundings other = at(world, 0.0, -0.01, true, {}, {1});
+  EXPECT_NEAR(other.surface.distance_m, -0.01, 1e-4);
+  EXPECT_EQ(other.touched.link, -1);
+}
+
+TEST_F(BallAround, RefusesBarsThatAreNone) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  World world;
+  world.bars = {rung()};
+  EXPECT_NO_THROW(CollisionWorld(robot_, world));
+  for (const double radius : {0.0, -0.02, nan, std::numeric_limits<double>::infinity()}) {
+    world.bars[0].radius_m = radius;
+    EXPECT_THROW(CollisionWorld(robot_, world), Error) << radius;
+  }
+  world.bars = {rung()};
+  world.bars[0].to = world.bars[0].from;
+  EXPECT_THROW(CollisionWorld(robot_, world), Error);
+  world.bars[0].to.x() = nan;
+  EXPECT_THROW(CollisionWorld(robot_, world), Error);
+}
+
 TEST(DistanceView, TakesMapAndObstaclesAndLeavesOutTheGround) {
   std::vector<Box> boxes(2);
   boxes[0].world_from_box.translation().z() = -0.025;
   boxes[0].size << 2.0, 2.0, 0.04;
   boxes[1].world_from_box.translation() << 0.5, 0.0, 0.25;
   boxes[1].size << 0.1, 0.1, 0.5;
-  World world{octree_from_boxes(boxes, 0.05), {}, {}};
+  World world{octree_from_boxes(boxes, 0.05), {}, {}, {}};
   EXPECT_LT(distance_view(world).distance({0.0, 0.0, 0.1}, 0.0), 0.11);
   world.surfaces = {ground()};
   EXPECT_EQ(ground_height(world), 0.0);

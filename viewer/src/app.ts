@@ -13,6 +13,7 @@ import { Player } from './player';
 import { Scene } from './scene_format';
 import { addSceneLayers } from './scene_layers';
 import { SceneViews } from './scene_views';
+import { MOST_GHOSTS } from './robot_view';
 import { Stage } from './stage';
 import { preferredTheme, ThemeName, THEMES } from './theme';
 import { Timeline } from './timeline';
@@ -69,6 +70,7 @@ export class App implements PageActions {
     this.views = new SceneViews(scene, this.stage.scene, overlay);
     const { plan, kinematics, robot, graph, violations } = this.views;
     this.player = new Player(plan);
+    if (plan?.steps) this.ghostNumber = Math.min(plan.count, MOST_GHOSTS);
 
     this.panel = new Panel(this.page, scene, violations.marks, (i) => this.jumpTo(i));
     this.panel.addMissing(scene.robot?.missing ?? []);
@@ -97,7 +99,7 @@ export class App implements PageActions {
     this.resize();
     this.setExtent();
     this.update();
-    this.setView(graph ? (graph.planar ? 'top' : 'overview') : robot ? 'follow' : 'overview');
+    this.setView(graph ? (graph.planar ? 'top' : 'overview') : robot && !plan?.steps ? 'follow' : 'overview');
   }
 
   // Building
@@ -108,7 +110,7 @@ export class App implements PageActions {
     const input = element('input', '', label);
     input.type = 'number';
     input.min = '2';
-    input.max = '60';
+    input.max = String(MOST_GHOSTS);
     input.value = String(this.ghostNumber);
     input.addEventListener('change', () => {
       this.setGhosts(Number(input.value));
@@ -155,7 +157,7 @@ export class App implements PageActions {
   }
 
   setGhosts(number: number): void {
-    if (Number.isFinite(number)) this.ghostNumber = Math.min(Math.max(Math.round(number), 2), 60);
+    if (Number.isFinite(number)) this.ghostNumber = Math.min(Math.max(Math.round(number), 2), MOST_GHOSTS);
     this.invalidate(true);
   }
 
@@ -202,7 +204,8 @@ export class App implements PageActions {
         this.rig.look(view, graph.box.getCenter(this.centre), radius, 0);
       }
     } else if (view === 'overview' || !robot || !worldFromBase) {
-      this.rig.lookAtBox(this.views.box(), false);
+      if (plan?.steps) this.rig.fitBox(this.views.box());
+      else this.rig.lookAtBox(this.views.box(), false);
       this.rig.following = false;
     } else {
       this.radius = 0.56 * robot.bounds(this.centre);
@@ -220,7 +223,7 @@ export class App implements PageActions {
   /** Middle and radius of what the camera that goes with the robot sees now. */
   private inSight(): number {
     const robotAlone = this.rig.view === 'front' || this.rig.view === 'side';
-    const box = robotAlone ? this.views.robotBox() : this.views.nearBox();
+    const box = robotAlone ? this.views.robotBox() : this.views.nearBox(this.player.time);
     box.getCenter(this.centre);
     return Math.max(0.56 * box.min.distanceTo(box.max), 0.3);
   }
@@ -294,7 +297,8 @@ export class App implements PageActions {
     }
     if (this.player.advance(seconds)) this.changed = true;
     if (this.changed) this.update();
-    violations.update(this.player.time, this.stage.camera, this.width, this.height);
+    const time = plan?.steps ? plan.times[this.player.index] : this.player.time;
+    violations.update(time, this.stage.camera, this.width, this.height);
     const drawn = this.stage.draw();
     if (drawn) ++this.frames;
     if (drawn && now - this.panelTime > PANEL_EVERY_MS) {

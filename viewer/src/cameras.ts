@@ -54,6 +54,26 @@ export class CameraRig {
     this.look(fromAbove ? 'top' : 'overview', centre, Math.max(0.92 * radius, 0.5), 0);
   }
 
+  /** As an overview of a box, from as near as all of it is in the picture. */
+  fitBox(box: Box3): void {
+    this.lookAtBox(box, false);
+    const { camera, controls } = this.stage;
+    const half = Math.tan((0.5 * camera.fov * Math.PI) / 180);
+    const right = new Vector3().crossVectors(this.up, this.direction).normalize();
+    const above = new Vector3().crossVectors(this.direction, right);
+    const corner = new Vector3();
+    let distance = 0;
+    for (let i = 0; i < 8; ++i) {
+      corner.set(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1).multiplyScalar(0.5);
+      corner.multiply(box.getSize(this.shift));
+      const across = Math.abs(corner.dot(right)) / camera.aspect;
+      const aside = Math.max(across, Math.abs(corner.dot(above))) / half;
+      distance = Math.max(distance, corner.dot(this.direction) + 1.05 * aside);
+    }
+    camera.position.copy(controls.target).addScaledVector(this.direction, distance);
+    controls.update();
+  }
+
   /** Keeps a sphere in the picture, where and as large as the one that was looked at. */
   follow(centre: Vector3, radius: number): void {
     const { camera, controls } = this.stage;
@@ -76,7 +96,7 @@ export class CameraRig {
   }
 }
 
-/** Heading of a base frame: the angle of its x axis about world z [rad]. */
+/** Heading of a base frame [rad]: of its y axis, since a base may lean forward until x points down. */
 export function headingOf(world: Matrix4): number {
-  return Math.atan2(world.elements[1], world.elements[0]);
+  return Math.atan2(-world.elements[4], world.elements[5]);
 }

@@ -21,6 +21,7 @@ export class CheckList {
     check: CheckReport,
     marks: Mark[],
     private readonly jump: (i: number) => void,
+    private readonly steps = false,
   ) {
     const bad = marks.filter(({ violation }) => violation.violated).length;
     const unjudged = marks.filter(({ violation }) => violation.judged === false).length;
@@ -67,7 +68,7 @@ export class CheckList {
       ? 'not judged'
       : quantity(violation.worst, violation.unit);
     const detail = element('span', 'detail', row);
-    details(violation, time).forEach((part, i) => {
+    details(violation, time, this.steps).forEach((part, i) => {
       if (i > 0) detail.append(' · ');
       element('span', part.length < 24 ? 'short' : '', detail).textContent = part;
     });
@@ -81,7 +82,8 @@ function urgency(violation: Violation): number {
   return violation.judged === false ? 1 : 0;
 }
 
-function details(violation: Violation, time: number | null): string[] {
+/** `steps`: times are numbers of stances. */
+function details(violation: Violation, time: number | null, steps: boolean): string[] {
   if (violation.judged === false) return violation.why ? [violation.why] : [];
   const parts: string[] = [];
   if (violation.what) parts.push(violation.what);
@@ -89,6 +91,6 @@ function details(violation: Violation, time: number | null): string[] {
     parts.push(`limit ${quantity(violation.limit, violation.unit)}`);
   }
   if (violation.violated && violation.count) parts.push(`${violation.count} ×`);
-  if (time !== null) parts.push(`at ${time.toFixed(2)} s`);
+  if (time !== null) parts.push(steps ? `at stance ${time}` : `at ${time.toFixed(2)} s`);
   return parts;
 }

@@ -1,4 +1,4 @@
-/** Contacts now: patches coloured by kind, normals, wrenches, friction cones, CoM and support. */
+/** Contacts now: areas, points and patches coloured by kind, normals, wrenches, friction cones, CoM and support. */
 import {
   BufferAttribute,
   BufferGeometry,
@@ -17,15 +17,16 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
+import { AreaView } from './area_view';
 import { Arrows } from './arrows';
 import { ContactTrack, kindColour } from './contacts';
 import { Kinematics } from './kinematics';
-import { Contact } from './scene_format';
+import { Contact, Vector } from './scene_format';
 import { cylinderAlongZ } from './shapes';
 import { Theme } from './theme';
 
 const Z = new Vector3(0, 0, 1);
-const CONE_HEIGHT_M = 0.16;
+const CONE_HEIGHT_M = 0.24;
 const MOST_CORNERS = 24;
 
 export class ContactView {
@@ -36,12 +37,14 @@ export class ContactView {
   /** Metres of arrow for a newton and for a newton metre. */
   readonly forceScale: number;
 
+  private readonly areas: AreaView;
   private readonly patches: InstancedMesh;
-  private readonly cones: InstancedMesh;
+  private readonly points: InstancedMesh;
+  private readonly cones: InstancedMesh[];
   private readonly normals: Arrows;
   private readonly forceArrows: Arrows;
   private readonly momentArrows: Arrows;
-  private readonly coneMaterial: MeshBasicMaterial;
+  private readonly coneMaterials: MeshBasicMaterial[];
   private readonly massMaterial = new MeshLambertMaterial({
     transparent: true,
     depthTest: false,
@@ -52,6 +55,7 @@ export class ContactView {
   private readonly plumb: Mesh;
   private readonly support: Mesh<BufferGeometry, MeshBasicMaterial>;
   private readonly corners = new Float32Array(3 * MOST_CORNERS);
+  private readonly feet: Vector[] = [];
   private readonly hull: number[] = [];
 
   private readonly matrix = new Matrix4();
@@ -80,23 +84,31 @@ export class ContactView {
       }),
       most,
     );
-    this.coneMaterial = new MeshBasicMaterial({
-      transparent: true,
-      opacity: 0.22,
-      side: DoubleSide,
-      depthWrite: false,
-    });
-    const cone = new ConeGeometry(1, 1, 40, 1, true).rotateX(-Math.PI / 2).translate(0, 0, 0.5);
-    this.cones = new InstancedMesh(cone, this.coneMaterial, most);
-    for (const mesh of [this.patches, this.cones]) {
+    this.points = new InstancedMesh(
+      new SphereGeometry(0.014 * robotScale, 16, 12),
+      new MeshBasicMaterial({ transparent: true, depthTest: false, depthWrite: false }),
+      most,
+    );
+    this.areas = new AreaView(most);
+    const glass = { transparent: true, side: DoubleSide, depthWrite: false };
+    this.coneMaterials = [
+      new MeshBasicMaterial({ ...glass, opacity: 0.14 }),
+      new MeshBasicMaterial({ ...glass, opacity: 0.4, wireframe: true, depthTest: false }),
+    ];
+    const cone = new ConeGeometry(1, 1, 18, 1, true).rotateX(-Math.PI / 2).translate(0, 0, 0.5);
+    this.cones = this.coneMaterials.map((material) => new InstancedMesh(cone, material, most));
+    for (const mesh of [this.patches, this.points, ...this.cones]) {
       mesh.frustumCulled = false;
       mesh.renderOrder = 20;
     }
+    // Seen through feet and balls.
+    this.cones[1].renderOrder = 37;
+    this.points.renderOrder = 39;
     this.normals = new Arrows(0x495057, 0.006 * robotScale, most);
     this.forceArrows = new Arrows(0, 0.011 * robotScale, most, true);
     this.momentArrows = new Arrows(0, 0.008 * robotScale, most, true);
-    this.contacts.add(this.patches, this.normals.group);
-    this.forces.add(this.cones, this.forceArrows.group, this.momentArrows.group);
+    this.contacts.add(this.areas.group, this.patches, this.points, this.normals.group);
+    this.forces.add(...this.cones, this.forceArrows.group, this.momentArrows.group);
 
     this.sphere = new Mesh(new SphereGeometry(0.045 * robotScale, 24, 16), this.massMaterial);
     const flat = new MeshBasicMaterial({
@@ -131,27 +143,39 @@ export class ContactView {
   applyTheme(theme: Theme): void {
     this.forceArrows.colour = theme.force;
     this.momentArrows.colour = theme.moment;
-    this.coneMaterial.color.set(theme.cone);
+    for (const material of this.coneMaterials) material.color.set(theme.cone);
     this.massMaterial.color.set(theme.centreOfMass);
     this.support.material.color.set(theme.base);
   }
 
   update(): void {
     const contacts = this.track?.current ?? [];
+    this.areas.begin();
     this.normals.begin();
     this.forceArrows.begin();
     this.momentArrows.begin();
+    let patches = 0;
+    let points = 0;
     let cones = 0;
     for (let i = 0; i < contacts.length; ++i) {
       const contact = contacts[i];
       const [x, y, z] = contact.position;
       this.normal.fromArray(contact.normal).normalize();
       this.rotation.setFromUnitVectors(Z, this.normal);
-      const size = 0.055 * this.robotScale;
+      this.colour.set(kindColour(contact.kind));
       this.place.set(x, y, z).addScaledVector(this.normal, 0.004);
-      this.matrix.compose(this.place, this.rotation, this.scale.set(size, size, size));
-      this.patches.setMatrixAt(i, this.matrix);
-      this.patches.setColorAt(i, this.colour.set(kindColour(contact.kind)));
+      if (contact.area) {
+        this.areas.add(contact.area, this.normal, this.colour);
+      } else {
+        const size = 0.055 * this.robotScale;
+        this.matrix.compose(this.place, this.rotation, this.scale.set(size, size, size));
+        this.patches.setMatrixAt(patches, this.matrix);
+        this.patches.setColorAt(patches++, this.colour);
+      }
+      if (contact.kind === 'point') {
+        this.points.setMatrixAt(points, this.matrix.makeTranslation(x, y, z));
+        this.points.setColorAt(points++, this.colour);
+      }
       this.normals.add(
         x,
         y,
@@ -164,23 +188,27 @@ export class ContactView {
       if (contact.force) {
         const [fx, fy, fz] = contact.force;
         this.forceArrows.add(x, y, z, fx, fy, fz, this.forceScale);
-        if (contact.friction) {
-          const height = CONE_HEIGHT_M * this.robotScale;
-          const radius = height * contact.friction;
-          this.matrix.compose(this.place, this.rotation, this.scale.set(radius, radius, height));
-          this.cones.setMatrixAt(cones++, this.matrix);
-        }
+      }
+      if (contact.friction && this.track?.hasForces) {
+        const height = CONE_HEIGHT_M * this.robotScale;
+        const radius = height * contact.friction;
+        this.matrix.compose(this.place, this.rotation, this.scale.set(radius, radius, height));
+        for (const mesh of this.cones) mesh.setMatrixAt(cones, this.matrix);
+        ++cones;
       }
       if (contact.moment) {
         const [mx, my, mz] = contact.moment;
         this.momentArrows.add(x, y, z, mx, my, mz, 4 * this.forceScale);
       }
     }
-    this.patches.count = contacts.length;
-    this.cones.count = cones;
-    this.patches.instanceMatrix.needsUpdate = true;
-    this.cones.instanceMatrix.needsUpdate = true;
-    if (this.patches.instanceColor) this.patches.instanceColor.needsUpdate = true;
+    this.patches.count = patches;
+    this.points.count = points;
+    for (const mesh of this.cones) mesh.count = cones;
+    for (const mesh of [this.patches, this.points, ...this.cones]) {
+      mesh.instanceMatrix.needsUpdate = true;
+      if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
+    }
+    this.areas.end();
     this.normals.end();
     this.forceArrows.end();
     this.momentArrows.end();
@@ -196,9 +224,10 @@ export class ContactView {
     this.plumb.position.set(com.x, com.y, floor);
     this.plumb.scale.z = Math.max(com.z - floor, 1e-3);
     const corners = this.supportHull(contacts);
-    this.support.visible = corners >= 3;
+    // Where a contact leans on a wall, what is below the robot says nothing of its balance.
+    this.support.visible = corners >= 3 && contacts.every(({ normal }) => normal[2] > 0.95);
     for (let i = 0; i < corners; ++i) {
-      const [x, y] = contacts[this.hull[i]].position;
+      const [x, y] = this.feet[this.hull[i]];
       this.corners[3 * i] = x;
       this.corners[3 * i + 1] = y;
       this.corners[3 * i + 2] = floor + 0.003;
@@ -207,26 +236,28 @@ export class ContactView {
     this.support.geometry.attributes.position.needsUpdate = true;
   }
 
-  /** Convex hull of the contact points seen from above (gift wrapping); how many corners it has. */
+  /** Convex hull of the contacts seen from above (gift wrapping); how many corners it has. */
   private supportHull(contacts: Contact[]): number {
-    this.hull.length = 0;
-    if (contacts.length < 3) return 0;
+    const { feet } = this;
+    this.hull.length = feet.length = 0;
+    for (const { area, position } of contacts) feet.push(...(area ?? [position]));
+    if (feet.length < 3) return 0;
     let first = 0;
-    for (let i = 1; i < contacts.length; ++i) {
-      if (contacts[i].position[0] < contacts[first].position[0]) first = i;
+    for (let i = 1; i < feet.length; ++i) {
+      if (feet[i][0] < feet[first][0]) first = i;
     }
     let corner = first;
     do {
       this.hull.push(corner);
       let next = corner === 0 ? 1 : 0;
-      const [px, py] = contacts[corner].position;
-      for (let i = 0; i < contacts.length; ++i) {
-        const [ax, ay] = contacts[next].position;
-        const [bx, by] = contacts[i].position;
+      const [px, py] = feet[corner];
+      for (let i = 0; i < feet.length; ++i) {
+        const [ax, ay] = feet[next];
+        const [bx, by] = feet[i];
         if ((ax - px) * (by - py) - (ay - py) * (bx - px) < 0) next = i;
       }
       corner = next;
-    } while (corner !== first && this.hull.length < Math.min(contacts.length, MOST_CORNERS));
+    } while (corner !== first && this.hull.length < Math.min(feet.length, MOST_CORNERS));
     return this.hull.length;
   }
 }

@@ -40,7 +40,7 @@ export class ContactTrack {
     const some = (has: (contact: Contact) => unknown) => plan.contacts.some((c) => c.some(has));
     this.hasForces = some((contact) => contact.force);
     this.hasMoments = some((contact) => contact.moment);
-    this.hasFriction = some((contact) => contact.friction && contact.force);
+    this.hasFriction = this.hasForces && some((contact) => contact.friction);
     this.pool = Array.from({ length: this.most }, emptyContact);
     this.forces = this.pool.map(() => [0, 0, 0]);
     this.moments = this.pool.map(() => [0, 0, 0]);
@@ -61,6 +61,7 @@ export class ContactTrack {
       contact.kind = a.kind;
       contact.radius = a.radius;
       contact.friction = a.friction;
+      contact.area = a.area;
       contact.force = a.force && b.force ? this.forces[i] : undefined;
       contact.moment = a.moment && b.moment ? this.moments[i] : undefined;
       for (let k = 0; k < 3; ++k) {
@@ -91,8 +92,17 @@ export class ContactTrack {
       this.inverse.copy(kinematics.worldFromLink[contact.link]).invert();
       return new Vector3().fromArray(contact.position).applyMatrix4(this.inverse);
     });
+    const corners = contacts.map((contact) => {
+      this.inverse.copy(kinematics.worldFromLink[contact.link]).invert();
+      return contact.area?.map((corner) =>
+        new Vector3().fromArray(corner).applyMatrix4(this.inverse),
+      );
+    });
     kinematics.update(configuration);
     contacts.forEach((contact, i) => {
+      corners[i]?.forEach((corner, k) => {
+        corner.applyMatrix4(kinematics.worldFromLink[contact.link]).toArray(contact.area![k]);
+      });
       const world = kinematics.worldFromLink[contact.link];
       if (contact.kind === 'wheel' && contact.radius) {
         this.point.setFromMatrixPosition(world);

@@ -4,7 +4,7 @@ import { number } from './dom';
 import { Layers } from './layers';
 import { LegendEntry } from './legend';
 import { Plan } from './plan';
-import { GHOST_COLOUR } from './robot_view';
+import { FIRST_GHOST, LAST_GHOST } from './robot_view';
 import { SceneViews } from './scene_views';
 import { Theme } from './theme';
 
@@ -40,7 +40,8 @@ export function legendEntries(
     add('centre of mass, projection', theme.centreOfMass, 'dot', 'com');
   }
   if (world.hasMoving) add('moving obstacle', theme.moving, 'patch', 'obstacles');
-  add('ghost', GHOST_COLOUR, 'patch', 'ghosts');
+  add('first ghost', FIRST_GHOST, 'patch', 'ghosts');
+  add('last ghost', LAST_GHOST, 'patch', 'ghosts');
   add('violation', theme.violation, 'dot', 'violations');
   add(graph?.hasBefore ? 'after optimisation' : 'odometry', theme.after, 'line', 'after');
   add('before', theme.before, 'line', 'before');

@@ -30,7 +30,8 @@ export class Panel {
     this.element.id = 'panel';
     this.element.setAttribute('aria-label', 'Details');
     if (scene.check) {
-      this.check = new CheckList(this.section('Check'), scene.check, marks, jump);
+      const steps = scene.plan?.stances_only;
+      this.check = new CheckList(this.section('Check'), scene.check, marks, jump, steps);
     }
   }
 

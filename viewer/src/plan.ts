@@ -1,5 +1,6 @@
 /**
- * A plan: configurations over time, interpolated (linear, and slerp for the base).
+ * A plan: configurations over time, interpolated (linear, and slerp for the base). In a plan of
+ * stances nothing lies between configurations: each is shown for a second.
  *
  *     const plan = new Plan(scene.plan, scene.robot.floating_base);
  *     plan.sample(12.3, configuration);   // into an array of plan.size numbers
@@ -19,6 +20,8 @@ export interface PlanSeries {
 export class Plan {
   readonly size: number;
   readonly count: number;
+  /** A plan of stances. */
+  readonly steps: boolean;
   readonly times: Float64Array;
   readonly configurations: Float32Array;
   readonly reference: Float32Array | null;
@@ -39,7 +42,10 @@ export class Plan {
     this.configurations = unpackFloats(description.configurations, this.size, 'configurations');
     this.count = this.configurations.length / this.size;
     if (this.count === 0) throw new SceneError('The plan is empty: it holds no configurations.');
-    this.times = timesOf(description.times, this.count);
+    this.steps = description.stances_only ?? false;
+    this.times = this.steps
+      ? Float64Array.from({ length: this.count }, (_, i) => i)
+      : timesOf(description.times, this.count);
     this.reference = description.reference
       ? unpackFloats(description.reference, this.size, 'the reference plan')
       : null;
@@ -60,7 +66,13 @@ export class Plan {
   }
 
   get end(): number {
-    return this.times[this.count - 1];
+    return this.until(this.count - 1);
+  }
+
+  /** Until when a configuration is the last one passed. */
+  until(index: number): number {
+    if (this.steps) return index + 1;
+    return this.times[Math.min(index + 1, this.count - 1)];
   }
 
   /** Last configuration at or before a time. */
@@ -78,13 +90,14 @@ export class Plan {
   /** The configuration nearest in time. */
   nearestIndex(time: number): number {
     const index = this.indexAt(time);
+    if (this.steps) return index;
     const next = Math.min(index + 1, this.count - 1);
     return time - this.times[index] > this.times[next] - time ? next : index;
   }
 
   /** How far between configurations `index` and the next one a time lies, in 0…1. */
   fractionAt(time: number, index: number): number {
-    if (index + 1 >= this.count) return 0;
+    if (this.steps || index + 1 >= this.count) return 0;
     const begin = this.times[index];
     const step = this.times[index + 1] - begin;
     return step > 0 ? Math.min(Math.max((time - begin) / step, 0), 1) : 0;
@@ -115,7 +128,7 @@ export class Plan {
   velocities(time: number, velocities: Float32Array): void {
     const index = Math.min(this.indexAt(time), Math.max(this.count - 2, 0));
     const next = Math.min(index + 1, this.count - 1);
-    const step = this.times[next] - this.times[index];
+    const step = this.steps ? 0 : this.times[next] - this.times[index];
     const offset = this.floating ? 7 : 0;
     for (let k = 0; k < this.size - offset; ++k) {
       const change =

@@ -1,6 +1,7 @@
-/** The robot on the screen, and its ghosts: translucent copies at key configurations. */
+/** The robot on the screen, and its ghosts: translucent copies, coloured from first to last. */
 import {
   Box3,
+  Color,
   EqualDepth,
   Group,
   InstancedMesh,
@@ -17,8 +18,9 @@ import { RobotDescription } from './scene_format';
 import { linkGeometry, Meshes } from './shapes';
 
 const COLLISION_COLOUR = [0.93, 0.6, 0.2];
-const MOST_GHOSTS = 60;
-export const GHOST_COLOUR = 0x8ab6ea;
+export const MOST_GHOSTS = 60;
+export const FIRST_GHOST = 0x8ab6ea;
+export const LAST_GHOST = 0xd08ae0;
 
 interface LinkMesh {
   link: number;
@@ -52,7 +54,6 @@ export class RobotView {
     });
     const ghostDepth = new MeshBasicMaterial({ colorWrite: false });
     const ghost = new MeshLambertMaterial({
-      color: GHOST_COLOUR,
       transparent: true,
       opacity: 0.36,
       depthWrite: false,
@@ -111,19 +112,24 @@ export class RobotView {
   placeGhosts(plan: Plan, number: number): void {
     const count = Math.max(1, Math.min(number, plan.count, MOST_GHOSTS));
     const configuration = new Float32Array(plan.size);
+    const colour = new Color();
     for (let ghost = 0; ghost < count; ++ghost) {
       const index = count === 1 ? 0 : Math.round((ghost * (plan.count - 1)) / (count - 1));
       plan.copyConfiguration(index, configuration);
       this.ghostKinematics.update(configuration);
+      colour.set(FIRST_GHOST).lerp(new Color(LAST_GHOST), ghost / Math.max(count - 1, 1));
       for (const { link, meshes } of this.ghostLinks) {
-        for (const mesh of meshes)
+        for (const mesh of meshes) {
           mesh.setMatrixAt(ghost, this.ghostKinematics.worldFromLink[link]);
+          mesh.setColorAt(ghost, colour);
+        }
       }
     }
     for (const { meshes } of this.ghostLinks) {
       for (const mesh of meshes) {
         mesh.count = count;
         mesh.instanceMatrix.needsUpdate = true;
+        if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
       }
     }
   }

@@ -61,6 +61,8 @@ export interface Contact {
   normal: Vector;
   radius?: number;
   friction?: number;
+  /** Corners of what of a surface contact bears, as they go round; two: a line. */
+  area?: Vector[];
   force?: Vector;
   moment?: Vector;
 }
@@ -76,6 +78,8 @@ export interface PlanDescription {
   times?: number[];
   configurations: string;
   configuration_size: number;
+  /** Nothing moves between configurations, and times mean nothing. */
+  stances_only?: boolean;
   reference?: string;
   torques?: string;
   ids?: number[];
@@ -131,6 +135,13 @@ export interface SurfaceDescription {
   size: number[];
 }
 
+export interface BarDescription {
+  name?: string;
+  from: Vector;
+  to: Vector;
+  radius: number;
+}
+
 export interface GraphDescription {
   dimension?: number;
   vertices: string;
@@ -149,6 +160,7 @@ export interface Scene {
   stances?: Stance[];
   map?: { resolution?: number; voxels: string; left_out?: number };
   surfaces?: SurfaceDescription[];
+  bars?: BarDescription[];
   obstacles?: ObstacleDescription[];
   check?: CheckReport;
   graph?: GraphDescription;
@@ -193,6 +205,7 @@ function validate(scene: Scene): void {
   require(scene.robot ||
     scene.map ||
     scene.surfaces ||
+    scene.bars ||
     scene.obstacles, 'The scene holds neither a robot nor a world: there is nothing to show.');
   if (scene.robot) validateRobot(scene.robot);
   if (scene.plan) {

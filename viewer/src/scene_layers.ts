@@ -28,7 +28,8 @@ export function addSceneLayers(layers: Layers, views: SceneViews, ground: Showab
       apply: (on) => robot.showCollision(on),
     });
   }
-  show('ghosts', 'Ghosts of key configurations', 'g', robot?.ghosts, (plan?.count ?? 0) > 1, false);
+  const ghosts = plan?.steps ? 'Ghosts of all stances' : 'Ghosts of key configurations';
+  show('ghosts', ghosts, 'g', robot?.ghosts, (plan?.count ?? 0) > 1, false);
   const contacts = (track?.most ?? 0) > 0;
   show('dots', 'Contact path', 'd', path?.dots, contacts && plan!.count > 1);
   if (contacts && plan!.count > 1) {
@@ -42,13 +43,13 @@ export function addSceneLayers(layers: Layers, views: SceneViews, ground: Showab
   const drives = !!kinematics?.floating && (plan?.count ?? 0) > 1;
   show('base', 'Base path', 'b', path?.lines, drives);
   show('reference', 'Reference plan', 'r', path?.referenceLine, !!plan?.reference);
-  show('contacts', 'Contacts and normals', 'c', contactView?.contacts, contacts);
+  show('contacts', 'Contacts, areas and normals', 'c', contactView?.contacts, contacts);
   show('forces', 'Forces and friction cones', 'f', contactView?.forces, track?.hasForces ?? false);
   const massive = (kinematics?.mass ?? 0) > 0;
   show('com', 'Centre of mass and support', 's', contactView?.balance, massive);
   show('map', 'Map', 'm', voxels?.group, (voxels?.count ?? 0) > 0);
   show('obstacles', 'Obstacles', 'o', world.obstacles, world.obstacles.children.length > 0);
-  show('surfaces', 'Surfaces', 'u', world.surfaces, world.surfaces.children.length > 0);
+  show('surfaces', 'Surfaces and bars', 'u', world.surfaces, world.surfaces.children.length > 0);
   if (views.violations.group.children.length > 0) {
     layers.add({
       id: 'violations',

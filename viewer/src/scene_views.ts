@@ -71,7 +71,7 @@ export class SceneViews {
       const { contacts, forces, balance } = this.contactView;
       drawing.add(contacts, forces, balance);
     }
-    this.world = new WorldView(scene.obstacles ?? [], scene.surfaces ?? []);
+    this.world = new WorldView(scene.obstacles ?? [], scene.surfaces ?? [], scene.bars ?? []);
     drawing.add(this.world.obstacles, this.world.surfaces);
     if (scene.map) {
       this.voxels = new VoxelView(scene.map.voxels, scene.map.resolution);
@@ -107,12 +107,14 @@ export class SceneViews {
     if (this.graph) return this.graph.box;
     const box = new Box3();
     const point = new Vector3();
-    if (this.robot) {
+    if (this.robot && !this.plan?.steps) {
       const size = this.robot.bounds(point);
       box.expandByPoint(point.clone().addScalar(0.3 * size));
       box.expandByPoint(point.subScalar(0.3 * size));
     }
-    if (this.plan && this.kinematics?.floating) {
+    if (this.plan?.steps) {
+      box.union(this.wayBox(this.plan));
+    } else if (this.plan && this.kinematics?.floating) {
       for (let i = 0; i < this.plan.configurations.length; i += this.plan.size) {
         point.fromArray(this.plan.configurations, i);
         box.expandByPoint(point.addScalar(0.5));
@@ -130,6 +132,20 @@ export class SceneViews {
     return box;
   }
 
+  /** The robot in all configurations of a plan, and what it touches in them. */
+  private wayBox(plan: Plan): Box3 {
+    const box = new Box3();
+    for (let i = 0; i < plan.count; ++i) {
+      plan.copyConfiguration(i, this.configuration);
+      this.kinematics!.update(this.configuration);
+      box.union(this.robot!.box());
+      for (const { position } of plan.contacts[i] ?? []) {
+        box.expandByPoint(this.centre.fromArray(position));
+      }
+    }
+    return box;
+  }
+
   /** From now on nearBox() takes the robot to be as large as it is now. */
   measureRobot(): void {
     if (!this.robot) return;
@@ -138,12 +154,19 @@ export class SceneViews {
 
   /** The robot at the time shown. */
   robotBox(): Box3 {
+    if (this.plan?.steps) return this.near.box.copy(this.robot!.box());
     return this.near.box.copy(this.standing).translate(this.base);
   }
 
-  /** The same with what is near it. */
-  nearBox(): Box3 {
+  /** The same with what is near it; in a plan of stances also with what it touches next. */
+  nearBox(time: number): Box3 {
     this.near.begin(this.robotBox());
+    if (this.plan?.steps) {
+      for (const { position } of this.plan.contacts[this.plan.indexAt(time) + 1] ?? []) {
+        this.centre.fromArray(position);
+        this.near.add(this.centre, this.centre);
+      }
+    }
     this.world.addTo(this.near);
     this.voxels?.addTo(this.near, this.near.box.min.z + 0.02);
     return this.near.box;

@@ -6,6 +6,7 @@ import { Plan } from './plan';
 import { Player, SPEEDS } from './player';
 import { Mark } from './violation_view';
 import { Scene, Stance } from './scene_format';
+import { changesOf, changeText, stanceAt, StanceChange } from './stances';
 import { hex, Theme } from './theme';
 
 const ROW_HEIGHT = 12;
@@ -28,6 +29,8 @@ export class Timeline {
   private readonly strip: HTMLCanvasElement;
   private readonly playhead: HTMLElement;
   private readonly rows: Row[];
+  private readonly stances: Stance[];
+  private readonly changes: StanceChange[];
   private width = 0;
 
   constructor(
@@ -77,6 +80,8 @@ export class Timeline {
     this.where = element('span', 'where', controls);
 
     const area = element('div', 'tracks', this.element);
+    this.stances = scene.stances ?? [];
+    this.changes = changesOf(this.stances);
     this.rows = stanceRows(scene, plan).slice(0, MOST_ROWS);
     const names = element('div', 'names', area);
     for (const row of this.rows) element('span', '', names).textContent = row.name;
@@ -113,10 +118,11 @@ export class Timeline {
     if (!context) return;
     context.scale(ratio, ratio);
     const part = (index: number) => hex(theme[this.plan.partOf(index, executed) ?? 'rest']);
-    for (let i = 0; i + 1 < this.plan.count; ++i) {
+    for (let i = 0; i < this.plan.count; ++i) {
       const x = this.x(this.plan.times[i]);
-      context.fillStyle = part(i + 1);
-      context.fillRect(x, 6, Math.max(this.x(this.plan.times[i + 1]) - x + 0.5, 0.5), 5);
+      const end = this.x(this.plan.until(i));
+      context.fillStyle = part(this.plan.steps ? i : i + 1);
+      if (end > x) context.fillRect(x, 6, Math.max(end - x + 0.5, 0.5), 5);
     }
     this.rows.forEach((row, k) => {
       const y = 20 + k * ROW_HEIGHT;
@@ -127,17 +133,18 @@ export class Timeline {
       for (const { from, to, colour } of row.spans) {
         context.fillStyle = colour ?? hex(theme.base);
         const x = this.x(this.plan.times[from]);
-        const end = this.x(this.plan.times[Math.min(to, this.plan.count - 1)]);
+        const end = this.x(this.plan.until(Math.max(to - 1, from)));
         context.beginPath();
         context.roundRect(x, y, Math.max(end - x - 1, 1.5), ROW_HEIGHT - 5, 2);
         context.fill();
       }
       context.globalAlpha = 1;
+      this.drawChanges(context, theme, row.name, y);
     });
     context.fillStyle = hex(theme.violation);
     for (const { violation, time } of this.marks) {
       if (!violation.violated || time === null) continue;
-      const x = this.x(time);
+      const x = this.x(this.plan.steps ? time + 0.5 : time);
       context.beginPath();
       context.moveTo(x - 4, 0);
       context.lineTo(x + 4, 0);
@@ -147,16 +154,45 @@ export class Timeline {
     }
   }
 
+  /** + and − where a stance of a plan of stances takes a contact or leaves it. */
+  private drawChanges(
+    context: CanvasRenderingContext2D,
+    theme: Theme,
+    name: string,
+    y: number,
+  ): void {
+    if (!this.plan.steps || this.x(this.plan.start + 1) < ROW_HEIGHT) return;
+    context.font = 'bold 11px sans-serif';
+    context.textAlign = 'center';
+    context.textBaseline = 'middle';
+    this.stances.forEach(({ from }, i) => {
+      const { added, removed } = this.changes[i];
+      const sign = added.includes(name) ? '+' : removed.includes(name) ? '−' : '';
+      context.fillStyle = sign === '+' ? '#ffffff' : hex(theme.violation);
+      context.fillText(sign, this.x(this.plan.times[from] + 0.5), y + (ROW_HEIGHT - 5) / 2);
+    });
+  }
+
   update(): void {
     const { player, plan } = this;
-    this.playhead.style.transform = `translateX(${this.x(player.time).toFixed(1)}px)`;
-    this.scrubber.value = String(player.time);
-    setText(this.clock, `${player.time.toFixed(2)} / ${plan.end.toFixed(2)} s`);
     const index = player.index;
+    const time = plan.steps ? plan.times[index] + 0.5 : player.time;
+    this.playhead.style.transform = `translateX(${this.x(time).toFixed(1)}px)`;
+    this.scrubber.value = String(player.time);
+    const clock = plan.steps
+      ? `stance ${index} of ${plan.count}`
+      : `${player.time.toFixed(2)} / ${plan.end.toFixed(2)} s`;
+    setText(this.clock, clock);
     const id = plan.ids[index];
     const text = id === undefined || id === index ? `${index}` : `${index} (vertex ${id})`;
-    setText(this.where, `configuration ${text} of ${plan.count}`);
-    this.scrubber.setAttribute('aria-valuetext', `${player.time.toFixed(2)} s, ${index}`);
+    const parts = plan.steps ? [] : [`configuration ${text} of ${plan.count}`];
+    const stance = this.stances.length > 1 ? stanceAt(this.stances, index) : -1;
+    if (stance >= 0) {
+      parts.unshift(changeText(this.changes[stance]));
+      parts.push(quantityOf(this.stances[stance].contacts.length));
+    }
+    setText(this.where, parts.filter((part) => part).join(' · '));
+    this.scrubber.setAttribute('aria-valuetext', plan.steps ? clock : `${player.time.toFixed(2)} s, ${index}`);
     const state = player.playing ? 'Pause (space)' : 'Play (space)';
     if (this.play.title !== state) {
       this.play.title = state;
@@ -174,6 +210,10 @@ export class Timeline {
     const length = this.plan.end - this.plan.start;
     return length > 0 ? ((time - this.plan.start) / length) * this.width : 0;
   }
+}
+
+function quantityOf(contacts: number): string {
+  return contacts === 1 ? '1 contact' : `${contacts} contacts`;
 }
 
 /** Which contact is in force when: from the stances, or from the contacts of the plan. */

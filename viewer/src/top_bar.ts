@@ -53,7 +53,8 @@ function describe(scene: Scene, { graph, plan, voxels }: SceneViews): string {
   const parts: string[] = [];
   if (scene.robot) parts.push(scene.robot.name);
   if (plan && plan.count > 1) {
-    parts.push(`${plan.count} configurations`, `${number(plan.end - plan.start)} s`);
+    if (plan.steps) parts.push(`${plan.count} stances`);
+    else parts.push(`${plan.count} configurations`, `${number(plan.end - plan.start)} s`);
   }
   if (voxels) {
     const left = scene.map?.left_out ?? 0;

@@ -90,7 +90,7 @@ export class ViolationView {
 }
 
 function timeOf(violation: Violation, plan: Plan | null): number | null {
-  if (typeof violation.time === 'number') return violation.time;
+  if (typeof violation.time === 'number' && !plan?.steps) return violation.time;
   const index = violation.index;
   return plan && typeof index === 'number' && index >= 0 && index < plan.count
     ? plan.times[index]

@@ -1,10 +1,12 @@
-/** Surfaces and obstacles; obstacles with key frames move with the plan's time. */
+/** Surfaces, bars and obstacles; obstacles with key frames move with the plan's time. */
 import {
+  BackSide,
   Box3,
   BoxGeometry,
   BufferGeometry,
-  DoubleSide,
+  CylinderGeometry,
   EdgesGeometry,
+  FrontSide,
   Group,
   LineBasicMaterial,
   LineSegments,
@@ -16,9 +18,14 @@ import {
   Vector3,
 } from 'three';
 import { NearBox } from './near';
-import { ObstacleDescription, Pose, SurfaceDescription } from './scene_format';
+import { BarDescription, ObstacleDescription, Pose, SurfaceDescription } from './scene_format';
 import { cylinderAlongZ } from './shapes';
 import { Theme } from './theme';
+
+/** Of a surface's normal, in its shorter side. */
+const NORMAL_LENGTH = 0.15;
+/** Surfaces are drawn above themselves, so that those in the ground are seen. */
+const LIFT_M = 0.002;
 
 interface KeyFrame {
   time: number;
@@ -54,32 +61,64 @@ export class WorldView {
   private readonly shape = new Box3();
   private readonly resting = new MeshLambertMaterial();
   private readonly mobile = new MeshLambertMaterial();
-  private readonly plane = new MeshLambertMaterial({
-    side: DoubleSide,
-    transparent: true,
-    opacity: 0.55,
-    polygonOffset: true,
-    polygonOffsetFactor: 1,
-    polygonOffsetUnits: 1,
-  });
+  /** The side of the normal, which may be touched, and the other one. */
+  private readonly sides = [
+    { side: FrontSide, opacity: 0.55 },
+    { side: BackSide, opacity: 0.14 },
+  ].map(
+    (look) =>
+      new MeshLambertMaterial({
+        ...look,
+        transparent: true,
+        depthWrite: false,
+      }),
+  );
+  private readonly bar = new MeshLambertMaterial();
   private readonly edges = new LineBasicMaterial({ transparent: true, opacity: 0.55 });
 
-  constructor(obstacles: ObstacleDescription[], surfaces: SurfaceDescription[]) {
+  constructor(
+    obstacles: ObstacleDescription[],
+    surfaces: SurfaceDescription[],
+    bars: BarDescription[],
+  ) {
     for (const obstacle of obstacles) this.addObstacle(obstacle);
-    for (const surface of surfaces) {
-      const geometry = new PlaneGeometry(surface.size[0], surface.size[1]);
-      const mesh = new Mesh(geometry, this.plane);
-      mesh.receiveShadow = true;
-      mesh.add(new LineSegments(new EdgesGeometry(geometry), this.edges));
-      const { position, rotation } = keyFrame(0, surface.pose);
-      mesh.position.copy(position);
-      mesh.quaternion.copy(rotation);
-      this.surfaces.add(mesh);
-    }
+    for (const surface of surfaces) this.addSurface(surface);
+    for (const bar of bars) this.addBar(bar);
   }
 
   get hasMoving(): boolean {
     return this.moving.length > 0;
+  }
+
+  private addSurface({ pose, size }: SurfaceDescription): void {
+    const geometry = new PlaneGeometry(size[0], size[1]);
+    const object = new Group();
+    for (const material of this.sides) {
+      const mesh = new Mesh(geometry, material);
+      mesh.receiveShadow = material.side === FrontSide;
+      mesh.renderOrder = 1;
+      object.add(mesh);
+    }
+    const normal = new BufferGeometry().setFromPoints([
+      new Vector3(),
+      new Vector3(0, 0, NORMAL_LENGTH * Math.min(size[0], size[1])),
+    ]);
+    for (const lines of [new EdgesGeometry(geometry), normal]) {
+      object.add(new LineSegments(lines, this.edges));
+    }
+    const { position, rotation } = keyFrame(0, pose);
+    object.quaternion.copy(rotation);
+    object.position.set(0, 0, LIFT_M).applyQuaternion(rotation).add(position);
+    this.surfaces.add(object);
+  }
+
+  private addBar({ from, to, radius }: BarDescription): void {
+    const axis = new Vector3().fromArray(to).sub(new Vector3().fromArray(from));
+    const mesh = new Mesh(new CylinderGeometry(radius, radius, axis.length(), 24), this.bar);
+    mesh.position.fromArray(from).addScaledVector(axis, 0.5);
+    mesh.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), axis.normalize());
+    mesh.castShadow = mesh.receiveShadow = true;
+    this.surfaces.add(mesh);
   }
 
   private addObstacle(obstacle: ObstacleDescription): void {
@@ -104,7 +143,7 @@ export class WorldView {
   applyTheme(theme: Theme): void {
     this.resting.color.set(theme.obstacle);
     this.mobile.color.set(theme.moving);
-    this.plane.color.set(theme.surface);
+    for (const material of [...this.sides, this.bar]) material.color.set(theme.surface);
     this.edges.color.set(theme.grid);
   }
 

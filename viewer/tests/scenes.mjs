@@ -255,6 +255,50 @@ function wall(count) {
   return numbers;
 }
 
+/** Five stances of soles, on all four or without one, 0.125 m apart, on a floor before a rail. */
+export function stancesScene() {
+  const scene = planScene({ count: 5, voxels: 0 });
+  const all = [1, 2, 3, 4].map((k) => `wheel_${k}`);
+  const lifted = [null, 'wheel_1', null, 'wheel_2', null];
+  const sole = ({ link, position: [x, y, z], force }) => ({
+    link,
+    kind: 'surface',
+    position: [x, y, z],
+    normal: [0, 0, 1],
+    friction: 0.5,
+    force,
+    area: [
+      [x + 0.2, y + 0.15, z],
+      [x - 0.2, y + 0.15, z],
+      [x - 0.2, y - 0.15, z],
+      [x + 0.2, y - 0.15, z],
+    ],
+  });
+  const { plan } = scene;
+  plan.contacts = plan.contacts.map((contacts, i) =>
+    contacts.filter((_, k) => all[k] !== lifted[i]).map(sole),
+  );
+  delete plan.executed;
+  delete plan.window;
+  return {
+    version: 1,
+    kind: 'plan',
+    title: 'stances.g2o',
+    robot: scene.robot,
+    plan: { ...plan, stances_only: true },
+    stances: lifted.map((name, i) => ({
+      from: i,
+      to: Math.min(i + 1, 4),
+      contacts: all.filter((other) => other !== name),
+    })),
+    surfaces: [
+      { name: 'floor', pose: pose(0.2), size: [3, 2] },
+      { name: 'wall', pose: [1.7, 0, 0.5, 0, -Math.SQRT1_2, 0, Math.SQRT1_2], size: [1, 2] },
+    ],
+    bars: [{ name: 'rail', from: [-1, 0.8, 0.8], to: [1.5, 0.8, 0.8], radius: 0.03 }],
+  };
+}
+
 /** Poses on a spiral over a sphere, with loop closures between its rounds. */
 export function sphereGraph({ rounds = 25, each = 50, radius = 50 } = {}) {
   const vertices = [];

@@ -13,6 +13,7 @@ import {
   SPEED,
   sphereGraph,
   squareGraph,
+  stancesScene,
 } from './scenes.mjs';
 
 if (!CHROMIUM) {
@@ -267,6 +268,49 @@ describe('viewer', () => {
       assert.ok(difference(first, ghosts) > 0.01);
       await page.keyboard.press('v');
       assert.ok(difference(ghosts, await browser.pixels(page)) > 0.003);
+    }));
+
+  it('steps through a plan of stances, and says what each takes and leaves', () =>
+    shown(stancesScene(), {}, async ({ page, state }) => {
+      assert.equal((await state()).view, 'overview');
+      assert.match(await page.textContent('.topbar'), /5 stances/);
+      for (const [time, index, text] of [
+        [0, 0, '4 contacts'],
+        [1.9, 1, '−wheel_1 · 3 contacts'],
+        [2.2, 2, '+wheel_1 · 4 contacts'],
+        [5, 4, '+wheel_2 · 4 contacts'],
+      ]) {
+        const { base, ...now } = await page.evaluate((t) => {
+          window.locograph.setTime(t);
+          return window.locograph.state();
+        }, time);
+        assert.equal(now.index, index);
+        assert.ok(Math.abs(base[0] - 0.125 * index) < 1e-6, 'nothing lies between stances');
+        await page.waitForFunction(
+          (wanted) => document.querySelector('.where').textContent === wanted,
+          text,
+        );
+      }
+      await page.keyboard.press('Home');
+      await page.keyboard.press('ArrowRight');
+      assert.equal((await state()).time, 1);
+      await page.keyboard.press('g');
+      assert.equal((await state()).layers.ghosts, true);
+      const track = await page.locator('#scrubber').boundingBox();
+      await page.mouse.click(track.x + 0.7 * track.width, track.y + 8);
+      assert.equal((await state()).index, 3);
+    }));
+
+  it('shows surfaces from the side of their normal, bars, and what of a sole bears', () =>
+    shown(stancesScene(), { hash: '#t=0&view=top&ui=0' }, async ({ page, state }) => {
+      const { layers } = await state();
+      assert.equal(layers.surfaces, true);
+      const before = await browser.pixels(page);
+      await page.keyboard.press('u');
+      assert.ok(difference(before, await browser.pixels(page)) > 0.01);
+      await page.keyboard.press('u');
+      await page.keyboard.press('c');
+      assert.ok(difference(before, await browser.pixels(page)) > 0.0005);
     }));
 
   it('follows the colour scheme of the system', () =>

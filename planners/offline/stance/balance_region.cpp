@@ -1,0 +1,262 @@
+#include <locograph/planners/offline/stance/balance_region.h>
+#include <locograph/robots/statics.h>
+
+#include <ClpSimplex.hpp>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace locograph {
+namespace {
+
+constexpr int kFacets = 8;
+/// Points of the polygon that are nearer to each other than this are one.
+constexpr double kSame_m = 1e-4;
+
+constexpr double kMost = std::numeric_limits<double>::max();
+
+using Wrench = Eigen::Matrix<double, 6, 1>;
+
+/// Corners of what bears, along the contact's axes.
+std::vector<Eigen::Vector2d> corners_of(const BearingContact& bearing) {
+  const EndEffector& sole = bearing.contact.effector;
+  if (sole.kind != ContactKind::kSurface) return {Eigen::Vector2d::Zero()};
+  if (!bearing.area.empty()) return bearing.area;
+  std::vector<Eigen::Vector2d> corners;
+  if (bearing.contact.forward) {
+    for (const double x : {sole.half_x_m, -sole.half_x_m}) {
+      for (const double y : {sole.half_y_m, -sole.half_y_m}) corners.emplace_back(x, y);
+    }
+    return corners;
+  }
+  const double radius = std::min(sole.half_x_m, sole.half_y_m);
+  for (int k = 0; k < kFacets; ++k) {
+    const double angle = k * 2.0 * std::numbers::pi / kFacets;
+    corners.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+  }
+  return corners;
+}
+
+std::vector<BearingRay> grasp_rays(const Contact& contact, double part, double weight_N) {
+  const Eigen::Matrix3d axes = axes_in_world(contact);
+  const double force = part * contact.effector.max_force_N / weight_N;
+  const double moment = part * contact.effector.max_moment_Nm / weight_N;
+  std::vector<BearingRay> rays;
+  for (int i = 0; i < 3; ++i) {
+    rays.push_back({contact.position, axes.col(i), Eigen::Vector3d::Zero(), -force, force});
+  }
+  for (const int i : {0, 2}) {  // y is the bar
+    if (!(moment > 0.0)) break;
+    rays.push_back({contact.position, Eigen::Vector3d::Zero(), axes.col(i), -moment, moment});
+  }
+  return rays;
+}
+
+/// The linear programme: forces at the contacts in parts of the weight, then x and y of the centre
+/// of mass about `origin`.
+class Programme {
+ public:
+  Programme(double weight_N, std::span<const BearingContact> contacts, double margin)
+      : weight_N_(weight_N), part_(1.0 - margin) {
+    for (const BearingContact& bearing : contacts) origin_ += bearing.contact.position;
+    origin_ /= static_cast<double>(contacts.size());
+    for (const BearingContact& bearing : contacts) {
+      if (bearing.contact.bears_load) add(bearing);
+    }
+    build();
+  }
+
+  /// The furthest point along a direction; false where nothing balances.
+  bool furthest(const Eigen::Vector2d& direction, Eigen::Vector2d& point) {
+    const int x = model_.numberColumns() - 2;
+    model_.objective()[x] = -direction.x();
+    model_.objective()[x + 1] = -direction.y();
+    // From the last direction's corner, and by the primal method, Clp now and then ends at a corner
+    // that is not the furthest.
+    model_.allSlackBasis(true);
+    model_.dual();
+    if (model_.status() > 1) model_.primal();
+    if (!model_.isProvenOptimal()) return false;
+    const double* solution = model_.primalColumnSolution();
+    point = origin_.head<2>() + Eigen::Vector2d(solution[x], solution[x + 1]);
+    return point.allFinite();
+  }
+
+ private:
+  struct Column {
+    Wrench wrench;  ///< on the robot, about origin_, in parts of the weight
+    int limit;      ///< row of its contact's force limit; -1: none
+    double lower, upper;
+  };
+
+  void add(const BearingContact& bearing) {
+    const EndEffector& effector = bearing.contact.effector;
+    int limit = -1;
+    if (effector.kind != ContactKind::kRung) {
+      limit = limits_++;
+      most_.push_back(part_ * effector.max_force_N / weight_N_);
+    }
+    for (const BearingRay& ray : bearing_rays(bearing, 1.0 - part_, weight_N_)) {
+      Column column{{}, limit, ray.lower, ray.upper};
+      column.wrench << ray.force, (ray.at - origin_).cross(ray.force) + ray.moment;
+      columns_.push_back(column);
+    }
+  }
+
+  void build() {
+    const int rows = 6 + limits_;
+    std::vector<CoinBigIndex> starts = {0};
+    std::vector<int> indices;
+    std::vector<double> elements, lower, upper;
+    const auto end_column = [&](double from, double to) {
+      starts.push_back(static_cast<CoinBigIndex>(indices.size()));
+      lower.push_back(from);
+      upper.push_back(to);
+    };
+    const auto put = [&](int row, double value) {
+      if (value == 0.0) return;
+      indices.push_back(row);
+      elements.push_back(value);
+    };
+    for (const Column& column : columns_) {
+      for (int i = 0; i < 6; ++i) put(i, column.wrench[i]);
+      if (column.limit >= 0) put(6 + column.limit, 1.0);
+      end_column(column.lower, column.upper);
+    }
+    // The weight at (x, y): moment (x, y, .) x (0, 0, -1) = (-y, x, 0).
+    put(4, 1.0);
+    end_column(-kMost, kMost);
+    put(3, -1.0);
+    end_column(-kMost, kMost);
+    std::vector<double> row_lower(static_cast<std::size_t>(rows), -kMost), row_upper;
+    std::fill_n(row_lower.begin(), 6, 0.0);
+    row_upper.assign(6, 0.0);
+    row_lower[2] = row_upper[2] = 1.0;
+    row_upper.insert(row_upper.end(), most_.begin(), most_.end());
+    const std::vector<double> costs(lower.size(), 0.0);
+    model_.setLogLevel(0);
+    // All is of the order of one; with scaling, Clp now and then ends anywhere.
+    model_.scaling(0);
+    model_.setPrimalTolerance(1e-9);
+    model_.setDualTolerance(1e-9);
+    model_.loadProblem(static_cast<int>(lower.size()), rows, starts.data(), indices.data(),
+                       elements.data(), lower.data(), upper.data(), costs.data(), row_lower.data(),
+                       row_upper.data());
+  }
+
+  double weight_N_, part_;
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
+  std::vector<Column> columns_;
+  std::vector<double> most_;
+  int limits_ = 0;
+  ClpSimplex model_;
+};
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// Counter-clockwise. Andrew's monotone chain.
+std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
+  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
+    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+  });
+  std::vector<Eigen::Vector2d> hull;
+  for (int pass = 0; pass < 2; ++pass) {
+    const std::size_t start = hull.size();
+    for (const Eigen::Vector2d& point : points) {
+      while (hull.size() >= start + 2 && cross(hull.back() - hull[hull.size() - 2],
+                                               point - hull.back()) <= 1e-3 * kSame_m * kSame_m) {
+        hull.pop_back();
+      }
+      hull.push_back(point);
+    }
+    hull.pop_back();
+    std::reverse(points.begin(), points.end());
+  }
+  return hull;
+}
+
+}  // namespace
+
+std::vector<BearingRay> bearing_rays(const BearingContact& bearing, double margin,
+                                     double weight_N) {
+  const Contact& contact = bearing.contact;
+  const double part = 1.0 - margin;
+  if (contact.effector.kind == ContactKind::kRung) return grasp_rays(contact, part, weight_N);
+  const Eigen::Matrix3d axes = axes_in_world(contact);
+  const double friction = part * contact.effector.friction;
+  std::vector<BearingRay> rays;
+  const std::vector<Eigen::Vector2d> corners = corners_of(bearing);
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& corner : corners) {
+    middle += corner / static_cast<double>(corners.size());
+  }
+  for (const Eigen::Vector2d& corner : corners) {
+    const Eigen::Vector3d at =
+        contact.position + axes.leftCols<2>() * (middle + part * (corner - middle));
+    for (int k = 0; k < kFacets; ++k) {
+      // The edges of the pyramid lie on the cone.
+      const double angle = (k + 0.5) * 2.0 * std::numbers::pi / kFacets;
+      const Eigen::Vector3d along(friction * std::cos(angle), friction * std::sin(angle), 1.0);
+      rays.push_back({at, axes * along, Eigen::Vector3d::Zero(), 0.0, kMost});
+    }
+  }
+  return rays;
+}
+
+double BalanceRegion::depth_m(const Eigen::Vector2d& centre_of_mass) const {
+  double depth = sides.empty() ? -std::numeric_limits<double>::infinity()
+                               : std::numeric_limits<double>::infinity();
+  for (const Side& side : sides) {
+    depth = std::min(depth, side.offset_m - side.normal.dot(centre_of_mass));
+  }
+  return depth;
+}
+
+BalanceRegion balance_region(double mass_kg, std::span<const BearingContact> contacts,
+                             double margin) {
+  BalanceRegion region;
+  if (std::none_of(contacts.begin(), contacts.end(),
+                   [](const BearingContact& bearing) { return bearing.contact.bears_load; })) {
+    return region;
+  }
+  Programme programme(mass_kg * standard_gravity().norm(), contacts, margin);
+  std::vector<Eigen::Vector2d> points;
+  Eigen::Vector2d point;
+  constexpr int kDirections = 8;
+  for (int k = 0; k < kDirections; ++k) {
+    const double angle = k * 2.0 * std::numbers::pi / kDirections;
+    if (!programme.furthest({std::cos(angle), std::sin(angle)}, point)) return region;
+    points.push_back(point);
+  }
+  std::vector<Eigen::Vector2d> hull = convex_hull(points);
+  // Across each edge once more.
+  points = hull;
+  for (std::size_t i = 0; i < hull.size() && hull.size() >= 2; ++i) {
+    const Eigen::Vector2d along = hull[(i + 1) % hull.size()] - hull[i];
+    if (along.norm() < 10.0 * kSame_m) continue;
+    if (programme.furthest({along.y(), -along.x()}, point)) points.push_back(point);
+  }
+  hull = convex_hull(std::move(points));
+  if (hull.size() < 3) return region;
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Eigen::Vector2d along = hull[(i + 1) % hull.size()] - hull[i];
+    if (along.norm() < kSame_m) continue;
+    const Eigen::Vector2d normal = Eigen::Vector2d(along.y(), -along.x()).normalized();
+    region.sides.push_back({normal, normal.dot(hull[i])});
+  }
+  region.width_m = std::numeric_limits<double>::infinity();
+  for (const BalanceRegion::Side& side : region.sides) {
+    double across = 0.0;
+    for (const Eigen::Vector2d& corner : hull) {
+      across = std::max(across, side.offset_m - side.normal.dot(corner));
+    }
+    region.width_m = std::min(region.width_m, across);
+  }
+  if (!(region.width_m > kSame_m)) region.sides.clear();
+  return region;
+}
+
+}  // namespace locograph

@@ -1,0 +1,60 @@
+#pragma once
+/// Where the centre of mass of a robot at rest may be for its contacts to hold it: a convex
+/// polygon, which depends on the contacts alone and not on the posture.
+///
+///     const BalanceRegion region = balance_region(robot.total_mass(), bearing, 0.1);
+///     const bool hopeless = region.empty();             // nothing that stands like this balances
+///     double room_m = region.depth_m(state.center_of_mass().head<2>());      // < 0: outside
+///
+/// Bretl and Lall, "Testing static equilibrium for legged robots", IEEE Transactions on Robotics
+/// 24(4), 2008: gravity has no moment about the vertical through the centre of mass, so that its
+/// height does not matter, and the places that friction and the limits of force allow are convex.
+/// Linear programmes find its furthest points in eight directions and across each edge between
+/// those. The polygon of these points lies inside the true region. Torque limits are not in it.
+
+#include <locograph/robots/contact.h>
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+namespace locograph {
+
+/// A contact that bears, closed, and its area.
+struct BearingContact {
+  Contact contact;
+  /// Corners of what of a surface contact lies on something, along the contact's axes [m]; none:
+  /// its rectangle, or, where its yaw is free, what of it bears whatever the yaw.
+  std::vector<Eigen::Vector2d> area = {};
+};
+
+/// What a contact can do to the robot: a force on an edge of its friction pyramid at a corner of
+/// its area, or a component of a grasp; in parts of the robot's weight.
+struct BearingRay {
+  Eigen::Vector3d at;     ///< m, world
+  Eigen::Vector3d force;  ///< world; of a pyramid with 1 along the normal
+  Eigen::Vector3d moment;
+  double lower, upper;  ///< how much of it there may be
+};
+
+/// margin: the part of friction, areas and limits of force that is left unused.
+std::vector<BearingRay> bearing_rays(const BearingContact& bearing, double margin, double weight_N);
+
+struct BalanceRegion {
+  /// normal . (x, y) <= offset_m, world; the normal has length 1.
+  struct Side {
+    Eigen::Vector2d normal;
+    double offset_m;
+  };
+  std::vector<Side> sides;
+  double width_m = 0.0;  ///< of the narrowest way through
+
+  bool empty() const { return sides.empty(); }
+  double depth_m(const Eigen::Vector2d& centre_of_mass) const;
+};
+
+/// margin: the part of friction, areas and limits of force that is left unused.
+BalanceRegion balance_region(double mass_kg, std::span<const BearingContact> contacts,
+                             double margin);
+
+}  // namespace locograph

@@ -1,0 +1,101 @@
+#include <locograph/planners/offline/stance/plan_stances.h>
+
+namespace locograph {
+namespace {
+
+std::string why_not_reached(const StancePlan& plan, const StanceSpace& space, std::size_t goal,
+                            std::size_t goals) {
+  std::string reason = goals > 1 ? "goal " + std::to_string(goal + 1) + " of " +
+                                       std::to_string(goals) + " is not reached"
+                                 : "the goal is not reached";
+  if (space.ended()) reason += ": the time allowed is used up";
+  if (plan.failures.empty()) return reason;
+  const StanceFailure& most = plan.failures.front();
+  return reason + "; most often in the way: " + most.what + ", for " + most.end_effector + " (" +
+         std::to_string(most.count) + " of " +
+         std::to_string(plan.transitions - plan.transitions_found) + " transitions)";
+}
+
+}  // namespace
+
+Motion stances_motion(const StancePlan& plan) {
+  Motion motion;
+  motion.stances_only = true;
+  motion.stances = plan.stances;
+  motion.configurations = plan.configurations;
+  for (std::size_t i = 0; i < plan.configurations.size(); ++i) {
+    motion.time_s.push_back(static_cast<double>(i));
+    motion.stance_from.push_back(static_cast<int>(i));
+  }
+  return motion;
+}
+
+void StancePlannerOptions::validate() const {
+  const auto require = [](bool good, const char* option, const char* expected) {
+    if (!good) throw Error(std::string("option ") + option + " is out of range", expected);
+  };
+  require(grid_m >= 1e-3 && grid_m <= 10.0, "grid_m", "0.001 to 10 m");
+  require(reach > 0.0 && reach <= 2.0, "reach", "above 0, up to 2");
+  require(max_transitions >= 0, "max_transitions", "0 or more");
+}
+
+StancePlan plan_stances(const StanceProblem& problem, const StancePlannerOptions& options,
+                        const MakeSearch& make_search) {
+  options.validate();
+  const Robot& robot = *problem.robot->robot;
+  require_sound_stance(robot, problem.start);
+  for (const Stance& goal : problem.goals) require_sound_stance(robot, goal);
+  const Stopwatch watch;
+  StancePlan plan;
+  StanceSpace space(problem, options);
+  const Judge judge(problem.robot->robot, problem.world);
+  const ReachGoal reach = make_search(space, options, plan);
+  StancePath path;
+  path.append(space.footing(problem.start), problem.start_configuration);
+  plan.success = true;
+  for (std::size_t g = 0; g < problem.goals.size() && plan.success; ++g) {
+    const Footing goal = space.footing(problem.goals[g]);
+    const std::size_t first = path.changes();
+    plan.best_contacts = 0;
+    plan.best = {};
+    StancePath tried = path;
+    for (;;) {
+      tried.footings.resize(first + 1);
+      tried.configurations.resize(first + 1);
+      if (!reach(goal, tried)) {
+        plan.success = false;
+        break;
+      }
+      shorten(space, tried, first);
+      const Stopwatch judging;
+      const JudgedPath judged = judge_path(space, judge, tried);
+      plan.judge_s += judging.seconds();
+      plan.report = judged.report;
+      if (judged.report.feasible) break;
+      if (judged.refused == 0) {
+        plan.success = false;
+        plan.reason = "refused: " + violation_text(judged.report.worst());
+        break;
+      }
+    }
+    if (!plan.success) break;
+    path = std::move(tried);
+    ++plan.goals_reached;
+  }
+  plan.failures = space.failures();
+  plan.transitions = space.transitions;
+  plan.transitions_found = space.transitions_found;
+  plan.transitions_s = space.transitions_s;
+  for (const Footing& footing : path.footings) plan.stances.push_back(space.stance(footing));
+  plan.configurations = path.configurations;
+  if (plan.success) {
+    plan.reason = "planned";
+  } else if (plan.reason.empty()) {
+    plan.reason = why_not_reached(plan, space, static_cast<std::size_t>(plan.goals_reached),
+                                  problem.goals.size());
+  }
+  plan.total_s = watch.seconds();
+  return plan;
+}
+
+}  // namespace locograph

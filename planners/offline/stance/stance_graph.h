@@ -1,0 +1,21 @@
+#pragma once
+/// A plan of stances as a graph: what `locograph plan --stances-only` writes.
+///
+///     Graph graph = stance_graph(scenario, problem, plan);
+///     write_graph(graph, "stances.g2o");
+///
+/// One VERTEX_CONFIGURATION for each stance, in the stance that it is left in, at rest with its
+/// number as its time; VERTEX_WRENCHES of the contacts that balance it, those of the smaller of its
+/// two stances; and the edges that say so: contacts of the larger one, joint limits, balance,
+/// friction and, where the scenario enforces them, torque limits.
+
+#include <locograph/core/graph.h>
+#include <locograph/planners/offline/stance/stance_planner.h>
+#include <locograph/planners/scenario/scenario.h>
+
+namespace locograph {
+
+/// The plan is marked incomplete where it has no success.
+Graph stance_graph(const Scenario& scenario, const StanceProblem& problem, const StancePlan& plan);
+
+}  // namespace locograph

@@ -1,0 +1,42 @@
+#pragma once
+/// A way through stances as planners find it, and what they all do with it: shorten it, have it
+/// judged, mend what the judge refuses, and tell it.
+///
+///     StancePath path;
+///     path.append(footing, configuration);
+///     shorten(space, path, 0);
+///     CheckReport report = judge_path(space, judge, path).report;
+
+#include <locograph/check/judge.h>
+#include <locograph/planners/offline/stance/stance_space.h>
+
+#include <vector>
+
+namespace locograph {
+
+struct StancePath {
+  std::vector<Footing> footings;
+  std::vector<Eigen::VectorXd> configurations;  ///< the first one's, then of each change
+
+  std::size_t changes() const { return footings.size() - 1; }
+  void append(Footing footing, Eigen::VectorXd configuration) {
+    footings.push_back(std::move(footing));
+    configurations.push_back(std::move(configuration));
+  }
+};
+
+/// Leaves out moves that checked transitions make unnecessary, from the footing `first` on; the
+/// footings `kept` stay. Returns how many stances fewer.
+int shorten(StanceSpace& space, StancePath& path, std::size_t first);
+
+/// Judges the whole path; transitions that the judge refuses are solved again with wider margins.
+/// Without success, `refused` is the first change that cannot be mended, and is forbidden.
+struct JudgedPath {
+  CheckReport report;
+  std::size_t refused = 0;  ///< 0: none
+};
+JudgedPath judge_path(StanceSpace& space, const Judge& judge, StancePath& path);
+
+Motion path_motion(const StanceSpace& space, const StancePath& path);
+
+}  // namespace locograph

@@ -1,0 +1,103 @@
+#pragma once
+/// Finds how a robot gets from one stance to others: a sequence of stances, one contact more or
+/// less from each to the next, and a configuration for each change that is feasible for both.
+///
+///     const StanceProblem problem = stance_problem(scenario).problem;
+///     const auto planner = make_stance_planner("guided");
+///     const StancePlan plan = planner->plan(problem, {.seed = 7});
+///     if (!plan.success) std::cerr << plan.reason;
+///
+/// The first offline stage of Rossini et al., "Loco-Manipulation Planning for Legged Robots:
+/// Offline and Online Strategies", whose S_σ and S_q it gives; wrenches are those of the judge's
+/// certificates. Planners are chosen by name:
+///
+///   guided   best-first search over moves of end effectors, guided by the distances to the goal
+///   and
+///            by what has failed, begun anew while it does not arrive, then shortened; the default
+///   rrt      the published one: a random tree in contact space, on the same transitions
+///
+/// What is found is judged (check/judge.h): success means judged feasible. Deterministic for a seed
+/// but for the deadline.
+
+#include <locograph/check/check_report.h>
+#include <locograph/check/motion.h>
+#include <locograph/common/deadline.h>
+#include <locograph/plugins/configuration/robot_parameters.h>
+#include <locograph/world/world.h>
+
+#include <Eigen/Core>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace locograph {
+
+struct StanceProblem {
+  std::shared_ptr<const RobotParameter> robot;
+  World world;
+  std::vector<EndEffector> end_effectors;
+  Stance start;
+  Eigen::VectorXd start_configuration;  ///< feasible for the start
+  std::vector<Stance> goals;            ///< reached one after the other
+  CheckOptions check;                   ///< what the judge is asked
+};
+
+struct StancePlannerOptions {
+  std::uint64_t seed = 0;
+  Deadline deadline;
+  const std::atomic<bool>* stop = nullptr;  ///< set, as by Ctrl-C: the search ends; may be null
+  double grid_m = 0.05;                     ///< between places of contacts on a surface
+  /// How far an end effector gets in one move, as a part of its chain's length.
+  double reach = 0.7;
+  /// Transitions that may be tried for each goal; 0: no end but the deadline.
+  int max_transitions = 20000;
+
+  /// Throws Error naming the option that is out of range.
+  void validate() const;
+};
+
+/// How often something was in the way of a transition.
+struct StanceFailure {
+  std::string end_effector;  ///< that was to move
+  std::string what;          ///< name of a TransitionFailure, or of the judge's constraint
+  int count = 0;
+};
+
+struct StancePlan {
+  bool success = false;
+  std::string reason;
+  /// σ_0 … σ_N, and the configurations: the start, then that of each change, N + 1 in all.
+  /// Without success as far as it got: to the goals before the one that was not reached.
+  std::vector<Stance> stances;
+  std::vector<Eigen::VectorXd> configurations;
+  int goals_reached = 0;
+  int best_contacts = 0;  ///< of the goal that was not reached: most of its contacts in one stance
+  Stance best;            ///< the stance that has them
+  int vertices_in_tree = 0, iterations = 0;
+  int transitions = 0, transitions_found = 0;
+  std::vector<StanceFailure> failures;  ///< the most frequent first
+  CheckReport report;                   ///< of the judge
+  double transitions_s = 0.0, judge_s = 0.0, total_s = 0.0;
+};
+
+/// The plan as a motion that holds still: what the judge is asked.
+Motion stances_motion(const StancePlan& plan);
+
+class StancePlanner {
+ public:
+  virtual ~StancePlanner() = default;
+  virtual const std::string& name() const = 0;
+  /// Throws Error for stances that are not sound, and for a goal contact of an unknown end
+  /// effector.
+  virtual StancePlan plan(const StanceProblem& problem,
+                          const StancePlannerOptions& options) const = 0;
+};
+
+/// "guided", "rrt"
+std::vector<std::string> stance_planner_names();
+/// Throws Error for another name.
+std::unique_ptr<const StancePlanner> make_stance_planner(const std::string& name);
+
+}  // namespace locograph

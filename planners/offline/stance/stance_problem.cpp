@@ -1,0 +1,116 @@
+#include <locograph/check/judge.h>
+#include <locograph/planners/offline/stance/stance_problem.h>
+#include <locograph/planners/offline/stance/stance_space.h>
+#include <locograph/planners/posture/posture_solver.h>
+#include <locograph/planners/scenario/snap_to_places.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace locograph {
+namespace {
+
+constexpr int kMostAttempts = 4;
+
+/// Runs f; what it throws is the fault of a line of the scenario.
+template <class F>
+void blame_line(const Scenario& scenario, int line, F&& f) {
+  try {
+    f();
+  } catch (const Error& error) {
+    if (error.file() == scenario.source) throw;
+    throw Error(scenario.source, line, error.what(), "");
+  }
+}
+
+Eigen::VectorXd given_configuration(const Scenario& scenario, const Robot& robot,
+                                    const Stance& start) {
+  const ContactTask& task = *scenario.contacts;
+  const std::vector<std::string> states = robot.configuration_names();
+  const bool known = std::find(states.begin(), states.end(), scenario.start_state) != states.end();
+  if (!known && scenario.start_state != "home") {
+    throw Error("unknown state '" + scenario.start_state + "'", "a group state of the SRDF");
+  }
+  Eigen::VectorXd q =
+      known ? robot.named_configuration(scenario.start_state) : robot.neutral_configuration();
+  for (const GivenJoint& given : task.joints) {
+    blame_line(scenario, given.line, [&] {
+      const Joint& joint = robot.joints()[static_cast<std::size_t>(robot.joint_index(given.name))];
+      if (joint.index < 0) throw Error("joint " + given.name + " does not move", "an active joint");
+      q[robot.base_configuration_size() + joint.index] = given.position;
+    });
+  }
+  if (task.base) {
+    q.head<7>() = *task.base;
+  } else {
+    q = placed_at(robot, q, start);
+  }
+  return q;
+}
+
+}  // namespace
+
+StartedProblem stance_problem(const Scenario& scenario) {
+  if (!scenario.contacts)
+    throw Error(scenario.source, 0, "no <start> and <goal>", "a contact task");
+  const ContactTask& task = *scenario.contacts;
+  StartedProblem started;
+  StanceProblem& problem = started.problem;
+  problem.robot =
+      std::make_shared<const RobotParameter>(scenario.urdf, scenario.srdf, scenario.robot);
+  const Robot& robot = *problem.robot->robot;
+  problem.world = world_of(scenario);
+  problem.end_effectors = scenario.end_effectors;
+  problem.start = task.start;
+  problem.goals = task.goals;
+  const std::vector<std::string> scanned = scanned_names(scenario);
+  snap_to_places(problem.start, problem.world, scanned);
+  for (Stance& goal : problem.goals) snap_to_places(goal, problem.world, scanned);
+  problem.check.known = scenario.end_effectors;
+  problem.check.enforce_torque_limits = scenario.enforce_torque_limits;
+  problem.check.effort_scale = scenario.effort_scale;
+  for (std::size_t e = 0; e < scenario.end_effectors.size(); ++e) {
+    blame_line(scenario, scenario.end_effector_lines[e],
+               [&] { require_sound_effector(robot, scenario.end_effectors[e]); });
+  }
+  for (std::size_t g = 0; g < task.goals.size(); ++g) {
+    blame_line(scenario, task.goal_lines[g],
+               [&] { require_sound_stance(robot, problem.goals[g]); });
+  }
+  Eigen::VectorXd given;
+  blame_line(scenario, task.start_line, [&] {
+    require_sound_stance(robot, problem.start);
+    given = given_configuration(scenario, robot, problem.start);
+  });
+  problem.start_configuration = given;
+
+  const Judge judge(problem.robot->robot, problem.world);
+  const CheckReport as_given = judge.check(given, problem.start, problem.check);
+  if (as_given.feasible) return started;
+  const StancePlannerOptions options;
+  StanceSpace space(problem, options);
+  std::string reason;
+  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+    const StanceSpace::Attempt found = space.stand(problem.start, given, attempt);
+    if (!found.found) {
+      if (reason.empty()) reason = found.reason;
+      continue;
+    }
+    const CheckReport report = judge.check(found.configuration, problem.start, problem.check);
+    if (!report.feasible) {
+      reason = violation_text(report.worst());
+      continue;
+    }
+    problem.start_configuration = found.configuration;
+    started.moved_base_m = (found.configuration.head<3>() - given.head<3>()).norm();
+    started.moved_joint_rad =
+        (found.configuration - given).tail(robot.active_joint_count()).cwiseAbs().maxCoeff();
+    return started;
+  }
+  throw Error(scenario.source, task.start_line,
+              "no configuration stands at the start: " + reason + "; as given, " +
+                  violation_text(as_given.worst()),
+              "contacts that can be held");
+}
+
+}  // namespace locograph

@@ -1,0 +1,24 @@
+#pragma once
+/// A scenario's contact task as a stance planner takes it.
+///
+///     const Scenario scenario = load_scenario("ladder_climbing", data_folder);
+///     const StanceProblem problem = stance_problem(scenario).problem;
+
+#include <locograph/planners/offline/stance/stance_planner.h>
+#include <locograph/planners/scenario/scenario.h>
+
+namespace locograph {
+
+struct StartedProblem {
+  StanceProblem problem;
+  /// How far the start configuration is from the scenario's [m, rad]; 0: as given.
+  double moved_base_m = 0.0, moved_joint_rad = 0.0;
+};
+
+/// Loads robot and world. Where the scenario's start configuration misses its contacts, touches
+/// something or does not balance, the nearest one is found that does not. Throws Error for a
+/// scenario without a contact task, for unknown links and joints, contacts that are on nothing, and
+/// a start for which no configuration is found: with the line and by how much.
+StartedProblem stance_problem(const Scenario& scenario);
+
+}  // namespace locograph

@@ -1,0 +1,116 @@
+#pragma once
+/// What stance planners search in: places that end effectors may touch, stances made of them, and
+/// the transitions between these.
+///
+///     StanceSpace space(problem, options);
+///     const Footing start = space.footing(problem.start);
+///     const Footing lifted = without(start, 0);
+///     const StanceSpace::Attempt attempt = space.try_transition(start, lifted, q, 0);
+///
+/// A place is an end effector's contact at one point of the world; places that are equal are one.
+
+#include <locograph/planners/offline/stance/balance_region.h>
+#include <locograph/planners/offline/stance/stance_planner.h>
+#include <locograph/planners/offline/stance/transition_solver.h>
+
+#include <map>
+#include <unordered_map>
+#include <vector>
+
+namespace locograph {
+
+/// Of each end effector the place it touches; kFree: none.
+using Footing = std::vector<int>;
+inline constexpr int kFree = -1;
+
+struct FootingHash {
+  std::size_t operator()(const Footing& footing) const;
+};
+
+Footing with(Footing footing, int effector, int place);
+inline Footing without(Footing footing, int effector) {
+  return with(std::move(footing), effector, kFree);
+}
+int contacts_of(const Footing& footing);
+
+class StanceSpace {
+ public:
+  struct Place {
+    int effector;
+    BearingContact bearing;
+  };
+  struct Attempt {
+    bool found = false;
+    Eigen::VectorXd configuration;
+    TransitionFailure failure = TransitionFailure::kNone;
+    std::string reason = {};  ///< in words
+  };
+
+  StanceSpace(const StanceProblem& problem, const StancePlannerOptions& options);
+
+  const StanceProblem& problem() const { return problem_; }
+  int effectors() const { return static_cast<int>(problem_.end_effectors.size()); }
+  const Place& place(int number) const { return places_[static_cast<std::size_t>(number)]; }
+  double reach_m(int effector) const { return reach_m_[static_cast<std::size_t>(effector)]; }
+
+  /// Throws Error for a contact of an unknown end effector.
+  Footing footing(const Stance& stance);
+  Stance stance(const Footing& footing) const;
+
+  /// Where the end effector's point is in a configuration [m, world].
+  Eigen::Vector3d position(int effector, const Eigen::VectorXd& q);
+  /// Places of the end effector on surfaces and bars that are no further than `reach` from a point,
+  /// in the order of the surfaces.
+  std::vector<int> places_near(int effector, const Eigen::Vector3d& point, double reach_m);
+
+  /// Of the stance; worked out once.
+  const BalanceRegion& region(const Footing& footing);
+
+  /// From one footing to the next, which has one contact more or less: what is closed are the
+  /// contacts of the larger one, what balances is the smaller one. Counts.
+  Attempt try_transition(const Footing& from, const Footing& to, const Eigen::VectorXd& start,
+                         int restarts);
+  /// The same again, and nothing of it kept: with wider margins.
+  Attempt try_harder(const Footing& from, const Footing& to, const Eigen::VectorXd& start);
+  /// A posture in one stance, near `start`; further attempts have other seeds and wider margins.
+  Attempt stand(const Stance& stance, const Eigen::VectorXd& start, int attempt);
+  /// The transition is not to be found again: the judge refused it.
+  void forbid(const Footing& from, const Footing& to);
+
+  bool ended() const;
+
+  int transitions = 0, transitions_found = 0;
+  double transitions_s = 0.0;
+  std::vector<StanceFailure> failures() const;
+  void count_failure(int effector, const std::string& what);
+
+ private:
+  int intern(int effector, const Contact& contact);
+  void places_on(int effector, const Surface& surface, const Eigen::Vector3d& point, double reach_m,
+                 std::vector<int>& places);
+  void places_on(int effector, const Bar& bar, const Eigen::Vector3d& point, double reach_m,
+                 std::vector<int>& places);
+  std::vector<Eigen::Vector2d> area_on_surfaces(const Contact& contact) const;
+  double friction_at(const Contact& contact) const;
+  void ease_torques(const Footing& smaller, TransitionProblem& problem,
+                    const TransitionOptions& options, TransitionResult& result);
+  Attempt solve(const Footing& larger, const Footing& smaller, const Eigen::VectorXd& start,
+                std::uint64_t seed, const TransitionOptions& options);
+  Attempt change(const Footing& from, const Footing& to, const Eigen::VectorXd& start,
+                 const TransitionOptions& options);
+
+  const StanceProblem& problem_;
+  const StancePlannerOptions& options_;
+  TransitionSolver solver_;
+  RobotState state_;
+  double mass_kg_;
+  Eigen::VectorXd preferred_;
+  std::vector<double> reach_m_;
+  std::vector<Place> places_;
+  std::map<std::vector<long long>, int> numbers_;
+  std::unordered_map<Footing, BalanceRegion, FootingHash> regions_;
+  std::unordered_map<Footing, int, FootingHash> refused_;  ///< both footings, one behind the other
+  std::map<std::pair<int, std::string>, int> failures_;
+};
+
+}  // namespace locograph

@@ -1,0 +1,162 @@
+#include <locograph/planners/offline/stance/torque_programme.h>
+
+#include <ClpSimplex.hpp>
+#include <cmath>
+#include <limits>
+
+namespace locograph {
+namespace {
+
+constexpr double kMost = std::numeric_limits<double>::max();
+
+}  // namespace
+
+struct TorqueProgramme::Model {
+  ClpSimplex simplex;
+};
+
+TorqueProgramme::TorqueProgramme(const Robot& robot, std::span<const BearingContact> contacts,
+                                 double effort_scale, double margin)
+    : robot_(robot),
+      weight_N_(robot.total_mass() * standard_gravity().norm()),
+      effort_scale_(effort_scale),
+      gravity_(robot.tangent_size()),
+      derivative_(robot.tangent_size(), robot.tangent_size()),
+      model_(std::make_unique<Model>()) {
+  for (const BearingContact& bearing : contacts) add(bearing, margin);
+  for (int i = 0; i < robot.active_joint_count(); ++i) {
+    const double effort = robot.active_joint(i).max_effort;
+    if (effort > 0.0 && std::isfinite(effort)) joints_.push_back(i);
+  }
+  model_->simplex.setLogLevel(0);
+  model_->simplex.scaling(0);
+  model_->simplex.setPrimalTolerance(1e-9);
+  model_->simplex.setDualTolerance(1e-9);
+}
+
+TorqueProgramme::~TorqueProgramme() = default;
+TorqueProgramme::TorqueProgramme(TorqueProgramme&&) noexcept = default;
+
+void TorqueProgramme::add(const BearingContact& bearing, double margin) {
+  const Contact& contact = bearing.contact;
+  if (!contact.bears_load) return;
+  const int number = static_cast<int>(links_.size());
+  links_.push_back(robot_.link_index(contact.effector.link));
+  positions_.push_back(contact.position);
+  const bool grasp = contact.effector.kind == ContactKind::kRung;
+  most_.push_back(grasp ? -1.0 : (1.0 - margin) * contact.effector.max_force_N / weight_N_);
+  for (const BearingRay& ray : bearing_rays(bearing, margin, weight_N_)) {
+    rays_.push_back(
+        {number, ray.at - contact.position, ray.force, ray.moment, ray.lower, ray.upper});
+  }
+}
+
+double TorqueProgramme::solve(const RobotState& state, Eigen::VectorXd& gradient) {
+  const int base = robot_.base_tangent_size(), size = robot_.tangent_size();
+  const int rays = static_cast<int>(rays_.size()), torques = static_cast<int>(joints_.size());
+  const int limits = static_cast<int>(most_.size());
+  const int rows = base + 2 * torques + limits;
+  gravity_torques(state, standard_gravity(), gravity_);
+  columns_.setZero(size, rays);
+  for (int r = 0; r < rays; ++r) {
+    const Ray& ray = rays_[static_cast<std::size_t>(r)];
+    const std::size_t c = static_cast<std::size_t>(ray.contact);
+    PointWrench wrench;
+    wrench.link = links_[c];
+    wrench.point = state.world_from_link(wrench.link).inverse() * (positions_[c] + ray.at);
+    wrench.force = weight_N_ * ray.force;
+    wrench.moment = weight_N_ * ray.moment;
+    add_wrench_torques(state, wrench, 1.0, columns_.col(r));
+  }
+  const auto limit = [&](int i) {
+    return effort_scale_ * robot_.active_joint(joints_[static_cast<std::size_t>(i)]).max_effort;
+  };
+  // Columns: the rays, then t.
+  std::vector<CoinBigIndex> starts = {0};
+  std::vector<int> indices;
+  std::vector<double> elements, lower, upper, costs;
+  const auto put = [&](int row, double value) {
+    if (value == 0.0) return;
+    indices.push_back(row);
+    elements.push_back(value);
+  };
+  const auto end_column = [&](double from, double to, double cost) {
+    starts.push_back(static_cast<CoinBigIndex>(indices.size()));
+    lower.push_back(from);
+    upper.push_back(to);
+    costs.push_back(cost);
+  };
+  for (int r = 0; r < rays; ++r) {
+    const Ray& ray = rays_[static_cast<std::size_t>(r)];
+    for (int i = 0; i < base; ++i) put(i, columns_(i, r) / weight_N_);
+    for (int i = 0; i < torques; ++i) {
+      const double share = columns_(base + joints_[static_cast<std::size_t>(i)], r) / limit(i);
+      put(base + 2 * i, -share);
+      put(base + 2 * i + 1, share);
+    }
+    if (most_[static_cast<std::size_t>(ray.contact)] >= 0.0) {
+      put(base + 2 * torques + ray.contact, 1.0);
+    }
+    end_column(ray.lower, ray.upper, 0.0);
+  }
+  for (int i = 0; i < 2 * torques; ++i) put(base + i, -1.0);
+  end_column(0.0, kMost, 1.0);
+  std::vector<double> row_lower(static_cast<std::size_t>(rows), -kMost);
+  std::vector<double> row_upper(static_cast<std::size_t>(rows), kMost);
+  for (int i = 0; i < base; ++i) {
+    const std::size_t k = static_cast<std::size_t>(i);
+    row_lower[k] = row_upper[k] = gravity_[i] / weight_N_;
+  }
+  for (int i = 0; i < torques; ++i) {
+    const double share = gravity_[base + joints_[static_cast<std::size_t>(i)]] / limit(i);
+    const std::size_t k = static_cast<std::size_t>(base + 2 * i);
+    row_upper[k] = -share;
+    row_upper[k + 1] = share;
+  }
+  for (int c = 0; c < limits; ++c) {
+    if (most_[static_cast<std::size_t>(c)] >= 0.0) {
+      row_upper[static_cast<std::size_t>(base + 2 * torques + c)] =
+          most_[static_cast<std::size_t>(c)];
+    }
+  }
+  ClpSimplex& simplex = model_->simplex;
+  simplex.loadProblem(rays + 1, rows, starts.data(), indices.data(), elements.data(), lower.data(),
+                      upper.data(), costs.data(), row_lower.data(), row_upper.data());
+  simplex.allSlackBasis(true);
+  simplex.dual();
+  if (simplex.status() > 1) simplex.primal();
+  if (!simplex.isProvenOptimal()) return std::numeric_limits<double>::infinity();
+
+  const double* solution = simplex.primalColumnSolution();
+  const double* prices = simplex.dualRowSolution();
+  std::vector<PointWrench> wrenches;
+  for (int r = 0; r < rays; ++r) {
+    if (solution[r] == 0.0) continue;
+    const Ray& ray = rays_[static_cast<std::size_t>(r)];
+    const std::size_t c = static_cast<std::size_t>(ray.contact);
+    PointWrench wrench;
+    wrench.link = links_[c];
+    wrench.point = state.world_from_link(wrench.link).inverse() * (positions_[c] + ray.at);
+    wrench.force = solution[r] * weight_N_ * ray.force;
+    wrench.moment = solution[r] * weight_N_ * ray.moment;
+    wrenches.push_back(wrench);
+  }
+  static_torque_derivative(state, standard_gravity(), wrenches, derivative_);
+  gradient.setZero(size);
+  for (int i = 0; i < base; ++i) {
+    gradient += prices[i] / weight_N_ * derivative_.row(i).transpose();
+  }
+  double heaviest = 0.0;
+  for (int i = 0; i < torques; ++i) {
+    const double up = prices[base + 2 * i], down = prices[base + 2 * i + 1];
+    const int joint = joints_[static_cast<std::size_t>(i)];
+    gradient += (down - up) / limit(i) * derivative_.row(base + joint).transpose();
+    if (-up - down > heaviest) {
+      heaviest = -up - down;
+      heaviest_ = joint;
+    }
+  }
+  return simplex.objectiveValue();
+}
+
+}  // namespace locograph

@@ -1,0 +1,124 @@
+#pragma once
+/// What has to be positive in a transition, at one configuration: values and gradients.
+///
+///     TransitionRows rows(robot, world);
+///     rows.set_problem(problem, options);
+///     rows.evaluate(q);
+///     for (const TransitionRows::Row& row : rows.rows()) worst = std::min(worst, row.value);
+///
+/// Rows are given for what is near only: nearer than kBand_m of its margin.
+
+#include <locograph/planners/offline/stance/transition_solver.h>
+#include <locograph/plugins/self_collision/edge_self_collision.h>
+#include <locograph/world/convex_shape.h>
+#include <locograph/world/distance_field.h>
+
+#include <vector>
+
+namespace locograph {
+
+class TransitionRows {
+ public:
+  struct Row {
+    TransitionFailure kind;
+    int first, second;  ///< joint; bounds of links; bound and surface
+    double value;       ///< at least 0 where it holds, margin included [m, rad]
+  };
+
+  TransitionRows(std::shared_ptr<const RobotParameter> robot, World world);
+
+  void set_problem(const TransitionProblem& problem, const TransitionOptions& options);
+  /// q: a configuration whose quaternion has norm 1.
+  void evaluate(const Eigen::VectorXd& q);
+
+  const Eigen::VectorXd& closure() const { return closure_; }
+  /// rows x tangent_size, row-major.
+  Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>> closure_jacobian() const {
+    return {closure_jacobian_.data(), closure_.size(), size_};
+  }
+  const std::vector<Row>& rows() const { return rows_; }
+  Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>> gradients() const {
+    return {gradients_.data(), static_cast<Eigen::Index>(rows_.size()), size_};
+  }
+  const ConfigurationState& state() const { return state_; }
+  const Robot& robot() const { return state_.model(); }
+
+  /// Closure alone, into `error`; leaves closure() as it is.
+  void closure_at(const Eigen::VectorXd& q, Eigen::VectorXd& error);
+
+  std::string text(const Row& row) const;
+  /// Links that a row is about; -1: none.
+  std::pair<int, int> links(const Row& row) const;
+  int contact_link(int closure_row) const;
+  const std::string& contact_name(int closure_row) const;
+
+ private:
+  /// The bits of products depend on how numbers are aligned.
+  using Aligned = std::vector<double, Eigen::aligned_allocator<double>>;
+  struct Plate {
+    std::string name;
+    Eigen::Isometry3d surface_from_world;
+    double half_x_m, half_y_m, depth_m;
+    bool endless;
+  };
+  struct Solid {
+    std::vector<ConvexShape> shapes;
+    std::vector<Eigen::Isometry3d> link_from_shape;
+  };
+  struct CoarsePair {
+    int pair;
+    Solid first, second;
+  };
+  /// A signed distance of a sphere and its gradient by the sphere's centre.
+  struct Distance {
+    double value;
+    Eigen::Vector3d gradient;
+  };
+
+  void find_coarse_pairs();
+  Solid solid_of(int bound) const;
+  ShapeDistance exact_distance(const CoarsePair& pair, double limit) const;
+  Distance to_plate(const Plate& plate, const Eigen::Vector3d& centre, double radius) const;
+  double* add(TransitionFailure kind, int first, int second, double value);
+  void add_joints();
+  void add_balance();
+  void add_torques();
+  void add_self();
+  void add_plates();
+  void add_bars();
+  void add_obstacles();
+  bool touches(int surface, int bound) const {
+    return touched_[static_cast<std::size_t>(surface) * robot_->bounds.size() +
+                    static_cast<std::size_t>(bound)];
+  }
+
+  std::shared_ptr<const RobotParameter> robot_;
+  World world_;
+  WorldDistance in_the_way_;
+  bool anything_in_the_way_ = false;
+  std::vector<Plate> plates_;
+  Eigen::VectorXd pair_weights_;
+  std::vector<CoarsePair> coarse_;
+  int size_;  ///< of the tangent
+  ConfigurationState state_;
+
+  TransitionOptions options_;
+  const BalanceRegion* balance_ = nullptr;
+  TorqueProgramme* torques_ = nullptr;
+  Eigen::VectorXd torque_gradient_;
+  double balance_margin_m_ = 0.0;
+  std::vector<ContactClosure> closures_;
+  std::vector<std::string> contact_names_;
+  std::vector<int> contact_of_row_, contact_links_;
+  std::vector<bool> touched_;  ///< surfaces, then bars, by bound
+  std::vector<bool> exempt_;   ///< bounds of links that touch: from map and obstacles
+
+  Eigen::VectorXd closure_;
+  Aligned closure_jacobian_;
+  std::vector<Row> rows_;
+  Aligned gradients_;
+  std::vector<NearPair> near_;
+  std::vector<double> near_gradients_;
+};
+
+}  // namespace locograph

@@ -1,0 +1,51 @@
+#pragma once
+/// Contact tasks that come along as stance planners take them, changed at will.
+///
+///     StanceProblem task = stance_task("standing_up");
+///     StanceProblem slippery = stance_task("standing_up", {{"friction=\"0.5\"",
+///     "friction=\"0.1\""}}); Contact& hand = contact_of(task.start, "left_hand");
+
+#include <locograph/planners/offline/stance/stance_problem.h>
+
+#include <algorithm>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "planners/planned_drive.h"
+
+namespace locograph::test {
+
+using Replacements = std::vector<std::pair<std::string, std::string>>;
+
+/// The scenario that comes along with the first of each text replaced.
+inline Scenario changed_scenario(const std::string& name, const Replacements& replacements) {
+  std::ifstream in(LOCOGRAPH_SOURCE_DIR "/planners/scenarios/" + name + ".xml");
+  std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  for (const auto& [find, replace] : replacements) {
+    const std::size_t at = text.find(find);
+    if (at == std::string::npos) throw std::invalid_argument("no " + find + " in " + name);
+    text.replace(at, find.size(), replace);
+  }
+  const DataFolder data;
+  return load_scenario(data.write("changed.xml", text).string(), data.path());
+}
+
+inline StanceProblem stance_task(const std::string& name, const Replacements& replacements = {}) {
+  return stance_problem(changed_scenario(name, replacements)).problem;
+}
+
+inline Contact& contact_of(Stance& stance, const std::string& name) {
+  const auto found = std::ranges::find(stance.contacts, name, &Contact::name);
+  if (found == stance.contacts.end()) throw std::invalid_argument("no contact of " + name);
+  return *found;
+}
+
+inline Stance without_contact(Stance stance, const std::string& name) {
+  std::erase_if(stance.contacts, [&](const Contact& contact) { return contact.name() == name; });
+  return stance;
+}
+
+}  // namespace locograph::test
