@@ -11,13 +11,13 @@
 namespace locograph {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNowhere = std::numeric_limits<double>::infinity();
 
 using Segment = std::array<Eigen::Vector2d, 2>;
 
 /// The part of a segment in the rectangle |x|, |y| <= half. Liang and Barsky, A new concept and
 /// method for line clipping, 1984.
-std::optional<Segment> clip(const Segment& segment, const Eigen::Vector2d& half) {
+std::optional<Segment> part_inside(const Segment& segment, const Eigen::Vector2d& half) {
   const Eigen::Vector2d way = segment[1] - segment[0];
   double from = 0.0, to = 1.0;
   for (const int axis : {0, 1}) {
@@ -34,7 +34,7 @@ std::optional<Segment> clip(const Segment& segment, const Eigen::Vector2d& half)
 
 /// Of a segment and a rectangle that do not meet: the nearest points are an end or a corner.
 double distance(const Segment& segment, const Eigen::Vector2d& half) {
-  double least = kInfinity;
+  double least = kNowhere;
   for (const Eigen::Vector2d& end : segment)
     least = std::min(least, (end.cwiseAbs() - half).cwiseMax(0.0).norm());
   const Eigen::Vector2d way = segment[1] - segment[0];
@@ -60,11 +60,11 @@ double off_bar_m(const Contact& contact, const Bar& bar) {
   const Eigen::Vector3d from_axis = from_bar - axis * axis.dot(from_bar);
   switch (effector.kind) {
     case ContactKind::kPoint:
-      if (angle_between(from_axis, normal) > limits::kClosed_rad) return kInfinity;
+      if (angle_between(from_axis, normal) > limits::kClosed_rad) return kNowhere;
       return std::abs(from_axis.norm() - bar.radius_m);
     case ContactKind::kSurface: {
       const double slope = std::abs(angle_between(axis, normal) - 0.5 * std::numbers::pi);
-      if (slope > limits::kClosed_rad) return kInfinity;
+      if (slope > limits::kClosed_rad) return kNowhere;
       const double height = normal.dot(from_axis) - bar.radius_m;
       const double aside = std::abs(normal.cross(axis).dot(from_axis)) -
                            std::hypot(effector.half_x_m, effector.half_y_m);
@@ -73,13 +73,13 @@ double off_bar_m(const Contact& contact, const Bar& bar) {
     case ContactKind::kRung: {
       const Eigen::Vector3d held = normal.cross(contact.forward->stableNormalized());
       const double turned = angle_between(held, axis);
-      if (std::min(turned, std::numbers::pi - turned) > limits::kClosed_rad) return kInfinity;
+      if (std::min(turned, std::numbers::pi - turned) > limits::kClosed_rad) return kNowhere;
       return from_axis.norm();
     }
     case ContactKind::kWheel:
       break;
   }
-  return kInfinity;
+  return kNowhere;
 }
 
 double beyond_ends_m(const Bar& bar, const Eigen::Vector3d& point) {
@@ -99,7 +99,7 @@ SoleOnBar sole_on_bar(const Bar& bar, const Contact& contact,
   const Segment touching = {in_sole(bar.from), in_sole(bar.to)};
   const Eigen::Vector2d half(sole.half_x_m, sole.half_y_m);
   constexpr double kNoLine_m = 1e-4;
-  const std::optional<Segment> line = clip(touching, half);
+  const std::optional<Segment> line = part_inside(touching, half);
   if (line && ((*line)[1] - (*line)[0]).norm() > kNoLine_m)
     return {0.0, {line->begin(), line->end()}};
   return {std::max(line ? 0.0 : distance(touching, half), limits::kHeld_m), {}};

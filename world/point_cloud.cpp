@@ -28,7 +28,7 @@ struct Field {
   std::size_t first_byte = 0;  ///< of a point's record
 };
 
-struct Header {
+struct PcdHeader {
   std::array<Field, 3> xyz;
   std::size_t words = 0, bytes = 0;  ///< of one point
   std::size_t points = 0;
@@ -63,14 +63,14 @@ bool parse(std::string_view word, Number& number) {
   return error == std::errc() && end == word.data() + word.size();
 }
 
-class HeaderReader {
+class PcdHeaderReader {
  public:
-  HeaderReader(const std::string& file, std::string_view content)
+  PcdHeaderReader(const std::string& file, std::string_view content)
       : file_(file), content_(content) {}
 
-  Header read() {
+  PcdHeader read() {
     while (!entries_.contains("DATA")) next_entry();
-    Header header;
+    PcdHeader header;
     header.data_begin = position_;
     header.data_line = line_;
     header.layout = layout();
@@ -170,7 +170,7 @@ class HeaderReader {
     }
   }
 
-  void lay_out(std::vector<Field>& fields, Header& header) const {
+  void lay_out(std::vector<Field>& fields, PcdHeader& header) const {
     // Sums stay far below an overflow: of names in the file, times counts below its size.
     for (Field& field : fields) {
       field.first_word = header.words;
@@ -239,7 +239,7 @@ void keep_if_finite(const Eigen::Vector3d& point, std::vector<Eigen::Vector3d>& 
               "the " + std::to_string(points) + " points of its header");
 }
 
-std::vector<Eigen::Vector3d> read_text(const std::string& file, const Header& header,
+std::vector<Eigen::Vector3d> read_text(const std::string& file, const PcdHeader& header,
                                        std::string_view data) {
   std::vector<Eigen::Vector3d> points;
   // A line has a digit and a line end at least.
@@ -286,7 +286,7 @@ double coordinate(const char* at, std::size_t size) {
   return static_cast<double>(value);
 }
 
-std::vector<Eigen::Vector3d> read_records(const std::string& file, const Header& header,
+std::vector<Eigen::Vector3d> read_records(const std::string& file, const PcdHeader& header,
                                           std::string_view data) {
   if (header.points > data.size() / header.bytes) {
     fail_truncated(file, 0, std::to_string(data.size()) + " bytes of data", header.points);
@@ -337,7 +337,7 @@ bool expand_lzf(std::string_view in, std::size_t size, std::string& out) {
   return out.size() == size;
 }
 
-std::vector<Eigen::Vector3d> read_compressed(const std::string& file, const Header& header,
+std::vector<Eigen::Vector3d> read_compressed(const std::string& file, const PcdHeader& header,
                                              std::string_view data) {
   std::array<std::uint32_t, 2> sizes{};  // compressed, expanded
   if (data.size() < sizeof sizes) {
@@ -382,7 +382,7 @@ std::vector<Eigen::Vector3d> load_point_cloud(const std::filesystem::path& path)
   const std::string file = path.string();
   const std::string content = read_file(path, kMostInputBytes, "a point cloud (PCD)");
   if (content.empty()) throw Error(file, 0, "is empty", "a point cloud (PCD)");
-  const Header header = HeaderReader(file, content).read();
+  const PcdHeader header = PcdHeaderReader(file, content).read();
   const std::string_view data = std::string_view(content).substr(header.data_begin);
   std::vector<Eigen::Vector3d> points;
   switch (header.layout) {

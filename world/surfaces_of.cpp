@@ -12,7 +12,7 @@
 namespace locograph {
 namespace {
 
-double area(const Surface& surface) { return surface.half_x_m * surface.half_y_m; }
+double extent(const Surface& surface) { return surface.half_x_m * surface.half_y_m; }
 
 using Keys = std::array<int, 3>;
 
@@ -89,7 +89,7 @@ Surface on_layer(const Layer& layer, const CellRectangle& cells, double voxel_m)
 void append_surfaces(World& world, const std::string& name, double friction,
                      std::vector<Surface> surfaces) {
   std::stable_sort(surfaces.begin(), surfaces.end(),
-                   [](const Surface& a, const Surface& b) { return area(a) > area(b); });
+                   [](const Surface& a, const Surface& b) { return extent(a) > extent(b); });
   int number = 0;
   for (Surface& surface : surfaces) {
     surface.name = name + " " + std::to_string(++number);

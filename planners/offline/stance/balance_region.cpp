@@ -14,7 +14,7 @@ constexpr int kFacets = 8;
 /// Points of the polygon that are nearer to each other than this are one.
 constexpr double kSame_m = 1e-4;
 
-constexpr double kMost = std::numeric_limits<double>::max();
+constexpr double kNoBound = std::numeric_limits<double>::max();
 
 using Wrench = Eigen::Matrix<double, 6, 1>;
 
@@ -126,10 +126,10 @@ class Programme {
     }
     // The weight at (x, y): moment (x, y, .) x (0, 0, -1) = (-y, x, 0).
     put(4, 1.0);
-    end_column(-kMost, kMost);
+    end_column(-kNoBound, kNoBound);
     put(3, -1.0);
-    end_column(-kMost, kMost);
-    std::vector<double> row_lower(static_cast<std::size_t>(rows), -kMost), row_upper;
+    end_column(-kNoBound, kNoBound);
+    std::vector<double> row_lower(static_cast<std::size_t>(rows), -kNoBound), row_upper;
     std::fill_n(row_lower.begin(), 6, 0.0);
     row_upper.assign(6, 0.0);
     row_lower[2] = row_upper[2] = 1.0;
@@ -200,7 +200,7 @@ std::vector<BearingRay> bearing_rays(const BearingContact& bearing, double margi
       // The edges of the pyramid lie on the cone.
       const double angle = (k + 0.5) * 2.0 * std::numbers::pi / kFacets;
       const Eigen::Vector3d along(friction * std::cos(angle), friction * std::sin(angle), 1.0);
-      rays.push_back({at, axes * along, Eigen::Vector3d::Zero(), 0.0, kMost});
+      rays.push_back({at, axes * along, Eigen::Vector3d::Zero(), 0.0, kNoBound});
     }
   }
   return rays;

@@ -14,7 +14,8 @@ namespace locograph {
 namespace {
 
 constexpr double kGreed = 3.0, kNoise = 4.0, kUnlikely = 4.0, kFailedHere = 1.0, kLater = 6.0;
-constexpr int kFirstTree = 100, kMostMoves = 40, kMostDeadEnds = 20, kLiftRestarts = 2,
+
+constexpr int kFirstTree = 150, kMostMoves = 40, kMostDeadEnds = 20, kLiftRestarts = 4,
               kLaterRestarts = 2;
 constexpr double kTreeGrowth = 1.25;
 /// Of its reach, what an end effector gets ahead in a move on average.
@@ -93,9 +94,9 @@ struct Move {
   }
 };
 
-class Search {
+class GuidedSearch {
  public:
-  Search(StanceSpace& space, const StancePlannerOptions& options, StancePlan& result)
+  GuidedSearch(StanceSpace& space, const StancePlannerOptions& options, StancePlan& result)
       : space_(space),
         options_(options),
         result_(result),
@@ -135,15 +136,6 @@ class Search {
     const double usual = kUsualShare * reach_share_ * space_.reach_m(effector);
     const double far = (there - at).norm() / usual;
     return std::max(1.0, far) * (place == kFree ? 0.5 + 0.5 * std::min(1.0, far) : 1.0);
-  }
-
-  double stances_to_go(const Node& node, int moved, int place) {
-    double moves = 0.0;
-    for (int e = 0; e < space_.effectors(); ++e) {
-      const int at = e == moved ? place : node.footing[static_cast<std::size_t>(e)];
-      moves += moves_to_go(e, at, position(node, e, at));
-    }
-    return 2.0 * moves;
   }
 
   Eigen::Vector3d position(const Node& node, int effector, int place) {
@@ -398,7 +390,7 @@ StancePlan GuidedPlanner::plan(const StanceProblem& problem,
                                const StancePlannerOptions& options) const {
   return plan_stances(
       problem, options, [](StanceSpace& space, const StancePlannerOptions& o, StancePlan& result) {
-        auto search = std::make_shared<Search>(space, o, result);
+        auto search = std::make_shared<GuidedSearch>(space, o, result);
         return
             [search](const Footing& goal, StancePath& path) { return search->reach(goal, path); };
       });

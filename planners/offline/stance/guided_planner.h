@@ -8,7 +8,7 @@ namespace locograph {
 /// Best-first search over moves: an end effector is lifted and put down elsewhere. What promises
 /// most is tried first, by stances so far, stances to go were there no balance and no limits (each
 /// end effector by itself, in moves of the lengths that have worked), how often moves like it have
-/// failed, and noise. Transitions are only solved for what is tried. After 100 transitions the tree
+/// failed, and noise. Transitions are only solved for what is tried. After 150 transitions the tree
 /// is begun anew with other noise, each time with a quarter more; what failed is remembered.
 class GuidedPlanner final : public StancePlanner {
  public:

@@ -57,9 +57,9 @@ Eigen::AlignedBox3d box_around(const World& world, const Eigen::Vector3d& centre
   return box.clamp(Eigen::AlignedBox3d(centre - far, centre + far));
 }
 
-class Search {
+class RrtSearch {
  public:
-  Search(StanceSpace& space, const StancePlannerOptions& options, StancePlan& result)
+  RrtSearch(StanceSpace& space, const StancePlannerOptions& options, StancePlan& result)
       : space_(space), options_(options), result_(result), random_(options.seed) {}
 
   /// Appends the way to the goal; false if there is none.
@@ -260,7 +260,7 @@ StancePlan RrtPlanner::plan(const StanceProblem& problem,
                             const StancePlannerOptions& options) const {
   return plan_stances(
       problem, options, [](StanceSpace& space, const StancePlannerOptions& o, StancePlan& result) {
-        auto search = std::make_shared<Search>(space, o, result);
+        auto search = std::make_shared<RrtSearch>(space, o, result);
         return
             [search](const Footing& goal, StancePath& path) { return search->reach(goal, path); };
       });

@@ -13,8 +13,8 @@
 namespace locograph {
 namespace {
 
-constexpr double kContactWeight = 1e5, kLimitWeight = 1e4, kBalanceWeight = 1e4,
-                 kWrenchWeight = 1e3, kTorqueWeight = 1e2;
+constexpr double kEdgeContact = 1e5, kEdgeLimit = 1e4, kEdgeBalance = 1e4, kEdgeWrench = 1e3,
+                 kEdgeTorque = 1e2;
 
 /// Of the stances before and after a configuration, the one with fewer contacts.
 std::size_t smaller_stance(const StancePlan& plan, std::size_t i) {
@@ -69,17 +69,17 @@ Graph stance_graph(const Scenario& scenario, const StanceProblem& problem, const
     const auto closed = graph.parameters().get<StanceParameter>(numbers[larger_stance(plan, k)]);
     for (const int number : closed->contact_numbers) {
       const auto contact = graph.parameters().get<ContactParameter>(number);
-      graph.add_edge(EdgeContact(*contact, number, kContactWeight), vertex);
+      graph.add_edge(EdgeContact(*contact, number, kEdgeContact), vertex);
     }
-    graph.add_edge(EdgeJointLimits(model, 0.0, kLimitWeight), vertex);
-    graph.add_edge(EdgeBalance(kBalanceWeight * unit, kBalanceWeight * unit), vertex, forces);
-    EdgeContactWrench bearable(*graph.vertex(forces).contacts, kWrenchWeight * unit);
+    graph.add_edge(EdgeJointLimits(model, 0.0, kEdgeLimit), vertex);
+    graph.add_edge(EdgeBalance(kEdgeBalance * unit, kEdgeBalance * unit), vertex, forces);
+    EdgeContactWrench bearable(*graph.vertex(forces).contacts, kEdgeWrench * unit);
     graph.add_edge(std::move(bearable), forces);
     if (!problem.check.enforce_torque_limits) continue;
     EdgeTorqueLimits torques(model, problem.check.effort_scale, 0.0);
     for (int j = 0; j < model.active_joint_count(); ++j) {
       const double effort = model.active_joint(j).max_effort;
-      torques.weights[j] = std::isfinite(effort) ? kTorqueWeight / (effort * effort) : 0.0;
+      torques.weights[j] = std::isfinite(effort) ? kEdgeTorque / (effort * effort) : 0.0;
     }
     graph.add_edge(std::move(torques), vertex, forces);
   }

@@ -7,7 +7,7 @@
 namespace locograph {
 namespace {
 
-constexpr double kMost = std::numeric_limits<double>::max();
+constexpr double kUnlimited = std::numeric_limits<double>::max();
 
 }  // namespace
 
@@ -100,9 +100,9 @@ double TorqueProgramme::solve(const RobotState& state, Eigen::VectorXd& gradient
     end_column(ray.lower, ray.upper, 0.0);
   }
   for (int i = 0; i < 2 * torques; ++i) put(base + i, -1.0);
-  end_column(0.0, kMost, 1.0);
-  std::vector<double> row_lower(static_cast<std::size_t>(rows), -kMost);
-  std::vector<double> row_upper(static_cast<std::size_t>(rows), kMost);
+  end_column(0.0, kUnlimited, 1.0);
+  std::vector<double> row_lower(static_cast<std::size_t>(rows), -kUnlimited);
+  std::vector<double> row_upper(static_cast<std::size_t>(rows), kUnlimited);
   for (int i = 0; i < base; ++i) {
     const std::size_t k = static_cast<std::size_t>(i);
     row_lower[k] = row_upper[k] = gravity_[i] / weight_N_;

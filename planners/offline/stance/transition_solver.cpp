@@ -14,7 +14,7 @@ namespace {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kContactWeight = 1e5, kRowWeight = 1e3, kPosture = 1e-3, kDamping = 1e-3;
+constexpr double kClosureWeight = 1e5, kRowWeight = 1e3, kPosture = 1e-3, kDamping = 1e-3;
 constexpr double kLongestTurn_rad = 0.4, kLongestShift_m = 0.25;
 constexpr double kClosed = 1e-5;        ///< m, rad; the judge allows 1e-4 m
 constexpr double kContactMerit = 3.0;   ///< against the merit of the rows
@@ -77,8 +77,8 @@ struct TransitionSolver::Parts {
       base_gradient[i] = pull * away[i];
     }
     if (jacobian.rows() > 0) {
-      base_hessian.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose(), kContactWeight);
-      base_gradient.noalias() -= kContactWeight * (jacobian.transpose() * rows.closure());
+      base_hessian.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose(), kClosureWeight);
+      base_gradient.noalias() -= kClosureWeight * (jacobian.transpose() * rows.closure());
     }
     const std::vector<TransitionRows::Row>& all = rows.rows();
     active.assign(all.size(), false);
