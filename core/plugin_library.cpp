@@ -80,9 +80,10 @@ std::vector<std::string> abi_differences(const PluginRecord& theirs) {
 }
 
 void load_plugin(const std::filesystem::path& library, TypeRegistry& types) {
-  if (!std::filesystem::is_regular_file(library)) {
+  std::error_code ignored;  // as of names longer than paths may be
+  if (!std::filesystem::is_regular_file(library, ignored)) {
     throw Error(library.string(), 0,
-                std::filesystem::exists(library) ? "is not a file" : "does not exist",
+                std::filesystem::exists(library, ignored) ? "is not a file" : "does not exist",
                 "a shared library with a locograph plug-in");
   }
   // Lazily: a library built differently may miss symbols, but its record says more than that.
@@ -110,11 +111,12 @@ void load_plugin(const std::filesystem::path& library, TypeRegistry& types) {
 
 std::filesystem::path find_plugin(const std::string& name,
                                   const std::vector<std::filesystem::path>& folders) {
-  if (std::filesystem::exists(name) || name.find('/') != std::string::npos) return name;
+  std::error_code ignored;
+  if (std::filesystem::exists(name, ignored) || name.find('/') != std::string::npos) return name;
   std::string places;
   for (const std::filesystem::path& folder : folders) {
     for (const std::string& file : {name, name + ".so", "lib" + name + ".so"}) {
-      if (std::filesystem::is_regular_file(folder / file)) return folder / file;
+      if (std::filesystem::is_regular_file(folder / file, ignored)) return folder / file;
     }
     places += (places.empty() ? "" : ", ") + folder.string();
   }

@@ -44,20 +44,21 @@ std::vector<CollisionShape> merge_capsules(const std::vector<CollisionShape>& sh
 std::filesystem::path find_mesh(const std::string& reference, const std::filesystem::path& urdf) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::absolute(urdf).lexically_normal().parent_path();
+  std::error_code ignored;  // as of names longer than paths may be
   const std::size_t scheme = reference.find("://");
   if (scheme == std::string::npos) {
     const fs::path file = folder / reference;
-    return fs::is_regular_file(file) ? file : fs::path();
+    return fs::is_regular_file(file, ignored) ? file : fs::path();
   }
   const std::string rest = reference.substr(scheme + 3);
   if (reference.starts_with("file://")) {
-    return fs::is_regular_file(rest) ? fs::path(rest) : fs::path();
+    return fs::is_regular_file(rest, ignored) ? fs::path(rest) : fs::path();
   }
   const std::size_t slash = rest.find('/');
   const std::string inside = slash == std::string::npos ? rest : rest.substr(slash + 1);
   for (fs::path base = folder;; base = base.parent_path()) {
     for (const std::string& candidate : {rest, inside}) {
-      if (fs::is_regular_file(base / candidate)) return base / candidate;
+      if (fs::is_regular_file(base / candidate, ignored)) return base / candidate;
     }
     if (base == base.parent_path()) return {};
   }

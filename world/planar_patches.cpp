@@ -1,3 +1,4 @@
+#include <locograph/common/stably_sorted.h>
 #include <locograph/world/planar_patches.h>
 #include <locograph/world/point_grid.h>
 #include <locograph/world/rectangles.h>
@@ -184,7 +185,7 @@ class RegionGrowing {
 /// the same direction: voxels at the edges of that one, grown together by themselves.
 std::vector<Region> without_repetitions(std::vector<Region> regions, std::size_t points,
                                         const PatchOptions& options) {
-  std::stable_sort(regions.begin(), regions.end(), [](const Region& a, const Region& b) {
+  regions = stably_sorted(std::move(regions), [](const Region& a, const Region& b) {
     return a.points.size() > b.points.size();
   });
   std::vector<Region> kept;
@@ -379,8 +380,7 @@ std::vector<Surface> planar_patches(std::span<const Eigen::Vector3d> points,
   for (const PlanarRegion& region : planar_regions(points, options)) {
     surfaces.insert(surfaces.end(), region.surfaces.begin(), region.surfaces.end());
   }
-  std::stable_sort(surfaces.begin(), surfaces.end(), larger);
-  return surfaces;
+  return stably_sorted(std::move(surfaces), larger);
 }
 
 }  // namespace locograph

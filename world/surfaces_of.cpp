@@ -1,4 +1,5 @@
 #include <locograph/common/error.h>
+#include <locograph/common/stably_sorted.h>
 #include <locograph/world/leftover_map.h>
 #include <locograph/world/octree.h>
 #include <locograph/world/rectangles.h>
@@ -88,10 +89,9 @@ Surface on_layer(const Layer& layer, const CellRectangle& cells, double voxel_m)
 
 void append_surfaces(World& world, const std::string& name, double friction,
                      std::vector<Surface> surfaces) {
-  std::stable_sort(surfaces.begin(), surfaces.end(),
-                   [](const Surface& a, const Surface& b) { return extent(a) > extent(b); });
   int number = 0;
-  for (Surface& surface : surfaces) {
+  for (Surface& surface : stably_sorted(
+           std::move(surfaces), [](const auto&a, const auto&b) { return extent(a) > extent(b); })) {
     surface.name = name + " " + std::to_string(++number);
     surface.friction = friction;
     world.surfaces.push_back(std::move(surface));
