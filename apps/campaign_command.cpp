@@ -1,6 +1,7 @@
 #include <locograph/apps/campaign_command.h>
 #include <locograph/apps/campaign_table.h>
 #include <locograph/apps/child_process.h>
+#include <locograph/apps/common_options.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/progress.h>
 #include <locograph/common/atomic_file.h>
@@ -35,7 +36,7 @@ struct CampaignOptions {
   int runs = 0;
   unsigned seed = 0;
   bool stances_only = false;
-  double timeout_s = 0.0;
+  double timeout_s = 0.0, move_contacts_m = 0.0;
   int threads = 0;  ///< 0: as many as `plan` takes
   int processes = 1;
   bool json = false;
@@ -46,6 +47,9 @@ struct CampaignOptions {
     if (stances_only) words.emplace_back("--stances-only");
     if (!torques.empty()) words.insert(words.end(), {"--torque-limits", torques});
     if (timeout_s > 0.0) words.insert(words.end(), {"--timeout", Json(timeout_s).dump()});
+    if (move_contacts_m > 0.0) {
+      words.insert(words.end(), {"--move-contacts", Json(move_contacts_m).dump()});
+    }
     if (threads > 0) words.insert(words.end(), {"--threads", std::to_string(threads)});
     return words;
   }
@@ -299,16 +303,20 @@ Command add_campaign(OptionParser& app) {
   CampaignOptions& o = *options;
   OptionParser parser = app.add_subcommand(
       "campaign", "Plan a scenario with many seeds; how often and how fast there is a plan");
-  parser.add_option("SCENARIO", o.scenario, "File, or a name that `locograph list scenarios` gives")
-      .required();
+  add_scenario_argument(parser, o.scenario);
   parser.add_option("--runs", o.runs, "How many seeds").required().positive();
   parser.add_option("--seed", o.seed, "The first seed; the others follow one by one")
       .show_default();
   parser.add_option("--planner", o.planner, "As for plan");
   parser.add_flag("--stances-only", o.stances_only, "As for plan: no motion between stances");
-  parser.add_option("--torque-limits", o.torques, "As for plan").one_of({"enforce", "report"});
+  add_torque_limits_option(parser, o.torques, "As for plan");
   parser.add_option("--timeout", o.timeout_s, "Seconds that each run may take; 0: no limit")
       .not_negative();
+  parser
+      .add_option("--move-contacts", o.move_contacts_m,
+                  "As for plan: each run moves the contacts of start and goals by its seed [m]")
+      .between(0.0, 10.0)
+      .show_default();
   parser.add_option("--threads", o.threads, "Most threads of each run (without it, as for plan)")
       .positive();
   parser

@@ -1,4 +1,5 @@
 #include <locograph/apps/campaign_table.h>
+#include <locograph/apps/csv.h>
 #include <locograph/apps/statistics.h>
 #include <locograph/common/error.h>
 #include <locograph/common/input_file.h>
@@ -21,27 +22,6 @@ std::vector<std::string> column_names() {
   return names;
 }
 
-std::string quoted(const std::string& field) {
-  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
-  std::string text = "\"";
-  for (const char letter : field) {
-    if (letter == '"') text.push_back('"');
-    text.push_back(letter);
-  }
-  text.push_back('"');
-  return text;
-}
-
-std::string csv_line(const std::vector<std::string>& fields) {
-  std::string line;
-  for (const std::string& field : fields) {
-    if (&field != &fields.front()) line.push_back(',');
-    line += quoted(field);
-  }
-  line.push_back('\n');
-  return line;
-}
-
 /// As few digits as give the same bits again.
 std::string exact_number(const std::optional<double>& value) {
   if (!value) return "";
@@ -49,73 +29,6 @@ std::string exact_number(const std::optional<double>& value) {
   return std::string(text.data(),
                      std::to_chars(text.data(), text.data() + text.size(), *value).ptr);
 }
-
-struct CsvRow {
-  std::vector<std::string> fields;
-  int line = 0;  ///< of its beginning
-};
-
-/// Reads CSV; line breaks are \n or \r\n, empty lines are left out.
-class CsvReader {
- public:
-  CsvReader(const std::string& text, const std::string& file) : text_(text), file_(file) {}
-
-  /// Nothing at the end.
-  std::optional<CsvRow> next() {
-    while (at_ < text_.size()) {
-      CsvRow row{{}, line_};
-      do row.fields.push_back(field());
-      while (take(","));
-      if (!take("\r\n") && !take("\n") && at_ < text_.size()) {
-        fail(line_, "'" + text_.substr(at_, 1) + "' behind a closing quote", "a comma");
-      }
-      ++line_;
-      if (row.fields.size() > 1 || !row.fields.front().empty()) return row;
-    }
-    return std::nullopt;
-  }
-
-  [[noreturn]] void fail(int line, const std::string& what, const std::string& expected) const {
-    throw Error(file_, line, what, expected);
-  }
-
- private:
-  bool take(std::string_view letters) {
-    if (text_.compare(at_, letters.size(), letters) != 0) return false;
-    at_ += letters.size();
-    return true;
-  }
-
-  std::string field() {
-    if (take("\"")) return quoted_field();
-    std::size_t end = std::min(text_.find_first_of(",\n", at_), text_.size());
-    if (end < text_.size() && text_[end] == '\n' && end > at_ && text_[end - 1] == '\r') --end;
-    std::string value = text_.substr(at_, end - at_);
-    at_ = end;
-    return value;
-  }
-
-  std::string quoted_field() {
-    const int begin = line_;
-    std::string value;
-    while (at_ < text_.size()) {
-      if (take("\"\"")) {
-        value += '"';
-      } else if (take("\"")) {
-        return value;
-      } else {
-        line_ += text_[at_] == '\n' ? 1 : 0;
-        value += text_[at_++];
-      }
-    }
-    fail(begin, "a field whose quote is not closed", "a closing \"");
-  }
-
-  const std::string& text_;
-  const std::string& file_;
-  std::size_t at_ = 0;
-  int line_ = 1;
-};
 
 template <class Number>
 std::optional<Number> number_in(const std::string& text) {

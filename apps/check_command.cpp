@@ -1,5 +1,6 @@
 #include <locograph/apps/check_command.h>
 #include <locograph/apps/check_json.h>
+#include <locograph/apps/common_options.h>
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_file.h>
@@ -74,16 +75,12 @@ Command add_check(OptionParser& app) {
   parser.add_option("--clearance", o.clearance_m, "Distance to keep to obstacles [m]")
       .between(0.0, 0.5)
       .show_default();
-  parser
-      .add_option("--torque-limits", o.torques,
-                  "enforce: torques keep to the URDF's efforts; report: only tell them (without "
-                  "it, what the scenario says, else enforce)")
-      .one_of({"enforce", "report"});
+  add_torque_limits_option(parser, o.torques,
+                           "enforce: torques keep to the URDF's efforts; report: only tell them "
+                           "(without it, what the scenario says, else enforce)");
   parser.add_option("--until", o.until_s,
                     "Time [s] until which the robot stands on where the plan ends");
-  parser.add_option("--threads", o.threads, "Most threads to use (this version uses one)")
-      .positive()
-      .show_default();
+  add_threads_option(parser, o.threads);
   add_plugin_option(parser, o.plugins);
   parser.add_flag("--all", o.all, "List every constraint, also those that hold");
   parser.add_flag("--json", o.json, "Print one JSON object");

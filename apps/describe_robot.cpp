@@ -1,4 +1,5 @@
 #include <locograph/apps/describe.h>
+#include <locograph/apps/robot_files.h>
 #include <locograph/apps/type_names.h>
 #include <locograph/plugins/configuration/self_collision_shapes.h>
 #include <locograph/plugins/configuration/sphere_overshoot.h>
@@ -45,9 +46,7 @@ Json approximation_json(const Robot& robot) {
 }  // namespace
 
 Json describe_robot(const std::filesystem::path& path) {
-  std::filesystem::path srdf = path;
-  srdf.replace_extension(".srdf");
-  if (!std::filesystem::exists(srdf)) srdf.clear();
+  const std::filesystem::path srdf = srdf_beside(path);
   RobotOptions options;
   options.lenient_srdf = true;
   const Robot robot = Robot::load(path, srdf, options);

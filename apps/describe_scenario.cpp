@@ -87,7 +87,8 @@ Json bar_json(const Bar& bar) {
 /// The file, null if none is named; what is not there is added to missing.
 Json file_json(const std::filesystem::path& file, Json& missing) {
   if (file.empty()) return nullptr;
-  if (!std::filesystem::exists(file)) missing.push_back(file.string());
+  std::error_code too_long;
+  if (!std::filesystem::exists(file, too_long)) missing.push_back(file.string());
   return file.string();
 }
 

@@ -81,7 +81,8 @@ bool is_bal_file(const std::string& path) {
   if (extension == ".g2o") return false;
   if (extension == ".bal") return true;
   // What begins in a pipe cannot be read twice.
-  if (!std::filesystem::is_regular_file(path)) return false;
+  std::error_code too_long;
+  if (!std::filesystem::is_regular_file(path, too_long)) return false;
   std::ifstream in(path);
   std::string begin(200, '\0');
   in.read(begin.data(), static_cast<std::streamsize>(begin.size()));

@@ -3,7 +3,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <functional>
+#include <sstream>
 
 namespace locograph {
 namespace {
@@ -38,20 +42,49 @@ std::string not_understood(const CLI::App& app) {
          did_you_mean(word, commands);
 }
 
+/// Finite numbers only. CLI11's own accept NaN and print their bounds in 300 digits.
+CLI::Validator finite_numbers(const std::string& help, const std::string& expected,
+                              const std::function<bool(double)>& accepted) {
+  const auto wrong = [expected, accepted](std::string& text) -> std::string {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    const bool is_number = !text.empty() && *end == '\0' && std::isfinite(value);
+    return is_number && accepted(value) ? "" : "'" + text + "', expected " + expected;
+  };
+  return CLI::Validator(wrong, help);
+}
+
+template <class Number>
+CLI::Validator finite_numbers_between(Number least, Number most) {
+  std::ostringstream range;
+  range << least << " to " << most;
+  return finite_numbers('[' + range.str() + ']', "a number from " + range.str(), [=](double value) {
+    return value >= static_cast<double>(least) && value <= static_cast<double>(most);
+  });
+}
+
 }  // namespace
 
 ParserOption& ParserOption::required() { return option_->required(), *this; }
-ParserOption& ParserOption::positive() { return option_->check(CLI::PositiveNumber), *this; }
-ParserOption& ParserOption::not_negative() { return option_->check(CLI::NonNegativeNumber), *this; }
 ParserOption& ParserOption::show_default() { return option_->capture_default_str(), *this; }
 ParserOption& ParserOption::one_at_a_time() { return option_->allow_extra_args(false), *this; }
 
+ParserOption& ParserOption::positive() {
+  const auto accepted = [](double value) { return value > 0.0; };
+  return option_->check(finite_numbers("POSITIVE", "a number > 0", accepted)), *this;
+}
+
+ParserOption& ParserOption::not_negative() {
+  const auto accepted = [](double value) { return value >= 0.0; };
+  return option_->check(finite_numbers("NONNEGATIVE", "a number >= 0", accepted)), *this;
+}
+
 ParserOption& ParserOption::between(int least, int most) {
-  return option_->check(CLI::Range(least, most)), *this;
+  return option_->check(finite_numbers_between(least, most)), *this;
 }
 
 ParserOption& ParserOption::between(double least, double most) {
-  return option_->check(CLI::Range(least, most)), *this;
+  return option_->check(finite_numbers_between(least, most)), *this;
 }
 
 ParserOption& ParserOption::one_of(const std::vector<std::string>& values) {

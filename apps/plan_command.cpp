@@ -1,6 +1,9 @@
+#include <locograph/apps/common_options.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_command.h>
 #include <locograph/apps/progress.h>
+#include <locograph/apps/stance_tree_file.h>
+#include <locograph/common/atomic_file.h>
 #include <locograph/common/data_folder.h>
 #include <locograph/common/deadline.h>
 #include <locograph/common/stop_signals.h>
@@ -19,10 +22,11 @@ namespace locograph {
 namespace {
 
 struct PlanOptions {
-  std::string scenario, output, torques, planner = "guided";
+  std::string scenario, output, tree, torques, planner = "guided";
   bool stances_only = false;
   unsigned seed = 0;
   double timeout_s = 0.0;
+  double move_contacts_m = 0.0;
   int threads = 1;
   bool json = false;
 };
@@ -116,13 +120,15 @@ Json failures_json(const StancePlan& plan) {
 ExitCode plan_stances_of(const Scenario& scenario, const PlanOptions& options) {
   const auto planner = make_stance_planner(options.planner);
   const Stopwatch total;
-  StartedProblem started = stance_problem(scenario);
+  StartedProblem started =
+      stance_problem(scenario, {.most_m = options.move_contacts_m, .seed = options.seed});
   StanceProblem& problem = started.problem;
   if (!options.torques.empty()) {
     problem.check.enforce_torque_limits = options.torques == "enforce";
   }
   StancePlannerOptions asked;
   asked.seed = options.seed;
+  asked.keep_tree = !options.tree.empty();
   if (options.timeout_s > 0.0) asked.deadline = Deadline::after(options.timeout_s);
   const FinishOnSignal finish;
   asked.stop = &stop_flag();
@@ -136,6 +142,10 @@ ExitCode plan_stances_of(const Scenario& scenario, const PlanOptions& options) {
     total_s = total.seconds();
   }
   write_graph(graph, options.output);
+  if (asked.keep_tree) {
+    write_file_atomically(options.tree,
+                          stance_tree_text(scenario.name, planner->name(), options.seed, plan));
+  }
   Json json = {
       {"success", plan.success},
       {"reason", plan.reason},
@@ -159,6 +169,9 @@ ExitCode plan_stances_of(const Scenario& scenario, const PlanOptions& options) {
         {"judge", plan.judge_s},
         {"total", total_s}}},
   };
+  if (options.move_contacts_m > 0.0) {
+    json["moved_contacts"] = {{"up_to_m", options.move_contacts_m}, {"start_draws", started.draws}};
+  }
   if (!plan.success) {
     json["best"] = {{"stances", plan.stances.size()},
                     {"goal_contacts_reached", plan.best_contacts}};
@@ -168,6 +181,10 @@ ExitCode plan_stances_of(const Scenario& scenario, const PlanOptions& options) {
     return plan.success ? kDone : kNo;
   }
   std::string text = scenario.name + ": ";
+  if (options.move_contacts_m > 0.0) {
+    text += "contacts of start and goals are moved by up to " +
+            short_number(options.move_contacts_m) + " m\n" + scenario.name + ": ";
+  }
   if (started.moved_base_m > 0.0 || started.moved_joint_rad > 0.0) {
     text += "the start is not feasible as given; the nearest is " +
             short_number(started.moved_base_m) + " m and " + short_number(started.moved_joint_rad) +
@@ -177,18 +194,28 @@ ExitCode plan_stances_of(const Scenario& scenario, const PlanOptions& options) {
   text += counted(json["stances"], "stance", "stances") + ", " +
           counted(json["transitions"]["tried"], "transition", "transitions") + " tried, in " +
           short_number(total_s) + " s\nwritten: " + options.output + '\n';
+  if (asked.keep_tree) text += "written: " + options.tree + '\n';
   print_text(text);
   return plan.success ? kDone : kNo;
 }
 
 ExitCode plan_scenario(const PlanOptions& options) {
-  check_output(options.output, options.json);
+  if (!options.tree.empty() && !options.stances_only) {
+    throw Error("--tree has no search for stances to show", "--stances-only");
+  }
+  for (const std::string& file : {options.output, options.tree}) {
+    if (!file.empty()) check_output(file, options.json);
+  }
   const Stopwatch total;
   const Scenario scenario = load_scenario(options.scenario, data_folder());
   if (scenario.drive) {
     if (options.stances_only) {
       throw Error(scenario.source, scenario.drive->line, "a drive has no stances to plan",
                   "a scenario with <start> and <goal>, or no --stances-only");
+    }
+    if (options.move_contacts_m > 0.0) {
+      throw Error(scenario.source, scenario.drive->line, "a drive has no contacts to move",
+                  "a scenario with <start> and <goal>, or no --move-contacts");
     }
     return plan_drive(scenario, options, total);
   }
@@ -206,12 +233,13 @@ Command add_plan(OptionParser& app) {
   PlanOptions& o = *options;
   OptionParser parser =
       app.add_subcommand("plan", "Plan a scenario offline and emit the plan's graph");
-  parser.add_option("SCENARIO", o.scenario, "File, or a name that `locograph list scenarios` gives")
-      .required();
+  add_scenario_argument(parser, o.scenario);
   parser.add_option("-o,--output", o.output, "Plan file to write (.g2o); - is standard output")
       .required();
   parser.add_flag("--stances-only", o.stances_only,
                   "Stances and the configurations between them, no motion");
+  parser.add_option("--tree", o.tree,
+                    "File to write what the search for stances tried (.json), for `view --tree`");
   parser
       .add_option("--planner", o.planner, "Of stances; `locograph list planners` gives their names")
       .one_of(stance_planner_names())
@@ -220,14 +248,16 @@ Command add_plan(OptionParser& app) {
       .show_default();
   parser.add_option("--timeout", o.timeout_s, "Seconds the planner may take; 0: no limit")
       .not_negative();
+  add_torque_limits_option(parser, o.torques,
+                           "enforce: the plan keeps to the URDF's efforts; report: only tell them "
+                           "(without it, what the scenario says)");
   parser
-      .add_option("--torque-limits", o.torques,
-                  "enforce: the plan keeps to the URDF's efforts; report: only tell them (without "
-                  "it, what the scenario says)")
-      .one_of({"enforce", "report"});
-  parser.add_option("--threads", o.threads, "Most threads to use (this version uses one)")
-      .positive()
+      .add_option("--move-contacts", o.move_contacts_m,
+                  "Another task of the kind: each contact of start and goals is moved on its "
+                  "surface or bar at random, by the seed, up to so far along each axis [m]")
+      .between(0.0, 10.0)
       .show_default();
+  add_threads_option(parser, o.threads);
   parser.add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] { return plan_scenario(*options); }};
 }

@@ -1,7 +1,7 @@
-#include <locograph/apps/output.h>
+#include <locograph/apps/json_file.h>
 #include <locograph/apps/plot.h>
 #include <locograph/apps/statistics.h>
-#include <locograph/common/input_file.h>
+#include <locograph/common/error.h>
 
 #include <algorithm>
 #include <cmath>
@@ -210,28 +210,6 @@ PlotScript constraints(const Json& result) {
   return plot;
 }
 
-int line_of(const std::string& text, std::size_t at) {
-  const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(at, text.size()));
-  return 1 + static_cast<int>(std::count(text.begin(), end, '\n'));
-}
-
-Json parsed(const std::filesystem::path& file, const std::string& expected) {
-  const std::string text = read_file(file, kMostInputBytes, expected);
-  try {
-    return Json::parse(text);
-  } catch (const Json::parse_error& failure) {
-    const std::size_t at = failure.byte > 0 ? failure.byte - 1 : 0;
-    throw Error(file.string(), line_of(text, at), "is not JSON", expected);
-  } catch (const Json::out_of_range& failure) {
-    // "number overflow parsing '1e400'", without a place.
-    const std::string message = failure.what();
-    const std::size_t begin = message.find('\'') + 1, end = message.rfind('\'');
-    const std::string number = begin < end ? message.substr(begin, end - begin) : "a number";
-    throw Error(file.string(), line_of(text, text.find(number)), "'" + number + "' is not finite",
-                "finite numbers");
-  }
-}
-
 }  // namespace
 
 PlotScript plot_result(const std::filesystem::path& result,
@@ -240,7 +218,7 @@ PlotScript plot_result(const std::filesystem::path& result,
   if (result.extension() == ".csv") return plot_table(result);
   const std::string expected =
       "JSON that optimize, refine or check printed with --json, a plan (.g2o) or a table (.csv)";
-  const Json json = parsed(result, expected);
+  const Json json = read_json(result, expected);
   const auto has = [&json](const char* key) {
     return json.is_object() && json.contains(key) && json[key].is_array();
   };

@@ -1,23 +1,23 @@
+#include <locograph/apps/csv.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/plot.h>
 #include <locograph/apps/statistics.h>
+#include <locograph/common/error.h>
 #include <locograph/common/input_file.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
-#include <sstream>
 #include <vector>
 
 namespace locograph {
 namespace {
 
-/// A table with a header line; fields are plain, or in double quotes with "" for a quote (RFC 4180,
-/// without line breaks inside fields).
+/// A table with a header line; lines that begin with # are left out.
 struct Table {
   std::vector<std::string> header;
-  std::vector<std::vector<std::string>> rows;
-  std::vector<int> lines;  ///< of the rows
+  std::vector<CsvRow> rows;
 
   int column(const std::string& name) const {
     const auto found = std::find(header.begin(), header.end(), name);
@@ -25,45 +25,24 @@ struct Table {
   }
 };
 
-std::vector<std::string> fields(std::string line) {
-  if (!line.empty() && line.back() == '\r') line.pop_back();
-  std::vector<std::string> result(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == '"') {
-      const bool pair = quoted && i + 1 < line.size() && line[i + 1] == '"';
-      if (pair) result.back() += line[i++];
-      if (!pair) quoted = !quoted;
-    } else if (line[i] == ',' && !quoted) {
-      result.emplace_back();
-    } else {
-      result.back() += line[i];
-    }
-  }
-  return result;
-}
-
 Table read_table(const std::filesystem::path& file) {
-  std::istringstream text(read_file(file, kMostInputBytes, "a table (.csv)"));
+  const std::string text = read_file(file, kMostInputBytes, "a table (.csv)"), name = file.string();
+  CsvReader reader(text, name);
   Table table;
-  int number = 0;
-  for (std::string line; std::getline(text, line);) {
-    ++number;
-    if (line.empty() || line == "\r" || line[0] == '#') continue;
-    std::vector<std::string> row = fields(line);
+  while (std::optional<CsvRow> row = reader.next()) {
+    if (row->fields.front().starts_with('#')) continue;
     if (table.header.empty()) {
-      table.header = std::move(row);
+      table.header = std::move(row->fields);
       continue;
     }
-    if (row.size() != table.header.size()) {
-      throw Error(file.string(), number, std::to_string(row.size()) + " fields",
+    if (row->fields.size() != table.header.size()) {
+      reader.fail(row->line, counted(static_cast<long>(row->fields.size()), "field", "fields"),
                   std::to_string(table.header.size()) + " as in the header");
     }
-    table.rows.push_back(std::move(row));
-    table.lines.push_back(number);
+    table.rows.push_back(std::move(*row));
   }
   if (table.rows.empty()) {
-    throw Error(file.string(), 0, "holds no rows", "a header line and one line for each run");
+    throw Error(name, 0, "holds no rows", "a header line and one line for each run");
   }
   return table;
 }
@@ -82,18 +61,25 @@ std::optional<double> number(const std::string& text, const std::filesystem::pat
 
 bool is_yes(const std::string& text) { return text == "true" || text == "1" || text == "yes"; }
 
+/// How long planning took, not how long what was planned takes.
 bool is_time(const std::string& name) {
+  if (name == "duration_s") return false;
   return name.starts_with("time") || name.ends_with("_s") || name.ends_with("_time");
+}
+
+/// Where a table tells which runs succeeded, as campaigns or other programs call it; else -1.
+int success_column(const Table& table) {
+  const int solved = table.column("solved");
+  return solved >= 0 ? solved : table.column("success");
 }
 
 /// The numbers of a column, sorted; of the successful runs only when the table tells.
 std::vector<double> column_values(const Table& table, std::size_t column, int success,
                                   const std::filesystem::path& file) {
   std::vector<double> values;
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    const std::vector<std::string>& row = table.rows[i];
-    if (success >= 0 && !is_yes(row[static_cast<std::size_t>(success)])) continue;
-    const std::optional<double> value = number(row[column], file, table.lines[i]);
+  for (const CsvRow& row : table.rows) {
+    if (success >= 0 && !is_yes(row.fields[static_cast<std::size_t>(success)])) continue;
+    const std::optional<double> value = number(row.fields[column], file, row.line);
     if (value) values.push_back(*value);
   }
   std::sort(values.begin(), values.end());
@@ -104,7 +90,7 @@ std::vector<double> column_values(const Table& table, std::size_t column, int su
 
 PlotScript plot_table(const std::filesystem::path& file) {
   const Table table = read_table(file);
-  const int success = table.column("success");
+  const int success = success_column(table);
   std::string boxes, tics;
   int count = 0;
   double highest = 0.0;
@@ -124,11 +110,11 @@ PlotScript plot_table(const std::filesystem::path& file) {
   }
   if (count == 0) {
     throw Error(file.string(), 0, "no column of times with numbers",
-                "columns named time… or …_s, and success");
+                "columns named time…, …_time or …_s, and solved or success");
   }
   long solved = 0;
-  for (const std::vector<std::string>& row : table.rows) {
-    solved += success >= 0 && is_yes(row[static_cast<std::size_t>(success)]) ? 1 : 0;
+  for (const CsvRow& row : table.rows) {
+    solved += success >= 0 && is_yes(row.fields[static_cast<std::size_t>(success)]) ? 1 : 0;
   }
   const long runs = static_cast<long>(table.rows.size());
   PlotScript plot(std::max(700, 320 + 150 * count), 520);

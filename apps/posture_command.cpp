@@ -1,4 +1,5 @@
 #include <locograph/apps/check_json.h>
+#include <locograph/apps/common_options.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/posture_command.h>
 #include <locograph/apps/progress.h>
@@ -188,14 +189,10 @@ Command add_posture(OptionParser& app) {
   parser.add_option("--restarts", o.restarts, "Most restarts").not_negative().show_default();
   parser.add_option("--deadline-ms", o.deadline_ms, "Time to find it in; 0: no limit")
       .not_negative();
-  parser
-      .add_option("--torque-limits", o.torques,
-                  "enforce: torques keep to the URDF's efforts; report: only tell them")
-      .one_of({"enforce", "report"})
+  add_torque_limits_option(parser, o.torques,
+                           "enforce: torques keep to the URDF's efforts; report: only tell them")
       .show_default();
-  parser.add_option("--threads", o.threads, "Most threads to use (this version uses one)")
-      .positive()
-      .show_default();
+  add_threads_option(parser, o.threads);
   parser.add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] { return posture(*options); }};
 }

@@ -1,3 +1,4 @@
+#include <locograph/apps/common_options.h>
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_file.h>
@@ -179,9 +180,7 @@ Command add_refine(OptionParser& app) {
                   "How far from its heading there it may end [rad]")
       .not_negative()
       .show_default();
-  parser.add_option("--threads", o.threads, "Most threads to use (this version uses one)")
-      .positive()
-      .show_default();
+  add_threads_option(parser, o.threads);
   add_plugin_option(parser, o.plugins);
   parser.add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] { return refine_plan(*options); }};

@@ -12,8 +12,16 @@
 
 #include <filesystem>
 #include <string>
+#include <system_error>
 
 namespace locograph {
+
+/// The SRDF of the same name beside a URDF; empty where there is none.
+inline std::filesystem::path srdf_beside(const std::filesystem::path& urdf) {
+  const std::filesystem::path srdf = std::filesystem::path(urdf).replace_extension(".srdf");
+  std::error_code too_long;
+  return std::filesystem::exists(srdf, too_long) ? srdf : std::filesystem::path();
+}
 
 /// srdf: empty for the one of the same name beside the URDF, if there is one. Throws Error when
 /// there is no such robot.
@@ -23,9 +31,8 @@ inline RobotFiles robot_files(const std::string& name_or_file, const std::string
   if (const auto ours = shipped_robot(name_or_file)) {
     files = *ours;
   } else if (std::filesystem::exists(name_or_file, too_long)) {
-    files.urdf = files.srdf = name_or_file;
-    files.srdf.replace_extension(".srdf");
-    if (!std::filesystem::exists(files.srdf)) files.srdf.clear();
+    files.urdf = name_or_file;
+    files.srdf = srdf_beside(files.urdf);
   } else {
     throw Error(name_or_file, 0, "no such robot",
                 "a URDF file, or a name that `locograph list robots` gives" +

@@ -1,5 +1,6 @@
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/scene.h>
+#include <locograph/apps/stance_tree_file.h>
 #include <locograph/common/data_folder.h>
 #include <locograph/common/input_file.h>
 #include <locograph/core/graph_file.h>
@@ -37,6 +38,7 @@ Json plan_scene(PlanFile file, const SceneOptions& options) {
                 {"robot", robot_scene(robot)}};
   const std::optional<Judging> judging = known_judging(file, options);
   add_plan_scene(file, judging ? &*judging : nullptr, options, scene);
+  if (!options.tree.empty()) scene["tree"] = tree_scene(options.tree);
   Eigen::AlignedBox3d near;
   if (robot.floating_base()) {
     for (const int slot : file.plan.slots) {
@@ -73,10 +75,18 @@ Json pose_json(const Eigen::Isometry3d& pose) {
 }
 
 Json make_scene(const std::string& file, const SceneOptions& options) {
-  if (std::filesystem::path(file).extension() == ".urdf") return standing_scene(file, options);
+  const bool robot = std::filesystem::path(file).extension() == ".urdf";
+  const auto require_plan = [&](bool is_plan) {
+    if (!options.tree.empty() && !is_plan) {
+      throw Error(file, 0, "--tree has no plan to go with", "a plan of stances (.g2o)");
+    }
+  };
+  require_plan(!robot);
+  if (robot) return standing_scene(file, options);
   ReadReport report;
   Graph graph =
       read_graph(file, graph_types(options.plugins), {.lenient = options.lenient}, &report);
+  require_plan(has_configurations(graph));
   if (!has_configurations(graph)) return pose_graph_scene(std::move(graph), file, options);
   return plan_scene(plan_in(std::move(graph), file), options);
 }

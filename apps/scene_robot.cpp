@@ -1,4 +1,5 @@
 #include <locograph/apps/packed.h>
+#include <locograph/apps/robot_files.h>
 #include <locograph/apps/scene.h>
 #include <locograph/apps/type_names.h>
 #include <locograph/plugins/configuration/self_collision_shapes.h>
@@ -123,12 +124,8 @@ Json capsule_scene(const Robot& robot) {
 }
 
 Json standing_scene(const std::string& urdf, const SceneOptions& options) {
-  std::filesystem::path srdf = options.srdf;
-  if (srdf.empty()) {
-    srdf = urdf;
-    srdf.replace_extension(".srdf");
-    if (!std::filesystem::exists(srdf)) srdf.clear();
-  }
+  const std::filesystem::path srdf =
+      options.srdf.empty() ? srdf_beside(urdf) : std::filesystem::path(options.srdf);
   RobotOptions robot_options;
   robot_options.lenient_srdf = true;
   const Robot robot = Robot::load(urdf, srdf, robot_options);

@@ -113,6 +113,8 @@ Command add_view(OptionParser& app) {
                     "Page to write (.html); opens without a network; - is standard output");
   parser.add_option("--map", o.scene.map, "OctoMap to show instead of the plan's own world");
   parser.add_option("--obstacles", o.scene.obstacles, "Obstacle file (.xml); may go with --map");
+  parser.add_option("--tree", o.scene.tree,
+                    "Plans of stances: what the search tried, as `plan --tree` wrote it");
   parser.add_option("--png", o.png, "Picture to write, taken by headless Chromium");
   parser.add_option("--at", o.at_s, "Time of the picture [s]").show_default();
   parser

@@ -2,6 +2,8 @@
 #include <locograph/check/limits.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace locograph {
 namespace {
@@ -11,19 +13,45 @@ Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& rotation) {
   return turned.angle() * turned.axis();
 }
 
-/// What is held of a contact's orientation, as a vector that moves as far as it turns.
+/// The joint that a wheel turns about.
+const Joint& axle_of(const Robot& robot, const JudgedContact& wheel) {
+  return robot.joints()[std::size_t(robot.links()[std::size_t(wheel.link)].parent_joint)];
+}
+
+/// The link that is fixed to what a contact holds: of a wheel, the one that carries it.
+int held_link(const Robot& robot, const JudgedContact& contact) {
+  return contact.is_wheel() ? axle_of(robot, contact).parent_link : contact.link;
+}
+
+/// The angle of a wheel's carrier about the axle, from the plane's normal, but for a constant.
+double carrier_pitch(const JudgedContact& wheel, const Joint& axle,
+                     const Eigen::Matrix3d& carrier) {
+  const Eigen::Vector3d in_carrier = axle.parent_from_joint.linear() * axle.axis;
+  const Eigen::Vector3d upright = carrier * in_carrier.unitOrthogonal();
+  return std::atan2(wheel.normal.cross(upright).dot(carrier * in_carrier),
+                    wheel.normal.dot(upright));
+}
+
+/// What is held of a contact's orientation, as a vector that moves as far as it turns. Of a wheel
+/// how far it turns on the ground: about its joint, and as its carrier pitches.
 Eigen::Vector3d held_turn(const JudgedContact& contact, const Eigen::Matrix3d& first,
                           const Eigen::Matrix3d& now, const Eigen::VectorXd& configuration,
-                          int joints_begin) {
+                          const Robot& robot) {
   const EndEffector& effector = contact.contact.effector;
   switch (effector.kind) {
     case ContactKind::kSurface:
       return rotation_vector(now * first.transpose());
     case ContactKind::kRung:
       return (now * effector.normal.cross(effector.forward)).normalized();
-    case ContactKind::kWheel:
-      if (contact.wheel_joint < 0) break;
-      return {configuration[joints_begin + contact.wheel_joint], 0.0, 0.0};
+    case ContactKind::kWheel: {
+      const Joint& axle = axle_of(robot, contact);
+      const double pitched =
+          std::remainder(carrier_pitch(contact, axle, now) - carrier_pitch(contact, axle, first),
+                         2.0 * std::numbers::pi);
+      const int joint = contact.wheel_joint;
+      const double spin = joint < 0 ? 0.0 : configuration[robot.base_configuration_size() + joint];
+      return {spin + pitched, 0.0, 0.0};
+    }
     case ContactKind::kPoint:
       break;
   }
@@ -172,7 +200,7 @@ void ContactCheck::check_relabelled(int vertex) {
   std::string what;
   for (const JudgedContact& contact : after->contacts) {
     for (const JudgedContact& held : before->contacts) {
-      if (!same_effector(held, contact) || contact.is_wheel()) continue;
+      if (!same_effector(held, contact) || !contact.is_held() || !held.is_held()) continue;
       if (same_place(held.contact, contact.contact)) continue;
       ++changed;
       what = contact.name() + " is held at two places";
@@ -194,11 +222,10 @@ void ContactCheck::begin(const JudgedStance* stance, const Sample& sample) {
   if (stance == nullptr) return;
   for (const JudgedContact& contact : stance->contacts) {
     const Eigen::Vector3d at = touching_point(contact, sample.poses);
-    const Eigen::Matrix3d& now = sample.poses[std::size_t(contact.link)].linear();
     Track track;
     track.contact = &contact;
     track.last = at;
-    track.first = now;
+    track.first = sample.poses[std::size_t(held_link(context_.robot, contact))].linear();
     // Of several contacts of the body: the nearest one.
     const Track* nearest = nullptr;
     double least = 0.0;
@@ -230,11 +257,11 @@ void ContactCheck::keep_place(Track& track, const Sample& sample) {
   const JudgedContact& contact = *track.contact;
   if (!contact.is_held()) return;
   const Eigen::Vector3d at = touching_point(contact, sample.poses);
-  const Eigen::Matrix3d& now = sample.poses[std::size_t(contact.link)].linear();
+  const Eigen::Matrix3d& now =
+      sample.poses[std::size_t(held_link(context_.robot, contact))].linear();
   track.last = at + track.offset;
   track.place.add(track.last);
-  track.turn.add(held_turn(contact, track.first, now, sample.configuration,
-                           context_.robot.base_configuration_size()));
+  track.turn.add(held_turn(contact, track.first, now, sample.configuration, context_.robot));
 }
 
 void ContactCheck::keep(const Sample& sample, const LinkPoses* before) {

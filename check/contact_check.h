@@ -33,7 +33,7 @@ class ContactCheck {
     const JudgedContact* contact = nullptr;
     // What of the way was covered with other points of the body, and where it all has led.
     Eigen::Vector3d offset = Eigen::Vector3d::Zero(), last = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d first = Eigen::Matrix3d::Identity();  // orientation of its link
+    Eigen::Matrix3d first = Eigen::Matrix3d::Identity();  // of its link; a wheel's: of the carrier
     Extent place, turn;
     std::optional<WheelSlip> slip;  // of what is or has been a wheel
   };

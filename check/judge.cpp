@@ -39,9 +39,14 @@ class Check {
 
   CheckReport run() {
     const Stopwatch watch;
-    for (const Stance& stance : context_.motion.stances)
+    for (Stance stance : context_.motion.stances) {
+      // Nothing is known of how they would roll from one configuration to the next.
+      for (Contact& contact : stance.contacts)
+        contact.locked |=
+            context_.motion.stances_only && contact.effector.kind == ContactKind::kWheel;
       context_.stances.emplace_back(context_.robot, context_.world, stance, context_.options.known,
                                     context_.options.places);
+    }
     NumbersCheck numbers(context_);
     numbers.run();
     check_stances();

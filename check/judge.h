@@ -28,7 +28,7 @@
 ///   contact_between     *+ the worst of both between vertices; an angle counts as the length that
 ///                          is the same share of its limit (m)
 ///   contact_motion      *+ how far a held contact gets while it lasts, in total (m)
-///   contact_turn        *+ how far it turns; a locked wheel, about its joint (rad)
+///   contact_turn        *+ how far it turns; a locked wheel, about its axle on the ground (rad)
 ///   contact_relabelled  *+ contacts whose place differs in stances that follow each other, and
 ///                          stances of a plan of stances that follow their like (count)
 ///   contact_on_surface   + of the contact to the surface or bar it lies on, or outside its border;

@@ -244,7 +244,8 @@ ContactError closure_error(const JudgedContact& judged,
   const Eigen::Vector3d touching = touching_point(judged, world_from_link);
   if (judged.is_wheel()) {
     const double along = (pose.linear() * judged.axle).dot(judged.normal);
-    return {std::abs((touching - contact.position).dot(judged.normal)),
+    const Eigen::Vector3d off = touching - contact.position;
+    return {contact.locked ? off.norm() : std::abs(off.dot(judged.normal)),
             std::asin(std::min(1.0, std::abs(along)))};
   }
   ContactError error{(touching - contact.position).norm(), 0.0};

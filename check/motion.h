@@ -30,8 +30,8 @@ struct Motion {
   std::vector<Eigen::VectorXd> configurations;  ///< the vertices
   std::vector<Stance> stances;
   std::vector<int> stance_from;  ///< one per configuration, into stances; -1: not known
-  /// The configurations are transitions of a plan of stances: nothing moves between them, and times
-  /// mean nothing.
+  /// The configurations are transitions of a plan of stances: nothing moves between them, times
+  /// mean nothing, and wheels stand still.
   bool stances_only = false;
 };
 

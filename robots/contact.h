@@ -24,11 +24,13 @@
 ///             turning round the bar is free
 ///   wheel     the disc of `radius_m` about `point`, normal to the axis of the joint above the
 ///             link, touches the plane through `position` along `normal`, and the axle lies along
-///             that plane; the touching point may be anywhere in it
+///             that plane; the touching point may be anywhere in it, that of a locked wheel is at
+///             `position`
 ///
 /// While a stance is held its surfaces, points and rungs stay where they are. A wheel rolls: its
-/// touching point moves along its heading only, as far as the disc turns. A locked wheel does not
-/// turn about its joint, and its touching point stays.
+/// touching point moves along its heading only, as far as the disc turns. A locked wheel stands
+/// still on the ground: its touching point stays, and its joint turns back what its carrier
+/// pitches.
 
 #include <locograph/robots/robot.h>
 
@@ -67,7 +69,7 @@ struct Contact {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();      ///< world, out of the surface, any length
   std::optional<Eigen::Vector3d> forward = std::nullopt;  ///< world; a rung must have one
   bool bears_load = true;  ///< false: closed, but balance does not count on it
-  bool locked = false;     ///< a wheel that does not turn about its joint
+  bool locked = false;     ///< a wheel that stands still
 
   /// The end effector's name, or its link's.
   const std::string& name() const { return effector.name.empty() ? effector.link : effector.name; }

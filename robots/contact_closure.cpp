@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::array<int, 6> kSurface = {0, 1, 2, 3, 4, 5};
 constexpr std::array<int, 5> kRung = {0, 1, 2, 3, 5};
-constexpr std::array<int, 2> kWheel = {2, 3};
+constexpr std::array<int, 4> kWheel = {0, 1, 2, 3};
 
 /// The tilted axis of the end effector: the normal of a surface, the bar of a rung.
 constexpr int kNormal = 2, kBar = 1;
@@ -34,6 +34,7 @@ double upright(double tilt) { return std::sqrt(std::max(1e-12, 1.0 - tilt * tilt
 ContactClosure::ContactClosure(const Robot& robot, const Contact& contact)
     : kind_(contact.effector.kind),
       free_yaw_(kind_ == ContactKind::kSurface && !contact.forward),
+      locked_(contact.locked),
       point_in_link_(contact.effector.point),
       axes_(axes_in_world(contact)),
       place_(contact.position) {
@@ -59,7 +60,7 @@ std::span<const int> ContactClosure::held() const {
     case ContactKind::kWheel:
       break;
   }
-  return kWheel;
+  return std::span<const int>(kWheel).subspan(locked_ ? 0 : 2);
 }
 
 void ContactClosure::error(const RobotState& state, double* e) const {
@@ -67,8 +68,9 @@ void ContactClosure::error(const RobotState& state, double* e) const {
     const WheelPose pose(state, wheel_);
     const Eigen::Vector3d normal = axes_.col(2);
     const double tilt = normal.dot(pose.axle);
-    e[0] = normal.dot(pose.centre - place_) - wheel_.radius_m * upright(tilt);
-    e[1] = tilt;
+    for (int row = 0; locked_ && row < 2; ++row) *e++ = axes_.col(row).dot(pose.centre - place_);
+    *e++ = normal.dot(pose.centre - place_) - wheel_.radius_m * upright(tilt);
+    *e = tilt;
     return;
   }
   const Eigen::Isometry3d& world_from_link = state.world_from_link(link_);
@@ -86,6 +88,10 @@ void ContactClosure::add_jacobian(const RobotState& state, double* jacobian,
     const WheelPose pose(state, wheel_);
     const Eigen::Vector3d normal = axes_.col(2);
     const double tilt = normal.dot(pose.axle);
+    for (int row = 0; locked_ && row < 2; ++row) {
+      state.add_point_gradient(wheel_.carrier, pose.centre, axes_.col(row), 1.0, jacobian);
+      jacobian += stride;
+    }
     state.add_point_gradient(wheel_.carrier, pose.centre, normal, 1.0, jacobian);
     state.add_axis_gradient(wheel_.carrier, pose.axle, normal,
                             wheel_.radius_m * tilt / upright(tilt), jacobian);

@@ -18,6 +18,8 @@
 ///   wheel                 2  height of the disc's lowest point above the plane,
 ///                            n · (c − p) − r √(1 − (n · a)²) [m]; n · a, the sine of the tilt of
 ///                            the axle a to the plane [1]
+///   wheel, locked         4  c − p along x y [m], which is where an upright disc touches; then
+///                            those of a wheel
 ///
 /// For the tilt see orientation_error.h. What is fixed is worked out by the constructor; error()
 /// and add_jacobian() do not allocate. Const functions may be shared between threads.
@@ -39,7 +41,7 @@ class ContactClosure {
 
   int rows() const { return static_cast<int>(held().size()); }
   /// What each row holds: 0-2 position along the contact's axes, 3-5 rotation about them; of a
-  /// wheel 2, its height, and 3, its tilt.
+  /// wheel 2, its height, and 3, its tilt; of a locked one 0 and 1, too.
   std::span<const int> held() const;
   /// Link whose movement opens and closes it; of a wheel, the one that carries it.
   int link() const { return kind_ == ContactKind::kWheel ? wheel_.carrier : link_; }
@@ -53,6 +55,7 @@ class ContactClosure {
  private:
   ContactKind kind_ = ContactKind::kPoint;
   bool free_yaw_ = false;
+  bool locked_ = false;
   int link_ = -1;
   Eigen::Vector3d point_in_link_ = Eigen::Vector3d::Zero();
   Eigen::Matrix3d link_from_axes_ = Eigen::Matrix3d::Identity();

@@ -1,6 +1,8 @@
 #include <locograph/common/error.h>
 #include <locograph/robots/wheel.h>
 
+#include <cmath>
+
 namespace locograph {
 
 Wheel wheel_of(const Robot& robot, const EndEffector& effector) {
@@ -26,6 +28,13 @@ Wheel wheel_of(const Robot& robot, const EndEffector& effector) {
   upright -= wheel.axle_in_carrier * wheel.axle_in_carrier.dot(upright);
   wheel.upright_in_carrier = upright.normalized();
   return wheel;
+}
+
+double carrier_pitch(const RobotState& state, const Wheel& wheel, const Eigen::Vector3d& normal) {
+  const Eigen::Matrix3d& carrier = state.world_from_link(wheel.carrier).linear();
+  const Eigen::Vector3d upright = carrier * wheel.upright_in_carrier;
+  const Eigen::Vector3d axle = carrier * wheel.axle_in_carrier;
+  return std::atan2(normal.cross(upright).dot(axle), normal.dot(upright));
 }
 
 Eigen::Vector3d lowest_point(const WheelPose& pose, double radius_m,

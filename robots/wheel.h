@@ -42,6 +42,9 @@ struct WheelPose {
   Eigen::Vector3d heading(const Eigen::Vector3d& normal) const { return axle.cross(normal); }
 };
 
+/// The angle of the wheel's `upright_in_carrier` from the normal of a plane, about the axle [rad].
+double carrier_pitch(const RobotState& state, const Wheel& wheel, const Eigen::Vector3d& normal);
+
 /// The point of the disc that is farthest against the normal.
 Eigen::Vector3d lowest_point(const WheelPose& pose, double radius_m, const Eigen::Vector3d& normal);
 

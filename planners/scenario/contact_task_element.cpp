@@ -110,6 +110,7 @@ class ContactTaskReader {
       throw xml_.error(element, "contact of " + contact.effector.name + " without forward",
                        "forward=\"…\": the bar lies along normal x forward");
     }
+    contact.locked = contact.effector.kind == ContactKind::kWheel;
     blame(xml_, element, [&] { axes_in_world(contact); });
     return contact;
   }

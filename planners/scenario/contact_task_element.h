@@ -6,7 +6,7 @@
 ///     const std::optional<ContactTask> task = read_contact_task(xml, effectors);
 ///
 /// A contact is a scenario's end effector at its place: what it can bear is the end effector's. Its
-/// place is not looked for in the environment.
+/// place is not looked for in the environment. Wheels stand still.
 
 #include <locograph/planners/scenario/scenario.h>
 #include <locograph/robots/xml_file.h>

@@ -19,19 +19,18 @@ void EdgeContact::jacobians(const ConfigurationState& q, JacobianRef<EdgeContact
 }
 
 double EdgeContact::row_tolerance(int row) const {
-  const bool angle = contact->kind() == ContactKind::kWheel
-                         ? row > 0
-                         : contact->closure.held()[static_cast<std::size_t>(row)] >= 3;
+  const bool angle = contact->closure.held()[static_cast<std::size_t>(row)] >= 3;
   return angle ? kAngleTolerance : kPositionTolerance;
 }
 
 RowLabel EdgeContact::row_label(int row) const {
   const std::string& name = contact->contact.name();
-  if (contact->kind() == ContactKind::kWheel) {
+  const int held = contact->closure.held()[static_cast<std::size_t>(row)];
+  if (contact->kind() == ContactKind::kWheel && held >= 2) {
     // The sine of the tilt has no unit.
-    return row == 0 ? RowLabel{name + " height", "m"} : RowLabel{name + " axle tilt", ""};
+    return held == 2 ? RowLabel{name + " height", "m"} : RowLabel{name + " axle tilt", ""};
   }
-  RowLabel label = pose_row(contact->closure.held()[static_cast<std::size_t>(row)]);
+  RowLabel label = pose_row(held);
   label.name = name + " " + label.name;
   return label;
 }

@@ -7,7 +7,7 @@
 ///     graph.add_edge(EdgeContact(*graph.parameters().get<ContactParameter>(10), 10, 1e6), q);
 ///
 /// `contact` is a PARAMS_CONTACT. Error (n): the rows of robots/contact_closure.h, 6 for a surface,
-/// 5 for one whose yaw is free, 3 for a point, 5 for a rung, 2 for a wheel.
+/// 5 for one whose yaw is free, 3 for a point, 5 for a rung, 2 for a wheel, 4 for a locked one.
 
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/plugins/configuration/edge_fit.h>

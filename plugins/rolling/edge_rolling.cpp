@@ -70,14 +70,15 @@ void EdgeRolling::error(const ConfigurationState& a, const ConfigurationState& b
     const Eigen::Vector3d& normal = standing.normal;
     const RollingPose from(a, wheel, normal), to(b, wheel, normal);
     const RollingStep step(from, to, normal);
-    const double spun = to.spin - from.spin;
+    const double turned =
+        wheel.radius_m * (to.spin - from.spin + nearest_turn(to.pitch - from.pitch));
     e[row++] =
         step.lateral + std::copysign(wheel.radius_m * step.beyond_quarter_turn, step.lateral);
     if (standing.locked) {
       e[row++] = step.way;
-      e[row++] = wheel.radius_m * spun;
+      e[row++] = turned;
     } else {
-      e[row++] = step.way - wheel.radius_m * (spun + nearest_turn(to.pitch - from.pitch));
+      e[row++] = step.way - turned;
     }
   }
 }
@@ -105,13 +106,10 @@ void EdgeRolling::jacobians(const ConfigurationState& a, const ConfigurationStat
         add_turn_gradient(kinematics, wheel, pose, normal, sign * flip, lateral);
       }
       step.add_way_gradient(kinematics, wheel, pose, normal, sign, 1.0, longitudinal);
-      const int joint = q.model().base_tangent_size() + wheel.joint;
-      if (standing.locked) {
-        if (wheel.joint >= 0) (longitudinal + stride)[joint] += sign * wheel.radius_m;
-        return;
-      }
-      add_pitch_gradient(kinematics, wheel, pose, normal, -sign * wheel.radius_m, longitudinal);
-      if (wheel.joint >= 0) longitudinal[joint] -= sign * wheel.radius_m;
+      double* turned = standing.locked ? longitudinal + stride : longitudinal;
+      const double scale = (standing.locked ? sign : -sign) * wheel.radius_m;
+      add_pitch_gradient(kinematics, wheel, pose, normal, scale, turned);
+      if (wheel.joint >= 0) turned[q.model().base_tangent_size() + wheel.joint] += scale;
     };
     rows(a, from, -1.0, ja.row(row).data(), ja.outerStride());
     rows(b, to, 1.0, jb.row(row).data(), jb.outerStride());

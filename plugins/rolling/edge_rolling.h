@@ -12,7 +12,7 @@
 ///   lateral        Δc · ā, and away from zero by r max(0, |Δθ| − π/2)
 ///   longitudinal   Δc · h̄ − r (Δφ + Δψ), φ the wheel joint, ψ the pitch of its carrier about the
 ///                  axle; of a locked wheel Δc · h̄
-///   turned         of a locked wheel, r Δφ
+///   turned         of a locked wheel, r (Δφ + Δψ)
 /// The midpoint rule for a wheel that steers evenly. Exact for the lateral part when Δc lies along
 /// the mean heading. In the longitudinal part, of a wheel that steers by Δθ while its centre moves
 /// straight, too much by Δθ²/24 of the way, the mean of cos over ±Δθ/2; on a circular arc through

@@ -174,6 +174,20 @@ TEST(CampaignCommand, ATableOfAnotherCampaignIsRefusedWithItsLine) {
   EXPECT_EQ(runner.read("runs.csv"), other);
 }
 
+TEST(CampaignCommand, ATableWithContactsMovedFurtherIsRefusedWithItsLine) {
+  const CommandRunner runner;
+  const std::string campaign =
+      "campaign standing_up --stances-only --runs 1 --timeout 1e-9 --csv runs.csv";
+  ASSERT_EQ(runner.run(campaign + " --move-contacts 0.02").exit_code, 0);
+  const std::string table = runner.read("runs.csv");
+  EXPECT_NE(table.find("--move-contacts 0.02,0,false,"), std::string::npos) << table;
+  const std::string place = "runs.csv:" + std::to_string(kFirstRow);
+  expect_refusal(runner.run(campaign + " --move-contacts 0.03"), place, "--move-contacts 0.03");
+  expect_refusal(runner.run(campaign), place, "--move-contacts 0.02");
+  EXPECT_EQ(runner.run(campaign + " --move-contacts 0.02").exit_code, 0);
+  EXPECT_EQ(runner.read("runs.csv"), table) << "it is run again";
+}
+
 TEST(CampaignCommand, ABrokenTableIsRefusedWithItsLine) {
   const CommandRunner runner;
   const std::string campaign = "campaign centauro_drive --runs 1 --csv runs.csv";

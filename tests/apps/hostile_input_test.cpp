@@ -91,6 +91,7 @@ struct HostileCase {
 };
 
 const std::string kPosture = "posture coman_plus --contacts ";
+const std::string kLongerThanPaths(5000, 'n');
 
 std::vector<HostileCase> hostile_cases() {
   const std::string plan = kCart + std::string(kAtRest);
@@ -179,6 +180,17 @@ std::vector<HostileCase> hostile_cases() {
        "plot r.json -o p.svg", "r.json:3", "'1e400' is not finite"},
       {"ANumberTooLargeInATable", "r.csv", "success,time_s\n1,2.5\n1,1e400\n",
        "plot r.csv -o p.svg", "r.csv:3", "'1e400' is not finite"},
+      {"ARobotNamedLongerThanPathsMayBe", "r.urdf", "",
+       "posture " + kLongerThanPaths + " --contacts c.xml", kLongerThanPaths,
+       "no such robot, expected a URDF file, or a name"},
+      {"AModelNamedLongerThanPathsMayBe", "l.xml",
+       "<scenario version=\"1\" name=\"l\">\n<robot model=\"" + kLongerThanPaths +
+           "\"/>\n</scenario>\n",
+       "info l.xml", "l.xml:2", "unknown robot model 'nnn"},
+      {"AScenarioNamedLongerThanPathsMayBe", "r.urdf", "", "plan " + kLongerThanPaths + " -o p.g2o",
+       kLongerThanPaths, "no such scenario, expected a file, or one of centauro_drive"},
+      {"AGraphNamedLongerThanPathsMayBe", "r.urdf", "", "optimize " + kLongerThanPaths,
+       kLongerThanPaths, "cannot be opened: file name too long"},
       {"AResultThatEndsInTheMiddle", "r.json", "{\"chi2\":\n [1, 2", "plot r.json -o p.svg",
        "r.json:2", "is not JSON"},
   };

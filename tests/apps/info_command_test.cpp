@@ -202,6 +202,75 @@ TEST(Info, DescribesAScenario) {
   expect_refusal(runner.run("info bad.xml"), "bad.xml:2", "robto");
 }
 
+TEST(Info, DescribesAContactTask) {
+  const CommandRunner runner;
+  const std::string longer_than_paths(5000, 'n');
+  runner.write("s.xml",
+               "<scenario version=\"1\" name=\"stairs\">\n"
+               "<robot urdf=\"arm.urdf\" effort_scale=\"2\"/>\n"
+               "<end_effectors>"
+               "<end_effector name=\"foot\" link=\"sole\" kind=\"surface\" half_x=\"0.08\""
+               " half_y=\"0.035\" max_force=\"1000\"/>"
+               "<end_effector name=\"grip\" link=\"hand\" kind=\"rung\" max_force=\"400\""
+               " max_moment=\"5\"/></end_effectors>\n"
+               "<environment friction=\"0.8\">"
+               "<plane name=\"floor\" center=\"1 2 0\" normal=\"0 0 2\" size=\"4 2\"/>"
+               "<box name=\"step\" center=\"1 0 0.1\" size=\"0.4 0.3 0.2\" friction=\"0.6\"/>"
+               "<rung name=\"rail\" from=\"1 -0.5 1\" to=\"1 0.5 1\" radius=\"0.02\"/>"
+               "<mesh name=\"rocks\" file=\"" +
+                   longer_than_paths +
+                   "\"/></environment>\n"
+                   "<start base=\"0 0 0.9 0 0 0 1\"><joint name=\"knee\" position=\"0.7\"/>"
+                   "<contact end_effector=\"foot\" position=\"0 0 0\" normal=\"0 0 1\""
+                   " forward=\"1 0 0\"/></start>\n"
+                   "<goal><contact end_effector=\"foot\" position=\"1 0 0.2\" normal=\"0 0 1\"/>"
+                   "</goal>\n"
+                   "<goal><contact end_effector=\"grip\" position=\"1 0 1\" normal=\"0 0 1\""
+                   " forward=\"1 0 0\"/></goal>\n"
+                   "<planner torque_limits=\"report\"/>\n"
+                   "</scenario>\n");
+  const nlohmann::json json = info(runner, "s.xml");
+  EXPECT_EQ(json["task"], "contacts");
+  EXPECT_EQ(json["robot"]["effort_scale"], 2.0);
+  EXPECT_EQ(json["torque_limits"], "report");
+
+  ASSERT_EQ(json["end_effectors"].size(), 2u);
+  const nlohmann::json &foot = json["end_effectors"][0], &grip = json["end_effectors"][1];
+  EXPECT_EQ(foot["name"], "foot");
+  EXPECT_EQ(foot["link"], "sole");
+  EXPECT_EQ(foot["half_y_m"], 0.035);
+  EXPECT_EQ(foot["friction"], 0.8);
+  EXPECT_EQ(grip["touches_as"], "rung");
+  EXPECT_EQ(grip["max_moment_Nm"], 5.0);
+  EXPECT_EQ(grip["max_force_N"], 400.0);
+
+  ASSERT_EQ(json["surfaces"].size(), 7u) << "the floor and the faces of the box";
+  const nlohmann::json& floor = json["surfaces"][0];
+  EXPECT_EQ(floor["name"], "floor");
+  EXPECT_EQ(floor["center_m"], nlohmann::json({1.0, 2.0, 0.0}));
+  EXPECT_EQ(floor["normal"], nlohmann::json({0.0, 0.0, 1.0}));
+  EXPECT_EQ(floor["size_m"], nlohmann::json({4.0, 2.0}));
+  EXPECT_TRUE(floor["friction"].is_null()) << "what the end effector says";
+  EXPECT_EQ(json["surfaces"][1]["friction"], 0.6);
+  EXPECT_EQ(json["bars"][0]["name"], "rail");
+  EXPECT_EQ(json["bars"][0]["to_m"], nlohmann::json({1.0, 0.5, 1.0}));
+  EXPECT_EQ(json["scanned"][0]["name"], "rocks");
+  EXPECT_EQ(json["scanned"][0]["kind"], "mesh");
+  EXPECT_EQ(json["missing_files"].size(), 2u) << "the robot's and the mesh";
+
+  const nlohmann::json& task = json["contacts"];
+  EXPECT_EQ(task["start"]["base"], nlohmann::json({0.0, 0.0, 0.9, 0.0, 0.0, 0.0, 1.0}));
+  EXPECT_EQ(task["start"]["joints"]["knee"], 0.7);
+  EXPECT_EQ(task["start"]["contacts"][0]["end_effector"], "foot");
+  ASSERT_EQ(task["goals"].size(), 2u);
+  EXPECT_EQ(task["goals"][0]["contacts"][0]["position_m"], nlohmann::json({1.0, 0.0, 0.2}));
+  EXPECT_TRUE(task["goals"][0]["contacts"][0]["forward"].is_null()) << "its yaw is free";
+  EXPECT_EQ(task["goals"][1]["contacts"][0]["end_effector"], "grip");
+  const std::string text = runner.run("info s.xml").out;
+  EXPECT_NE(text.find("end_effector: grip\n          position: 1, 0, 1 m\n"), std::string::npos)
+      << text;
+}
+
 TEST(Info, DescribesContacts) {
   const CommandRunner runner;
   const std::string file = "'" LOCOGRAPH_SOURCE_DIR "/examples/posture/coman_plus_wall.xml'";

@@ -22,6 +22,25 @@ TEST(Manners, AMistypedOptionIsAnsweredWithTheOneThatIsMeant) {
   expect_refusal(runner.run("info a.g2o b.g2o"), "", "unexpected 'b.g2o'");
 }
 
+TEST(Manners, ANumberOutOfRangeIsAnsweredWithTheRange) {
+  const CommandRunner runner;
+  const auto answer = [&runner](const std::string& arguments) {
+    const Outcome outcome = runner.run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    return outcome.err;
+  };
+  for (const std::string value : {"-1", "nan", "inf", "soon"}) {
+    EXPECT_EQ(answer("plan centauro_drive -o p.g2o --timeout=" + value),
+              "locograph: --timeout: '" + value +
+                  "', expected a number >= 0 (see: locograph plan --help)\n");
+  }
+  EXPECT_EQ(answer("plan centauro_drive -o p.g2o --threads 0"),
+            "locograph: --threads: '0', expected a number > 0 (see: locograph plan --help)\n");
+  EXPECT_EQ(answer("check p.g2o --clearance 0.7"),
+            "locograph: --clearance: '0.7', expected a number from 0 to 0.5 "
+            "(see: locograph check --help)\n");
+}
+
 TEST(Manners, AMistypedNameIsAnsweredWithTheOneThatIsMeant) {
   const CommandRunner runner;
   runner.write("a.g2o", "VERTEX_XY 0 0 0\nVERTEX_XY 1 0 0\nEDGE_POINTXY 0 1 1 0 1 0 1\n");

@@ -93,6 +93,23 @@ TEST(Plot, TableOfACampaign) {
   EXPECT_TRUE(contains(svg, "time_total"));
 }
 
+TEST(Plot, TableThatTheCampaignCommandWrote) {
+  LOCOGRAPH_NEEDS_GNUPLOT();
+  const CommandRunner runner;
+  ASSERT_EQ(runner.run("campaign centauro_drive --runs 2 --csv t.csv").exit_code, 0);
+  const std::string csv = runner.read("t.csv"), solved = ",1,true,planned,";
+  const std::size_t at = csv.find(solved);
+  ASSERT_NE(at, std::string::npos) << csv;
+  std::string failed = csv.substr(csv.rfind('\n', at) + 1);
+  failed.replace(failed.find(solved), solved.size(), ",2,false,\"late,\nand \"\"far\"\"\",");
+  runner.write("t.csv", csv + failed);
+  const std::string svg = plot(runner, "t.csv");
+  EXPECT_TRUE(contains(svg, "3 runs, 2 solved (66.7 %)"));
+  EXPECT_TRUE(contains(svg, "planning_time"));
+  EXPECT_TRUE(contains(svg, "judge_time"));
+  EXPECT_FALSE(contains(svg, "duration_s")) << "what was planned takes it, not the planning";
+}
+
 TEST(Plot, TextOfAFileIsNeverACommand) {
   LOCOGRAPH_NEEDS_GNUPLOT();
   const CommandRunner runner;
@@ -125,7 +142,7 @@ TEST(Plot, RefusesWhatItCannotDraw) {
   runner.write("c.json", "{\"cycle_times\": []}");
   expect_refusal(runner.run("plot c.json -o o.svg"), "c.json", "no cycle times");
   runner.write("e.csv", "success,time_total\ntrue\n");
-  expect_refusal(runner.run("plot e.csv -o o.svg"), "e.csv:2", "1 fields");
+  expect_refusal(runner.run("plot e.csv -o o.svg"), "e.csv:2", "1 field, expected 2");
   runner.write("f.csv", "seed\n1\n");
   expect_refusal(runner.run("plot f.csv -o o.svg"), "f.csv", "no column of times");
   runner.write("g.json", "{\"violations\": [5]}");

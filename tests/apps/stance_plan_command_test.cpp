@@ -1,54 +1,18 @@
 // `plan --stances-only` and what `check` says of it, as a user runs them.
 #include <apps/command_runner.h>
-
-#include <algorithm>
-#include <vector>
+#include <apps/shipped_scenario.h>
 
 namespace locograph::stance_plan_command_test {
 namespace {
 
-std::string shipped(const std::string& scenario) {
-  std::ifstream in(LOCOGRAPH_SOURCE_DIR "/planners/scenarios/" + scenario + ".xml");
-  return std::string((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-}
-
-/// The text with every `find` replaced.
-std::string with(std::string text, const std::string& find, const std::string& replace) {
-  std::size_t at = text.find(find);
-  if (at == std::string::npos) ADD_FAILURE() << "no " << find;
-  for (; at != std::string::npos; at = text.find(find, at + replace.size())) {
-    text.replace(at, find.size(), replace);
-  }
-  return text;
-}
-
-/// From the first `from` up to and with the next `to`.
-std::string part(const std::string& text, const std::string& from, const std::string& to) {
-  const std::size_t begin = text.find(from);
-  return text.substr(begin, text.find(to, begin) + to.size() - begin);
-}
-
-/// Number of the line that `what` is first on.
-std::string line_of(const std::string& text, const std::string& what) {
-  const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(text.find(what));
-  return std::to_string(1 + std::count(text.begin(), text.begin() + at, '\n'));
-}
+using test::goal_on_all_fours, test::line_of, test::part, test::shipped, test::standing_up_with,
+    test::with, test::with_far_floor;
 
 const nlohmann::json* constraint(const nlohmann::json& report, const std::string& name) {
   for (const nlohmann::json& violation : report["violations"]) {
     if (violation["constraint"] == name) return &violation;
   }
   return nullptr;
-}
-
-/// standing_up with the left hand to go 50 m ahead, the other contacts where they are.
-std::string out_of_reach() {
-  const std::string text = shipped("standing_up");
-  std::string goal = part(text, "<contact", "</start>");
-  goal = with(with(goal, "</start>", "</goal>"), "1.7 0.1 0", "51 0.1 0");
-  return with(with(text, part(text, "<goal>", "</goal>"), "<goal>" + goal), "</environment>",
-              "<plane name=\"far\" center=\"51 0 0\" normal=\"0 0 1\" size=\"2 2\"/>\n"
-              "</environment>");
 }
 
 TEST(StancePlanCommand, WritesAPlanThatCheckAccepts) {
@@ -100,6 +64,53 @@ TEST(StancePlanCommand, TheSameSeedGivesTheSameFile) {
   EXPECT_EQ(runner.read("a.g2o"), runner.read("b.g2o"));
 }
 
+TEST(StancePlanCommand, APlanWithMovedContactsHasItsOwnAndCheckAcceptsIt) {
+  const CommandRunner runner;
+  const std::string call = "plan standing_up --stances-only --seed 3 --json ";
+  const Outcome outcome = runner.run(call + "--move-contacts 0.02 -o moved.g2o");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  const nlohmann::json moved = outcome.json()["moved_contacts"];
+  EXPECT_EQ(moved["up_to_m"], 0.02);
+  EXPECT_GE(moved["start_draws"], 1);
+  const Outcome checked = runner.run("check moved.g2o --json");
+  EXPECT_EQ(checked.exit_code, 0) << checked.out << checked.err;
+
+  const Outcome unmoved = runner.run(call + "--move-contacts 0 -o unmoved.g2o");
+  ASSERT_EQ(unmoved.exit_code, 0) << unmoved.out << unmoved.err;
+  EXPECT_FALSE(unmoved.json().contains("moved_contacts"));
+  const auto first_contact = [&](const std::string& file) {
+    return part(runner.read(file), "PARAMS_CONTACT ", "\n");
+  };
+  EXPECT_NE(first_contact("moved.g2o"), first_contact("unmoved.g2o"));
+}
+
+TEST(StancePlanCommand, WritesTheTreeThatTheSearchTried) {
+  const CommandRunner runner;
+  const std::string call = "plan standing_up --stances-only --seed 3 ";
+  const Outcome outcome = runner.run(call + "--tree tree.json -o plan.g2o --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  const nlohmann::json tree = nlohmann::json::parse(runner.read("tree.json"));
+  EXPECT_EQ(tree["scenario"], "standing_up");
+  EXPECT_EQ(tree["planner"], "guided");
+  EXPECT_EQ(tree["seed"], 3);
+  const nlohmann::json& root = tree["nodes"][0];
+  EXPECT_EQ(root["parent"], -1);
+  EXPECT_EQ(root["found"], true);
+  EXPECT_EQ(root["contacts"]["left_foot"].size(), 3u);
+  int found = 0, on_way = 0;
+  for (const nlohmann::json& node : tree["nodes"]) {
+    found += node["found"].get<bool>();
+    on_way += node["on_way"].get<bool>();
+  }
+  EXPECT_EQ(found, outcome.json()["vertices_in_tree"]);
+  EXPECT_GE(on_way, 5) << "the start, and a move of each of four end effectors";
+
+  ASSERT_EQ(runner.run(call + "--tree again.json -o again.g2o").exit_code, 0);
+  EXPECT_EQ(runner.read("again.json"), runner.read("tree.json"));
+  ASSERT_EQ(runner.run(call + "-o without.g2o").exit_code, 0);
+  EXPECT_EQ(runner.read("without.g2o"), runner.read("plan.g2o"));
+}
+
 TEST(StancePlanCommand, CheckJudgesAPlanInTheScenarioItIsGiven) {
   const CommandRunner runner;
   const std::string walls = with(shipped("parallel_walls"), "\"enforce\"", "\"report\"");
@@ -121,13 +132,15 @@ TEST(StancePlanCommand, CheckJudgesAPlanInTheScenarioItIsGiven) {
 
 TEST(StancePlanCommand, AnIncompletePlanIsWrittenAndCheckSaysSo) {
   const CommandRunner runner;
-  runner.write("far.xml", out_of_reach());
-  const Outcome outcome = runner.run("plan far.xml --stances-only --timeout 1 -o part.g2o --json");
+  runner.write("far.xml", with_far_floor(standing_up_with(goal_on_all_fours("51 0.1 0"))));
+  const Outcome outcome =
+      runner.run("plan far.xml --stances-only --timeout 0.5 -o part.g2o --json");
   ASSERT_EQ(outcome.exit_code, 1) << outcome.err;
   const nlohmann::json json = outcome.json();
   EXPECT_EQ(json["success"], false);
-  EXPECT_NE(json["reason"].get<std::string>().find("not reached"), std::string::npos)
-      << json["reason"];
+  const std::string reason = json["reason"];
+  EXPECT_EQ(reason.find("the goal is not reached: the time allowed is used up; "), 0u) << reason;
+  EXPECT_NE(reason.find("left_hand"), std::string::npos) << reason;
   EXPECT_EQ(json["best"]["goal_contacts_reached"], 3);
   EXPECT_TRUE(json["best"]["stances"].is_number_integer());
   ASSERT_TRUE(runner.exists("part.g2o"));
@@ -146,67 +159,12 @@ TEST(StancePlanCommand, RefusesWrongUsageInOneLineAndWritesNothing) {
   expect_refusal(runner.run(plan + "--stances-only --timeout -1"), "", "--timeout");
   expect_refusal(runner.run(plan + "--stances-only --planner nosuch"), "", "nosuch");
   expect_refusal(runner.run("plan centauro_drive --stances-only -o out.g2o"), "", "no stances");
+  expect_refusal(runner.run(plan + "--stances-only --move-contacts -0.1"), "", "--move-contacts");
+  expect_refusal(runner.run("plan centauro_drive --move-contacts 0.1 -o out.g2o"), "",
+                 "no contacts to move");
+  expect_refusal(runner.run("plan centauro_drive --tree t.json -o out.g2o"), "", "--tree");
+  expect_refusal(runner.run(plan + "--stances-only --tree no/such/t.json"), "no/such/t.json", "");
   EXPECT_EQ(runner.files(), 0);
-}
-
-/// A scenario that is refused, with the line of `blamed` in it, and the words of the refusal.
-struct Spoilt {
-  std::string text, blamed, words;
-};
-
-void expect_spoilt(const Spoilt& spoilt) {
-  const CommandRunner runner;
-  runner.write("bad.xml", spoilt.text);
-  const Outcome outcome = runner.run("plan bad.xml --stances-only --timeout 5 -o out.g2o");
-  expect_refusal(outcome, "", "bad.xml:" + line_of(spoilt.text, spoilt.blamed) + ": ");
-  EXPECT_NE(outcome.err.find(spoilt.words), std::string::npos) << outcome.err;
-  EXPECT_FALSE(runner.exists("out.g2o"));
-}
-
-std::string standing_on_one_hand() {
-  const std::string text = shipped("standing_up"), start = part(text, "<contact", "</start>");
-  return with(text, start,
-              part(start.substr(start.find("\"left_hand")), "\"", "/>")
-                      .insert(0, "<contact end_effector=") +
-                  "\n</start>");
-}
-
-TEST(StancePlanCommand, RefusesScenariosThatMakeNoSenseWithTheLine) {
-  const std::string text = shipped("standing_up");
-  const std::vector<Spoilt> scenarios = {
-      {with(text, part(text, "<goal>", "</goal>"), ""), "<start", "without a <goal>"},
-      {with(text, "size=\"5 2\"", "size=\"0 2\""), "size=\"0 2\"", "size"},
-      {with(text, "friction=\"0.5\"", "friction=\"-0.5\""), "friction=\"-0.5\"", "friction"},
-      {with(text, "contact end_effector=\"left_hand\"", "contact end_effector=\"left_hnd\""),
-       "\"left_hnd\"", "did you mean"},
-      {standing_on_one_hand(), "<start", "balance"}};
-  for (const Spoilt& spoilt : scenarios) expect_spoilt(spoilt);
-}
-
-TEST(StancePlanCommand, AnUnknownLinkOrJointIsRefusedWithItsOwnLine) {
-  const std::string text = shipped("standing_up");
-  expect_spoilt({with(text, "link=\"LBall\"", "link=\"LBal\""), "\"LBal\"", "LBal"});
-  expect_spoilt({with(text, "\"LHipSag\"", "\"LHipSgg\""), "\"LHipSgg\"", "LHipSgg"});
-}
-
-TEST(StancePlanCommand, AStartThatCannotBeHeldIsRefusedWithTheAmount) {
-  const std::string text = shipped("standing_up");
-  const std::string start = part(text, "<start", "</start>");
-  // The left hand 4.9 m aside, on a floor that is there.
-  const std::string aside = with(start, "1.7 0.1 0", "1.7 5 0");
-  expect_spoilt({with(with(text, start, aside), "size=\"5 2\"", "size=\"5 12\""), "<start",
-                 "left_hand not closed by "});
-}
-
-// One hand holds nothing, and the answer says how far that is from balance.
-TEST(StancePlanCommand, AStartThatDoesNotBalanceIsRefusedWithTheAmount) {
-  const CommandRunner runner;
-  runner.write("bad.xml", standing_on_one_hand());
-  const Outcome outcome = runner.run("plan bad.xml --stances-only -o out.g2o");
-  EXPECT_EQ(outcome.exit_code, 2);
-  const std::size_t words = outcome.err.find("no configuration stands at the start");
-  ASSERT_NE(words, std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.err.find_first_of("0123456789", words), std::string::npos) << outcome.err;
 }
 
 }  // namespace

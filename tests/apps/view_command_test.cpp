@@ -203,6 +203,58 @@ TEST(View, BarsAreShown) {
   EXPECT_NE(bars[0]["from"], bars[0]["to"]);
 }
 
+TEST(View, TheTreeOfStancesIsShownWhereItIsGiven) {
+  LOCOGRAPH_NEEDS_VIEWER();
+  const CommandRunner runner;
+  const Outcome planned = runner.run("plan standing_up --stances-only --tree t.json -o p.g2o");
+  ASSERT_EQ(planned.exit_code, 0) << planned.err;
+  EXPECT_FALSE(view(runner, "p.g2o --no-check").contains("tree"));
+  const nlohmann::json tree = view(runner, "p.g2o --no-check --tree t.json")["tree"];
+  const nlohmann::json nodes = nlohmann::json::parse(runner.read("t.json"))["nodes"];
+  const std::vector<float> centres = unpack<float>(tree["centres"]);
+  const std::vector<int> parents = unpack<int>(tree["parents"]);
+  const std::vector<int> states = unpack<int>(tree["states"]);
+  ASSERT_EQ(parents.size(), nodes.size());
+  ASSERT_EQ(states.size(), nodes.size());
+  ASSERT_EQ(centres.size(), 3 * nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    EXPECT_EQ(parents[i], nodes[i]["parent"]);
+    EXPECT_EQ(states[i] > 0, nodes[i]["found"]);
+    EXPECT_EQ(states[i] == 2, nodes[i]["on_way"]);
+    double height = 0.0;
+    for (const auto& [name, position] : nodes[i]["contacts"].items()) {
+      height += position[2].get<double>() / static_cast<double>(nodes[i]["contacts"].size());
+    }
+    EXPECT_NEAR(centres[3 * i + 2], height, 1e-5);
+  }
+}
+
+TEST(View, RefusesATreeThatIsNone) {
+  LOCOGRAPH_NEEDS_VIEWER();
+  const CommandRunner runner;
+  ASSERT_EQ(runner.run("plan standing_up --stances-only -o p.g2o").exit_code, 0);
+  const std::string found = "\"found\": true, \"contacts\": ";
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"[1, 2", "is not JSON"},
+      {"{\"nodes\": 3}", "has no nodes"},
+      {"{\"nodes\": [3]}", "node 0 is no object"},
+      {"{\"nodes\": [{\"parent\": 0, " + found + "{}}]}", "node 0 has the parent 0"},
+      {"{\"nodes\": [{\"parent\": -1.5, " + found + "{}}]}", "node 0 has the parent -1.5"},
+      {"{\"nodes\": [{\"parent\": -1}]}", "node 0 does not say what became of it"},
+      {"{\"nodes\": [{\"parent\": -1, " + found + "7}]}", "node 0 has no contacts"},
+      {"{\"nodes\": [{\"parent\": -1, " + found + "{\"foot\": [0, 1e9, 0]}}]}",
+       "node 0 has the contact foot at [0,"},
+  };
+  for (const auto& [text, words] : cases) {
+    runner.write("t.json", text);
+    const Outcome outcome = runner.run("view p.g2o --tree t.json -o x.html");
+    expect_refusal(outcome, text[0] == '[' ? "t.json:1" : "t.json", words);
+  }
+  runner.write("pose.g2o", "VERTEX_SE2 0 0 0 0\n");
+  expect_refusal(runner.run("view pose.g2o --tree t.json -o x.html"), "pose.g2o", "--tree");
+  EXPECT_FALSE(runner.exists("x.html"));
+}
+
 TEST(View, RefusesWhatItCannotShow) {
   const CommandRunner runner;
   expect_refusal(runner.run("view nothing.g2o -o x.html"), "nothing.g2o", "");

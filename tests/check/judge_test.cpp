@@ -36,7 +36,7 @@ TEST(Judge, AcceptsAStraightDriveOnRollingWheelsAndListsEveryConstraint) {
   EXPECT_DOUBLE_EQ(report.min_clearance_m.value(), 0.5);
   EXPECT_NEAR(report.max_velocity_ratio.value(), 0.08 / kRadius / 0.8 / 20.0, 1e-9);
   EXPECT_LT(report.max_contact_error_m.value(), 1e-4);
-  EXPECT_NEAR(report.constraint("touching_depth").worst, 0.0073, 2e-4);
+  EXPECT_LT(report.constraint("touching_depth").worst, 1e-4);
   EXPECT_LT(report.constraint("lateral_slip").worst, 1e-6);
   EXPECT_LT(report.constraint("longitudinal_slip").worst, 1e-6);
   EXPECT_GT(report.min_balance_margin.value(), 0.01);

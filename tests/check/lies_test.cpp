@@ -335,6 +335,33 @@ TEST(Lie, AContactIsOpenBetweenVertices) {
   EXPECT_NEAR(report.constraint("contact_between").worst, 0.3 * (1.0 - std::cos(0.3)), 1e-4);
 }
 
+TEST(Lie, WheelsRollBetweenTheStancesOfAPlan) {
+  Motion honest = centauro().drive(2, 0.0, 1.0);
+  honest.stances_only = true;
+  honest.stances.push_back(honest.stances[0]);
+  std::erase_if(honest.stances[1].contacts, [](const Contact& c) { return c.name() == "wheel_3"; });
+  honest.stance_from = {0, 1};
+  const CheckReport report = check_with({}, honest);
+  EXPECT_EQ(violated(report), Names{});
+  EXPECT_TRUE(report.constraint("contact_motion").judged);
+  EXPECT_TRUE(report.constraint("contact_turn").judged);
+  Motion elsewhere = honest;
+  elsewhere.configurations[1] = centauro().at(0.01);
+  expect_refused(check_with({}, elsewhere, quick()), "contact_position");
+  expect_refused(check_with({}, elsewhere, quick()), "contact_motion");
+  Motion turned = honest;
+  turned.configurations[1][centauro().roll_joints[0]] += 0.1;
+  EXPECT_EQ(violated(check_with({}, turned)), Names{"contact_turn"});
+  // The one that is lifted, before it is.
+  turned = honest;
+  turned.configurations[1][centauro().roll_joints[2]] += 0.1;
+  EXPECT_EQ(violated(check_with({}, turned)), Names{"contact_turn"});
+  Motion relabelled = honest;
+  for (Contact& wheel : relabelled.stances[1].contacts) wheel.position.x() += 5e-3;
+  EXPECT_EQ(violated(check_with({}, relabelled, quick())),
+            (Names{"contact_position", "contact_relabelled"}));
+}
+
 TEST(Lie, APlanOfStancesHoldsOnToNothingOrToTwoPlaces) {
   Motion plan = standing().motion(2);
   plan.configurations[1] = plan.configurations[0];

@@ -129,6 +129,22 @@ TEST(GraphFile, ThatHoldsNothingIsAnError) {
   }
 }
 
+TEST(GraphFile, AQuoteThatEndsInAnEscapeIsReadNoFurtherThanItsLine) {
+  const auto read = [](const std::string& text) {
+    // Of its exact size, so that AddressSanitizer sees a byte that is read behind it.
+    const std::vector<char> exact(text.begin(), text.end());
+    return read_graph_text({exact.data(), exact.size()}, "test.g2o", {}, standard_types());
+  };
+  EXPECT_EQ(read("VERTEX_XY 0 1 2 # \"a\\").vertex_count(), 1);
+  try {
+    read("VERTEX_XY 0 1 2\nVERTEX_XY 1 3 4 \"#\\");
+    FAIL() << "was accepted";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "test.g2o:2: too many fields, from '\"#\\' on, expected end of line");
+  }
+}
+
 TEST(GraphFile, LenientReadingStillRefusesWhatIsNotAMatterOfTaste) {
   for (const char* text : {"VERTEX_XY 0 1", "VERTEX_XY 0 1 nan", "EDGE_POINTXY 1 1 0 0 1 0 1",
                            "VERTEX_XY 0 1 2\nEDGE_POINTXY 0 1 0 0 1 0 1"}) {

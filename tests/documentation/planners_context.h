@@ -7,6 +7,8 @@
 #include <locograph/planners/offline/stance/stance_graph.h>
 #include <locograph/planners/offline/stance/stance_path.h>
 #include <locograph/planners/offline/stance/stance_problem.h>
+#include <locograph/planners/offline/stance/stance_tree.h>
+#include <locograph/planners/offline/stance/standing_wheels.h>
 #include <locograph/planners/offline/stance/transition_rows.h>
 #include <locograph/planners/online/refine.h>
 #include <locograph/planners/plan/judging.h>
@@ -14,6 +16,8 @@
 #include <locograph/planners/posture/contacts_file.h>
 #include <locograph/planners/posture/posture_graph.h>
 #include <locograph/planners/posture/posture_solver.h>
+#include <locograph/planners/scenario/contact_place.h>
+#include <locograph/planners/scenario/move_contacts.h>
 #include <locograph/planners/scenario/scenario.h>
 #include <locograph/planners/scenario/snap_to_places.h>
 #include <locograph/robots/xml_file.h>
@@ -62,6 +66,16 @@ extern const Eigen::VectorXd configuration;
 namespace offline_stance_stance_planner_h {
 extern const Scenario scenario;
 }
+namespace offline_stance_stance_tree_h {
+extern const StanceSpace space;
+extern const StancePlannerOptions options;
+extern StancePlan plan;
+extern const Footing start;
+}  // namespace offline_stance_stance_tree_h
+namespace offline_stance_standing_wheels_h {
+extern const StanceSpace space;
+extern StancePath path;
+}  // namespace offline_stance_standing_wheels_h
 namespace offline_stance_torque_programme_h {
 extern const std::vector<BearingContact> bearing;
 extern const RobotState state;
@@ -136,6 +150,12 @@ extern const std::filesystem::path urdf, srdf;
 extern const RobotOptions options;
 extern const Eigen::VectorXd home;
 }  // namespace posture_posture_solver_h
+namespace scenario_contact_place_h {
+extern const Contact contact;
+}
+namespace scenario_move_contacts_h {
+extern ContactTask task;
+}
 namespace scenario_snap_to_places_h {
 extern const Scenario scenario;
 extern ContactTask task;

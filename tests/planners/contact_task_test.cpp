@@ -313,7 +313,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "<robot urdf=\"r.urdf\"><camera name=\"c\" link=\"l\" width=\"4\" height=\"3\" "
                 "fov_x=\"1\" range_min=\"5\" range_max=\"0.2\"/></robot>",
                 2, "less than range_max"}),
-    [](const testing::TestParamInfo<Mistake>& info) { return std::string(info.param.name); });
+    mistake_name);
 
 }  // namespace
 }  // namespace locograph

@@ -1,10 +1,7 @@
-#include <gtest/gtest.h>
-#include <locograph/common/error.h>
 #include <locograph/planners/posture/contacts_file.h>
 
-#include <string>
-
 #include "common/temporary_folder.h"
+#include "planners/mistakes.h"
 
 namespace locograph::test {
 namespace {
@@ -89,32 +86,12 @@ TEST(ContactsFile, TheExamplesThatComeAlongLoad) {
       3U);
 }
 
-struct Mistake {
-  const char* name;
-  const char* find;     ///< in kGood
-  const char* replace;  ///< by this
-  int line;
-  const char* words;
-};
-
 class ContactsFileMistakes : public testing::TestWithParam<Mistake> {};
 
 TEST_P(ContactsFileMistakes, AreRefusedWithTheirLine) {
-  const Mistake& mistake = GetParam();
-  std::string text = kGood;
-  const std::size_t at = text.find(mistake.find);
-  ASSERT_NE(at, std::string::npos);
-  text.replace(at, std::string(mistake.find).size(), mistake.replace);
   const TemporaryFolder folder;
-  const std::filesystem::path file = folder.write("contacts.xml", text);
-  try {
-    load_contacts(file, coman_plus());
-    FAIL() << "accepted";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.file(), file.string());
-    EXPECT_EQ(error.line(), mistake.line) << error.what();
-    EXPECT_NE(std::string(error.what()).find(mistake.words), std::string::npos) << error.what();
-  }
+  const auto file = folder.write("contacts.xml", with(kGood, GetParam().find, GetParam().replace));
+  expect_refused(file, GetParam(), [](const auto& path) { load_contacts(path, coman_plus()); });
 }
 
 const Mistake kMistakes[] = {
@@ -159,8 +136,7 @@ const Mistake kMistakes[] = {
     {"AnotherLoad", "load=\"no\"", "load=\"maybe\"", 3, "load is 'maybe'"},
     {"OneLinkAtTwoPlaces", "TCP_R", "TCP_L", 4, "contradict each other"},
 };
-INSTANTIATE_TEST_SUITE_P(All, ContactsFileMistakes, testing::ValuesIn(kMistakes),
-                         [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(All, ContactsFileMistakes, testing::ValuesIn(kMistakes), mistake_name);
 
 TEST(ContactsFile, RefusesNoneAndNoneThatBearsLoad) {
   const TemporaryFolder folder;

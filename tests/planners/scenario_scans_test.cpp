@@ -49,9 +49,14 @@ const char kStl[] =
     "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 2 0\nvertex 0 2 0\nendloop\nendfacet\n"
     "endsolid a\n";
 
+/// Of kScans with this in its environment; data holds the files.
+World world_with(const DataFolder& data, const std::string& element) {
+  return world_of(scenario_of(data, only(element)));
+}
+
 /// What world_of() refuses the scenario with.
 Error refusal(const DataFolder& data, const std::string& text) {
-  const Scenario scenario = load_scenario(data.write("s.xml", text).string(), data.path());
+  const Scenario scenario = scenario_of(data, text);
   try {
     world_of(scenario);
   } catch (const Error& error) {
@@ -63,7 +68,7 @@ Error refusal(const DataFolder& data, const std::string& text) {
 
 TEST(ScenarioScans, AreReadWithoutBeingOpenedAndTheirFilesAreRelativeToTheScenario) {
   const DataFolder data;
-  const Scenario scenario = load_scenario(data.write("s.xml", kScans).string(), data.path());
+  const Scenario scenario = scenario_of(data, kScans);
   EXPECT_TRUE(scenario.surfaces.empty()) << "they are something to stand on all the same";
   ASSERT_EQ(scenario.scanned.size(), 3u);
   const ScannedSurface& mesh = scenario.scanned[0];
@@ -103,11 +108,10 @@ TEST(ScenarioScans, WithoutFrictionOfTheEnvironmentTheyHaveToSayTheirOwn) {
 TEST(ScenarioScans, TheWorldHasTheRectanglesOfAMeshMovedAndScaled) {
   const DataFolder data;
   data.write("rocks.stl", kStl);
-  const World world = world_of(load_scenario(
-      data.write("s.xml", only("<mesh name=\"rocks\" file=\"rocks.stl\" position=\"0 0 0.2\" "
-                               "scale=\"0.5\" friction=\"0.4\"/>"))
-          .string(),
-      data.path()));
+  const World world =
+      world_with(data,
+                 "<mesh name=\"rocks\" file=\"rocks.stl\" position=\"0 0 0.2\" scale=\"0.5\" "
+                 "friction=\"0.4\"/>");
   ASSERT_EQ(world.surfaces.size(), 1u);
   const Surface& top = world.surfaces[0];
   EXPECT_EQ(top.name, "rocks 1");
@@ -123,12 +127,10 @@ TEST(ScenarioScans, TheWorldHasTheFlatPlacesAndBarsOfACloudBehindItsOwnSurfaces)
   cloud.bar({0.5, -0.4, 0.9}, {0.5, 0.4, 0.9}, 0.02);
   const DataFolder data;
   data.write("scan.pcd", pcd(cloud.points));
-  const World world = world_of(load_scenario(
-      data.write("s.xml", only("<cloud name=\"scan\" file=\"scan.pcd\"/>"
-                               "<plane name=\"stage\" center=\"3 0 0\" normal=\"0 0 1\" "
-                               "size=\"1 1\"/>"))
-          .string(),
-      data.path()));
+  const World world =
+      world_with(data,
+                 "<cloud name=\"scan\" file=\"scan.pcd\"/>"
+                 "<plane name=\"stage\" center=\"3 0 0\" normal=\"0 0 1\" size=\"1 1\"/>");
   ASSERT_GE(world.surfaces.size(), 2u);
   EXPECT_EQ(world.surfaces[0].name, "stage");
   EXPECT_EQ(world.surfaces[1].name, "scan 1");
@@ -149,9 +151,7 @@ TEST(ScenarioScans, OctreesHaveNoSurfacesThatLookDownAndNoSmallOnes) {
   tree.updateNode(octomap::point3d(3.05f, 0.05f, 0.05f), true);  // 0.1 m x 0.1 m
   const DataFolder data;
   ASSERT_TRUE(tree.writeBinary(data.file("hall.bt").string()));
-  const World world = world_of(
-      load_scenario(data.write("s.xml", only("<octomap name=\"hall\" file=\"hall.bt\"/>")).string(),
-                    data.path()));
+  const World world = world_with(data, "<octomap name=\"hall\" file=\"hall.bt\"/>");
   ASSERT_FALSE(world.surfaces.empty());
   bool top = false;
   for (const Surface& surface : world.surfaces) {
@@ -170,16 +170,9 @@ TEST(ScenarioScans, OctreesHaveNoSurfacesThatLookDownAndNoSmallOnes) {
 TEST(ScenarioScans, ADriveDoesNotStandOnTheGroundWhereThereIsAScan) {
   const DataFolder data;
   data.write("m.stl", kStl);
-  const World world = world_of(load_scenario(
-      data.write("s.xml",
-                 "<scenario version=\"1\" name=\"bridge\">\n"
-                 "<robot urdf=\"r.urdf\"/>\n"
-                 "<wheels><wheel link=\"w\" radius=\"0.1\"/></wheels>\n"
-                 "<environment friction=\"0.8\"><mesh name=\"m\" file=\"m.stl\"/></environment>\n"
-                 "<drive distance=\"2\" speed=\"0.2\" configurations=\"2\"/>\n"
-                 "</scenario>\n")
-          .string(),
-      data.path()));
+  const World world = world_of(
+      scenario_of(data, drive_in("<environment friction=\"0.8\"><mesh name=\"m\" file=\"m.stl\"/>"
+                                 "</environment>")));
   ASSERT_EQ(world.surfaces.size(), 1u);
   EXPECT_EQ(world.surfaces[0].name, "m 1");
 }
@@ -231,7 +224,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"VoxelsOfNothing", "voxel=\"0.1\"", "voxel=\"0\"", 8, "voxel is 0"},
         Mistake{"VoxelsLikeHouses", "voxel=\"0.1\"", "voxel=\"1000\"", 8, "0.0001 to 100"},
         Mistake{"FrictionOfNothing", "friction=\"0.4\"", "friction=\"0\"", 7, "friction is 0"}),
-    [](const testing::TestParamInfo<Mistake>& info) { return std::string(info.param.name); });
+    mistake_name);
 
 }  // namespace
 }  // namespace locograph

@@ -6,10 +6,10 @@ namespace {
 TEST(Scenario, TheShippedDriveLoadsByName) {
   const DataFolder data;
   EXPECT_EQ(scenario_names(data.path()),
-            (std::vector<std::string>{"centauro_drive", "gap_with_handrail", "ladder_climbing",
-                                      "ladder_from_cloud", "parallel_walls", "quadrupedal_walking",
-                                      "slanted_wall", "standing_up", "stepping_stones",
-                                      "walk_then_stand"}));
+            (std::vector<std::string>{"centauro_drive", "centauro_platform", "gap_with_handrail",
+                                      "ladder_climbing", "ladder_from_cloud", "parallel_walls",
+                                      "quadrupedal_walking", "slanted_wall", "standing_up",
+                                      "stepping_stones", "walk_then_stand"}));
   const Scenario scenario = load_scenario("centauro_drive", data.path());
   EXPECT_EQ(scenario.name, "centauro_drive");
   EXPECT_EQ(scenario.source, "centauro_drive");
@@ -63,20 +63,22 @@ TEST(Scenario, FilesInAScenarioAreRelativeToItAndAbsoluteOnesStay) {
 
 TEST(Scenario, OneThatIsNotThereIsRefusedNamingTheOnesThatAre) {
   const DataFolder data;
-  try {
-    load_scenario("centauro_drve", data.path());
-    FAIL() << "accepted";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.file(), "centauro_drve");
-    EXPECT_EQ(error.line(), 0);
-    EXPECT_NE(std::string(error.what()).find("centauro_drive"), std::string::npos) << error.what();
+  const std::string longer_than_paths(5000, 'n');
+  for (const std::string& name : {std::string("centauro_drve"), longer_than_paths}) {
+    try {
+      load_scenario(name, data.path());
+      FAIL() << "accepted";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.file(), name);
+      EXPECT_EQ(error.line(), 0);
+      EXPECT_NE(std::string(error.what()).find("one of centauro_drive"), std::string::npos)
+          << error.what();
+    }
   }
 }
 
 TEST(Scenario, KnowsWhatEveryKindOfEndEffectorCanBearAndTheLimitsOfTheMotion) {
-  const DataFolder data;
-  const std::filesystem::path file = data.write(
-      "s.xml",
+  const Scenario scenario = scenario_of(
       "<scenario version=\"1\" name=\"all\">\n"
       "<robot model=\"centauro\"/>\n"
       "<wheels><wheel link=\"wheel_1\" radius=\"0.078\" friction=\"0.4\" max_force=\"900\"/>\n"
@@ -94,7 +96,6 @@ TEST(Scenario, KnowsWhatEveryKindOfEndEffectorCanBearAndTheLimitsOfTheMotion) {
       "<drive distance=\"2\" speed=\"0.2\" configurations=\"2\"/>\n"
       "<planner torque_limits=\"report\"/>\n"
       "</scenario>\n");
-  const Scenario scenario = load_scenario(file.string(), data.path());
   ASSERT_EQ(scenario.end_effectors.size(), 5u);
   EXPECT_EQ(scenario.end_effectors[0].friction, 0.4);
   EXPECT_EQ(scenario.end_effectors[0].max_force_N, 900.0);
@@ -117,13 +118,8 @@ TEST(Scenario, KnowsWhatEveryKindOfEndEffectorCanBearAndTheLimitsOfTheMotion) {
 
 TEST(Scenario, ADriveWithSurfacesStandsOnThoseOnly) {
   const World world =
-      world_of(scenario_of("<scenario version=\"1\" name=\"bridge\">\n"
-                           "<robot urdf=\"r.urdf\"/>\n"
-                           "<wheels><wheel link=\"w\" radius=\"0.1\"/></wheels>\n"
-                           "<environment><plane name=\"bridge\" center=\"2 0 0\" normal=\"0 0 1\" "
-                           "size=\"6 1\"/></environment>\n"
-                           "<drive distance=\"2\" speed=\"0.2\" configurations=\"2\"/>\n"
-                           "</scenario>\n"));
+      world_of(scenario_of(drive_in("<environment><plane name=\"bridge\" center=\"2 0 0\" "
+                                    "normal=\"0 0 1\" size=\"6 1\"/></environment>")));
   ASSERT_EQ(world.surfaces.size(), 1u);
   EXPECT_EQ(world.surfaces[0].name, "bridge");
 }
@@ -140,10 +136,7 @@ const std::string kGood =
     "<drive distance=\"4\" curvature=\"0\" speed=\"0.1\" configurations=\"50\"/>\n"  // 7
     "</scenario>\n";
 
-TEST(Scenario, TheOneThatTheMistakesAreMadeInIsGood) {
-  const DataFolder data;
-  EXPECT_NO_THROW(load_scenario(data.write("s.xml", kGood).string(), data.path()));
-}
+TEST(Scenario, TheOneThatTheMistakesAreMadeInIsGood) { EXPECT_NO_THROW(scenario_of(kGood)); }
 
 TEST_P(BadScenario, IsRefusedWithFileAndLine) { expect_refused(kGood, GetParam()); }
 
@@ -226,7 +219,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"Version2", "version=\"1\"", "version=\"2\"", 1, "version '2'"},
         Mistake{"NoVersion", "version=\"1\"", "", 1, "version"},
         Mistake{"NotXml", "</wheels>", "</wheel>", 3, "not well-formed"}),
-    [](const testing::TestParamInfo<Mistake>& info) { return std::string(info.param.name); });
+    mistake_name);
 
 }  // namespace
 }  // namespace locograph

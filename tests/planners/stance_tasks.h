@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "planners/planned_drive.h"
+#include "planners/scenario_texts.h"
 
 namespace locograph::test {
 
@@ -24,13 +24,8 @@ using Replacements = std::vector<std::pair<std::string, std::string>>;
 inline Scenario changed_scenario(const std::string& name, const Replacements& replacements) {
   std::ifstream in(LOCOGRAPH_SOURCE_DIR "/planners/scenarios/" + name + ".xml");
   std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  for (const auto& [find, replace] : replacements) {
-    const std::size_t at = text.find(find);
-    if (at == std::string::npos) throw std::invalid_argument("no " + find + " in " + name);
-    text.replace(at, find.size(), replace);
-  }
-  const DataFolder data;
-  return load_scenario(data.write("changed.xml", text).string(), data.path());
+  for (const auto& [find, replace] : replacements) text = with(text, find, replace);
+  return scenario_of(text);
 }
 
 inline StanceProblem stance_task(const std::string& name, const Replacements& replacements = {}) {

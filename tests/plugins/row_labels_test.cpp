@@ -119,6 +119,8 @@ TEST_F(RowLabels, OfContactsAndTasksNameFramesWheelsAndCoordinates) {
   EXPECT_EQ(EdgeCom().row_label(2).unit, "m");
   EXPECT_EQ(labels("EDGE_CONTACT 0 2 7 scalar 1"),
             Labels({"wheel height [m]", "wheel axle tilt []"}));
+  EXPECT_EQ(labels("EDGE_CONTACT 0 4 9 scalar 1"),
+            Labels({"wheel x [m]", "wheel y [m]", "wheel height [m]", "wheel axle tilt []"}));
   EXPECT_EQ(labels("EDGE_ROLLING 0 1 2 10 scalar 1"),
             Labels({"wheel lateral [m]", "wheel longitudinal [m]"}));
   EXPECT_EQ(labels("EDGE_ROLLING 0 1 3 11 scalar 1"),

@@ -334,6 +334,26 @@ TEST_F(Wheels, ThatAreLockedNeitherMoveNorTurn) {
   EXPECT_EQ(held.weights.size(), 9);
 }
 
+TEST_F(Wheels, ThatAreLockedTurnBackWhatTheirCarriersPitch) {
+  robot.wheels[1].locked = true;
+  const EdgeRolling held = rolling_of(graph_of(robot));
+  Eigen::VectorXd from = home(robot);
+  // With the leg straight ahead its pitch joints turn about the wheel's axle.
+  from[at("hip_yaw_", 1)] = from[at("ankle_yaw_", 1)] = 0.0;
+  Eigen::VectorXd to = from;
+  to[at("knee_pitch_", 1)] += 0.2;
+  const Eigen::Vector3d back = wheel_at(from, 1).centre - wheel_at(to, 1).centre;
+  to = shifted(to, back.x(), back.y(), back.z());
+  const Eigen::AngleAxisd turned(wheel_at(to, 1).rotation * wheel_at(from, 1).rotation.transpose());
+  const double about_axle = turned.angle() * turned.axis().dot(wheel_at(from, 1).axle);
+  EXPECT_NEAR(std::abs(about_axle), 0.2, 1e-6);
+  const Eigen::VectorXd turns = error_between(robot, held, from, to);
+  EXPECT_NEAR(turns[3], 0.0, 1e-6);
+  EXPECT_NEAR(turns[4], kRadius * about_axle, 1e-6);
+  to[spin(1)] -= about_axle;
+  EXPECT_NEAR(error_between(robot, held, from, to)[4], 0.0, 1e-6);
+}
+
 /// A way straight on, all wheels steered evenly: what slips sideways adds up until half-way and is
 /// taken back behind.
 TEST_F(Wheels, ThatSteerWhileTheyRollSlipHalfWay) {

@@ -3,6 +3,7 @@
 #include <locograph/robots/robot_state.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "robots/robot_test_support.h"
 
@@ -154,6 +155,30 @@ TEST_F(Centauro, HasWheelsWithoutLimits) {
     EXPECT_EQ(wheel.upper, std::numeric_limits<double>::infinity());
     EXPECT_EQ(wheel.max_velocity, 20.0);
     EXPECT_EQ(wheel.max_effort, 35.0);
+  }
+}
+
+TEST_F(Centauro, HasForksThatEndAboveWhereWheelsTouch) {
+  constexpr double kRadius = 0.078;
+  for (const char* leg : {"1", "2", "3", "4"}) {
+    const Link& fork =
+        robot.links()[static_cast<std::size_t>(robot.link_index(std::string("ankle2_") + leg))];
+    ASSERT_EQ(fork.collision.size(), 1u);
+    const CollisionShape& capsule = fork.collision.front();
+    ASSERT_EQ(capsule.type, ShapeType::kCapsule);
+    const Joint& axle =
+        robot.joints()[static_cast<std::size_t>(robot.joint_index(std::string("j_wheel_") + leg))];
+    for (const double pitch : {0.0, 0.5, 1.05, -1.05}) {
+      const Eigen::AngleAxisd turn(pitch, Eigen::Vector3d::UnitY());
+      double lowest = std::numeric_limits<double>::infinity();
+      for (const double end : {-0.5, 0.5}) {
+        const Eigen::Vector3d centre =
+            capsule.link_from_shape * Eigen::Vector3d(0.0, 0.0, end * capsule.length);
+        const Eigen::Vector3d from_axle = turn * (centre - axle.parent_from_joint.translation());
+        lowest = std::min(lowest, from_axle.z() - capsule.radius);
+      }
+      EXPECT_GT(lowest, -kRadius + 8e-4) << "leg " << leg << ", pitch " << pitch;
+    }
   }
 }
 

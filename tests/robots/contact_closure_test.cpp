@@ -15,6 +15,7 @@ struct ClosureCase {
   ContactKind kind;
   bool free_yaw = false;
   double radius_m = 0.0;
+  bool locked = false;
 };
 
 void PrintTo(const ClosureCase& one, std::ostream* stream) { *stream << one.name; }
@@ -52,7 +53,7 @@ class Closure : public testing::TestWithParam<ClosureCase> {
 
   /// Somewhere near, but not closed.
   Contact contact() {
-    Contact placed{.effector = effector()};
+    Contact placed{.effector = effector(), .locked = GetParam().locked};
     const Eigen::Isometry3d& pose = state.world_from_link(robot.link_index(placed.effector.link));
     placed.position = pose * placed.effector.point + 0.2 * direction(random);
     placed.normal = pose.linear() * placed.effector.normal + 0.5 * direction(random);
@@ -117,7 +118,8 @@ INSTANTIATE_TEST_SUITE_P(
                     ClosureCase{"Point", ContactKind::kPoint},
                     ClosureCase{"Ball", ContactKind::kPoint, false, 0.04},
                     ClosureCase{"Rung", ContactKind::kRung},
-                    ClosureCase{"Wheel", ContactKind::kWheel, false, 0.078}),
+                    ClosureCase{"Wheel", ContactKind::kWheel, false, 0.078},
+                    ClosureCase{"LockedWheel", ContactKind::kWheel, false, 0.078, true}),
     [](const testing::TestParamInfo<ClosureCase>& one) { return one.param.name; });
 
 class OneClosure : public testing::Test {
@@ -173,15 +175,37 @@ TEST_F(OneClosure, OfAWheelIsTheHeightOfItsLowestPointAboveAnyPlane) {
   }
 }
 
+TEST_F(OneClosure, OfALockedWheelHoldsTheLowestPointToo) {
+  Contact wheel{.effector = end(ContactKind::kWheel, "wheel_1")};
+  wheel.effector.radius_m = 0.078;
+  const WheelPose pose(state, wheel_of(robot, wheel.effector));
+  wheel.normal = 2.0 * pose.axle.unitOrthogonal();
+  const Eigen::Matrix3d axes = axes_in_world(wheel);
+  const Eigen::Vector3d lowest = lowest_point(pose, 0.078, wheel.normal);
+  wheel.position = lowest - axes * Eigen::Vector3d(0.03, -0.02, 0.01);
+  const std::vector<double> rolls = rows(wheel);
+  ASSERT_EQ(rolls.size(), 2u);
+  wheel.locked = true;
+  const std::vector<double> stands = rows(wheel);
+  ASSERT_EQ(stands.size(), 4u);
+  EXPECT_NEAR(stands[0], 0.03, 1e-12);
+  EXPECT_NEAR(stands[1], -0.02, 1e-12);
+  EXPECT_NEAR(stands[2], 0.01, 1e-12);
+  EXPECT_EQ(std::vector<double>(stands.begin() + 2, stands.end()), rolls);
+}
+
 TEST_F(OneClosure, OfAWheelDoesNotChangeWhenItTurns) {
   Contact wheel{.effector = end(ContactKind::kWheel, "wheel_1")};
   wheel.effector.radius_m = 0.078;
   wheel.normal = {0.1, 0.2, 1.0};
-  const std::vector<double> before = rows(wheel);
-  q[robot.base_configuration_size() +
-    robot.joints()[static_cast<std::size_t>(robot.joint_index("j_wheel_1"))].index] += 2.0;
-  state.update(q.data());
-  EXPECT_EQ(rows(wheel), before);
+  for (const bool locked : {false, true}) {
+    wheel.locked = locked;
+    const std::vector<double> before = rows(wheel);
+    q[robot.base_configuration_size() +
+      robot.joints()[static_cast<std::size_t>(robot.joint_index("j_wheel_1"))].index] += 2.0;
+    state.update(q.data());
+    EXPECT_EQ(rows(wheel), before);
+  }
 }
 
 TEST_F(OneClosure, OfARungIsBlindToTurningRoundTheBarOnly) {

@@ -47,6 +47,7 @@ export class Api {
       window: plan?.window ?? 0,
       violations: marks.filter(({ violation }) => violation.violated).length,
       selectedViolation: marks[violations.selected]?.violation.constraint ?? null,
+      pictures: app.pictures?.strip.drawn ?? null,
       layers: Object.fromEntries(app.layers.all.map(({ id, on }) => [id, on])),
       frames: app.frames,
       drawCalls: app.stage.renderer.info.render.calls,

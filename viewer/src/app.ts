@@ -9,12 +9,14 @@ import { Legend } from './legend';
 import { legendEntries } from './legend_entries';
 import { PageActions } from './page_actions';
 import { Panel } from './panel';
+import { PictureStrip } from './picture_strip';
 import { Player } from './player';
 import { Scene } from './scene_format';
 import { addSceneLayers } from './scene_layers';
 import { SceneViews } from './scene_views';
 import { MOST_GHOSTS } from './robot_view';
 import { Stage } from './stage';
+import { captionsOf, StancePictures } from './stance_pictures';
 import { preferredTheme, ThemeName, THEMES } from './theme';
 import { Timeline } from './timeline';
 import { TopBar } from './top_bar';
@@ -28,6 +30,7 @@ export class App implements PageActions {
   readonly player: Player;
   readonly rig: CameraRig;
   readonly bar: TopBar;
+  readonly pictures: StancePictures | null = null;
   themeName: ThemeName = preferredTheme();
   frames = 0;
   /** The clock follows what a running refinement has executed. */
@@ -79,9 +82,14 @@ export class App implements PageActions {
       this.timeline = new Timeline(this.page, scene, plan, this.player, violations.marks, () =>
         this.userMoved(),
       );
+      if (plan.steps) {
+        const captions = captionsOf(scene, plan, violations.marks);
+        const strip = new PictureStrip(this.timeline.element, captions, (i) => this.goTo(i));
+        this.pictures = new StancePictures(this.views, plan, this.stage, strip);
+      }
     }
     if (graph) this.panel.addGraph(graph);
-    addSceneLayers(this.layers, this.views, this.stage.ground);
+    addSceneLayers(this.layers, this.views, this.stage.ground, this.pictures?.strip);
     const switches = this.panel.addSwitches(this.layers);
     if (plan && plan.count > 1) this.addGhostNumber(switches);
     this.legend = new Legend(this.view, (layer) => this.layers.isOn(layer));
@@ -167,6 +175,7 @@ export class App implements PageActions {
     const theme = THEMES[name];
     this.stage.applyTheme(theme, name === 'dark');
     this.views.applyTheme(theme);
+    this.pictures?.strip.forget();
     this.invalidate(true);
   }
 
@@ -228,6 +237,14 @@ export class App implements PageActions {
     return Math.max(0.56 * box.min.distanceTo(box.max), 0.3);
   }
 
+  /** To a configuration, by its index. */
+  goTo(index: number): void {
+    const { plan } = this.views;
+    if (!plan) return;
+    this.player.playing = false;
+    this.setTime(plan.times[index]);
+  }
+
   /** Goes to the moment and the place of a violation. */
   jumpTo(index: number): void {
     const { violations } = this.views;
@@ -266,6 +283,7 @@ export class App implements PageActions {
     const { plan } = this.views;
     if (!plan) return;
     this.views.replace(configurations ?? {});
+    this.pictures?.strip.forget(Object.keys(configurations ?? {}).map(Number));
     plan.executed = executed;
     plan.window = window;
     this.layers.set('by_time', false);
@@ -297,6 +315,7 @@ export class App implements PageActions {
     }
     if (this.player.advance(seconds)) this.changed = true;
     if (this.changed) this.update();
+    if (this.pictures?.draw(now, this.stage.waiting)) this.update();
     const time = plan?.steps ? plan.times[this.player.index] : this.player.time;
     violations.update(time, this.stage.camera, this.width, this.height);
     const drawn = this.stage.draw();
@@ -327,6 +346,7 @@ export class App implements PageActions {
       this.timeline?.draw(THEMES[this.themeName], executed);
     }
     this.timeline?.update();
+    this.pictures?.strip.mark(this.player.index);
     this.stage.invalidate();
   }
 

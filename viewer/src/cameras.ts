@@ -96,6 +96,12 @@ export class CameraRig {
   }
 }
 
+/** Direction to a camera that stands before a robot, beside and above it. */
+export function threeQuarterView(heading: number, direction: Vector3): Vector3 {
+  const up = new Vector3(0, 0, 1);
+  return direction.fromArray(DIRECTIONS.follow).normalize().applyAxisAngle(up, heading);
+}
+
 /** Heading of a base frame [rad]: of its y axis, since a base may lean forward until x points down. */
 export function headingOf(world: Matrix4): number {
   return Math.atan2(-world.elements[4], world.elements[5]);

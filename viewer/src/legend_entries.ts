@@ -7,10 +7,11 @@ import { Plan } from './plan';
 import { FIRST_GHOST, LAST_GHOST } from './robot_view';
 import { SceneViews } from './scene_views';
 import { Theme } from './theme';
+import { DEPTH_COLOURS } from './tree_view';
 
 /** `gridCell`: the width of the fine grid [m]. */
 export function legendEntries(
-  { plan, track, contactView, world, graph }: SceneViews,
+  { plan, track, contactView, world, graph, tree }: SceneViews,
   layers: Layers,
   theme: Theme,
   gridCell: number,
@@ -26,6 +27,13 @@ export function legendEntries(
   }
   add(plan?.window ? 'not yet in the window' : 'to come', theme.rest, 'dot', 'dots');
   add('base path', theme.base, 'line', 'base');
+  if (tree) {
+    add('tree: first moves', DEPTH_COLOURS[0], 'line', 'tree');
+    const last = DEPTH_COLOURS[DEPTH_COLOURS.length - 1];
+    if (tree.deepest > 1) add(`tree: ${tree.deepest} moves deep`, last, 'line', 'tree');
+    if (tree.hasFailed) add('tree: failed moves (faint)', theme.grid, 'line', 'tree');
+    if (tree.hasWay) add('tree: way to the goal', theme.executed, 'line', 'tree');
+  }
   add('reference plan', theme.reference, 'dashed', 'reference');
   for (const kind of contactKinds(plan)) {
     add(`${kind} contact, normal`, kindColour(kind), 'patch', 'contacts');

@@ -5,7 +5,6 @@ import {
   EqualDepth,
   Group,
   InstancedMesh,
-  Matrix4,
   Mesh,
   MeshBasicMaterial,
   MeshLambertMaterial,
@@ -137,18 +136,25 @@ export class RobotView {
   /** Of the robot as it stands; a metre where it has no shape. */
   box(): Box3 {
     this.shape.makeEmpty();
-    const part = new Box3();
-    const world = new Matrix4();
-    for (const { link, mesh } of this.links) {
-      if (!mesh.geometry.boundingBox) mesh.geometry.computeBoundingBox();
-      world.copy(this.kinematics.worldFromLink[link]);
-      this.shape.union(part.copy(mesh.geometry.boundingBox!).applyMatrix4(world));
-    }
+    this.corners((corner) => this.shape.expandByPoint(corner));
     if (this.shape.isEmpty()) {
       const metre = new Vector3().setScalar(Math.sqrt(1 / 3));
       this.shape.setFromCenterAndSize(new Vector3(0, 0, 0.5), metre);
     }
     return this.shape;
+  }
+
+  /** Corners of the boxes around its links. */
+  corners(visit: (corner: Vector3) => void): void {
+    const corner = new Vector3();
+    for (const { link, mesh } of this.links) {
+      if (!mesh.geometry.boundingBox) mesh.geometry.computeBoundingBox();
+      const { min, max } = mesh.geometry.boundingBox!;
+      for (let i = 0; i < 8; ++i) {
+        corner.set(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z);
+        visit(corner.applyMatrix4(this.kinematics.worldFromLink[link]));
+      }
+    }
   }
 
   /** Middle and size of the robot as it stands. */

@@ -151,6 +151,16 @@ export interface GraphDescription {
   chi2?: number[];
 }
 
+/** What the search for stances tried; packed, for each node. */
+export interface TreeDescription {
+  /** Middles of the contacts. */
+  centres: string;
+  /** Earlier nodes; -1: a root. */
+  parents: string;
+  /** 0: failed, 1: found, 2: on the way to a goal. */
+  states: string;
+}
+
 export interface Scene {
   version: number;
   kind: 'plan' | 'pose_graph';
@@ -158,6 +168,7 @@ export interface Scene {
   robot?: RobotDescription;
   plan?: PlanDescription;
   stances?: Stance[];
+  tree?: TreeDescription;
   map?: { resolution?: number; voxels: string; left_out?: number };
   surfaces?: SurfaceDescription[];
   bars?: BarDescription[];

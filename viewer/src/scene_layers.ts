@@ -1,13 +1,19 @@
 /** The switches of a scene: one for each thing in it that can be shown or hidden. */
+import { number } from './dom';
 import { Layers } from './layers';
 import { SceneViews } from './scene_views';
 
-interface Showable {
+export interface Showable {
   visible: boolean;
 }
 
-export function addSceneLayers(layers: Layers, views: SceneViews, ground: Showable): void {
-  const { robot, path, contactView, track, voxels, world, graph, plan, kinematics } = views;
+export function addSceneLayers(
+  layers: Layers,
+  views: SceneViews,
+  ground: Showable,
+  pictures: Showable | undefined,
+): void {
+  const { robot, path, contactView, track, voxels, world, graph, plan, kinematics, tree } = views;
   const show = (
     id: string,
     label: string,
@@ -42,6 +48,8 @@ export function addSceneLayers(layers: Layers, views: SceneViews, ground: Showab
   }
   const drives = !!kinematics?.floating && (plan?.count ?? 0) > 1;
   show('base', 'Base path', 'b', path?.lines, drives);
+  const tried = `Tree of stances (${number(tree?.tried ?? 0)} moves tried)`;
+  show('tree', tried, 'e', tree?.group, (tree?.tried ?? 0) > 0, false);
   show('reference', 'Reference plan', 'r', path?.referenceLine, !!plan?.reference);
   show('contacts', 'Contacts, areas and normals', 'c', contactView?.contacts, contacts);
   show('forces', 'Forces and friction cones', 'f', contactView?.forces, track?.hasForces ?? false);
@@ -64,4 +72,5 @@ export function addSceneLayers(layers: Layers, views: SceneViews, ground: Showab
   show('loops', 'Loop closures', 'c', graph?.loops, (graph?.loopCount ?? 0) > 0);
   show('landmarks', 'Landmarks', 'm', graph?.landmarks, (graph?.pointCount ?? 0) > 0);
   show('ground', 'Ground grid', 'n', ground, true, !graph);
+  show('pictures', 'Pictures of the stances', 'i', pictures, true);
 }

@@ -10,6 +10,7 @@ import { PoseGraphView } from './pose_graph_view';
 import { RobotView } from './robot_view';
 import { Scene, SceneError } from './scene_format';
 import { Theme } from './theme';
+import { TreeView } from './tree_view';
 import { ViolationView } from './violation_view';
 import { VoxelView } from './voxel_view';
 import { WorldView } from './world_view';
@@ -24,6 +25,7 @@ export class SceneViews {
   readonly world: WorldView;
   readonly voxels: VoxelView | null = null;
   readonly graph: PoseGraphView | null = null;
+  readonly tree: TreeView | null = null;
   readonly violations: ViolationView;
 
   /** At the time shown; velocities and torques after updateRates(). */
@@ -81,6 +83,10 @@ export class SceneViews {
       this.graph = new PoseGraphView(scene.graph);
       const { before, after, loops, landmarks } = this.graph;
       drawing.add(before, after, loops, landmarks);
+    }
+    if (scene.tree) {
+      this.tree = new TreeView(scene.tree);
+      drawing.add(this.tree.group);
     }
     this.violations = new ViolationView(scene.check?.violations ?? [], this.plan, overlay);
     drawing.add(this.violations.group);
@@ -176,6 +182,7 @@ export class SceneViews {
     this.contactView?.applyTheme(theme);
     this.world.applyTheme(theme);
     this.graph?.applyTheme(theme);
+    this.tree?.applyTheme(theme);
   }
 
   placeGhosts(number: number): void {

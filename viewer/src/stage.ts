@@ -13,6 +13,7 @@ import {
   ShadowMaterial,
   SRGBColorSpace,
   Vector3,
+  Vector4,
   WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
@@ -56,6 +57,7 @@ export class Stage {
   private readonly sun = new DirectionalLight(0xffffff, 2.5);
   private readonly sky = new HemisphereLight(0xffffff, 0xb9b4aa, 1.7);
   private readonly fill = new DirectionalLight(0xcfe0ff, 0.55);
+  private readonly viewport = new Vector4();
   private dirty = true;
 
   constructor(readonly canvas: HTMLCanvasElement) {
@@ -169,6 +171,30 @@ export class Stage {
 
   invalidate(): void {
     this.dirty = true;
+  }
+
+  /** Something has changed since it was drawn. */
+  get waiting(): boolean {
+    return this.dirty;
+  }
+
+  /** A picture from another camera. It is drawn on the canvas, which has to be drawn again after. */
+  picture(camera: PerspectiveCamera, into: CanvasRenderingContext2D): void {
+    const { canvas, renderer } = this;
+    const { width, height } = into.canvas;
+    const shrunk = Math.min(1, canvas.width / width, canvas.height / height);
+    const across = Math.floor(shrunk * width);
+    const up = Math.floor(shrunk * height);
+    const ratio = renderer.getPixelRatio();
+    renderer.getViewport(this.viewport);
+    renderer.setViewport(0, 0, across / ratio, up / ratio);
+    renderer.setScissor(0, 0, across / ratio, up / ratio);
+    renderer.setScissorTest(true);
+    renderer.render(this.scene, camera);
+    renderer.setScissorTest(false);
+    renderer.setViewport(this.viewport);
+    into.drawImage(canvas, 0, canvas.height - up, across, up, 0, 0, width, height);
+    this.invalidate();
   }
 
   /** Draws if something has changed; says whether it did. */

@@ -255,11 +255,11 @@ function wall(count) {
   return numbers;
 }
 
-/** Five stances of soles, on all four or without one, 0.125 m apart, on a floor before a rail. */
-export function stancesScene() {
-  const scene = planScene({ count: 5, voxels: 0 });
+/** Stances of soles, on all four or without one, 0.125 m apart, on a floor before a rail. */
+export function stancesScene(count = 5) {
+  const scene = planScene({ count, voxels: 0 });
   const all = [1, 2, 3, 4].map((k) => `wheel_${k}`);
-  const lifted = [null, 'wheel_1', null, 'wheel_2', null];
+  const lifted = Array.from({ length: count }, (_, i) => (i % 2 ? all[(i >> 1) % 4] : null));
   const sole = ({ link, position: [x, y, z], force }) => ({
     link,
     kind: 'surface',
@@ -288,7 +288,7 @@ export function stancesScene() {
     plan: { ...plan, stances_only: true },
     stances: lifted.map((name, i) => ({
       from: i,
-      to: Math.min(i + 1, 4),
+      to: Math.min(i + 1, count - 1),
       contacts: all.filter((other) => other !== name),
     })),
     surfaces: [
@@ -297,6 +297,29 @@ export function stancesScene() {
     ],
     bars: [{ name: 'rail', from: [-1, 0.8, 0.8], to: [1.5, 0.8, 0.8], radius: 0.03 }],
   };
+}
+
+/**
+ * A tree over those stances: the way along them, a move each, and from each a found move to one side
+ * and a failed one to the other, all 0.9 m above the floor.
+ */
+export function stancesTree(count = 5) {
+  const centres = [];
+  const parents = [];
+  const states = [];
+  const add = (x, y, parent, state) => {
+    centres.push(x, y, 0.9);
+    parents.push(parent);
+    states.push(state);
+    return parents.length - 1;
+  };
+  let last = -1;
+  for (let i = 0; i < count; ++i) {
+    last = add(0.125 * i, 0, last, 2);
+    add(0.125 * i, 0.8, last, 1);
+    add(0.125 * i, -0.8, last, 0);
+  }
+  return { centres: pack(centres), parents: pack(parents, Int32Array), states: pack(states, Int32Array) };
 }
 
 /** Poses on a spiral over a sphere, with loop closures between its rounds. */

@@ -8,12 +8,14 @@ import {
   BASE_HEIGHT,
   farScene,
   mimicScene,
+  pack,
   page as pageText,
   planScene,
   SPEED,
   sphereGraph,
   squareGraph,
   stancesScene,
+  stancesTree,
 } from './scenes.mjs';
 
 if (!CHROMIUM) {
@@ -22,6 +24,7 @@ if (!CHROMIUM) {
 }
 
 const blue = (r, g, b) => b > 90 && b > r + 45 && b > g + 20;
+const deepBlue = (r, g, b) => b > 150 && r < 70 && g < 110;
 const orange = (r, g, b) => r > 120 && r > g + 40 && g > b + 20;
 const red = (r, g, b) => r > 170 && g < 110 && b < 110;
 
@@ -301,6 +304,169 @@ describe('viewer', () => {
       assert.equal((await state()).index, 3);
     }));
 
+  /** Waits until all pictures in sight are drawn. */
+  const pictured = (page, least = 1) =>
+    page.waitForFunction((wanted) => {
+      const strip = document.querySelector('.pictures').getBoundingClientRect();
+      const missing = [...document.querySelectorAll('.picture')].filter((picture) => {
+        const { left, right } = picture.getBoundingClientRect();
+        if (right <= strip.left || left >= strip.right) return false;
+        const canvas = picture.querySelector('canvas');
+        return canvas.getContext('2d').getImageData(4, 4, 1, 1).data[3] === 0;
+      });
+      return missing.length === 0 && window.locograph.state().pictures >= wanted;
+    }, least);
+
+  /** Pixels of one picture of the strip. */
+  const pictureOf = async (page, index) => {
+    const { width, height, data } = await page.evaluate((i) => {
+      const canvas = document.querySelectorAll('.picture canvas')[i];
+      const { width, height } = canvas;
+      return {
+        width,
+        height,
+        data: [...canvas.getContext('2d').getImageData(0, 0, width, height).data],
+      };
+    }, index);
+    return { width, height, data: Buffer.from(data) };
+  };
+
+  it('pictures each stance: the robot upright and whole, whatever the page shows', () =>
+    shown(
+      stancesScene(),
+      { hash: '#view=top&show=ghosts,collision&hide=surfaces,contacts,ground' },
+      async ({ page }) => {
+        await pictured(page, 5);
+        const captions = await page.locator('.picture').allTextContents();
+        assert.deepEqual(captions.map((text) => text.trim()), [
+          '0',
+          '1 −wheel_1',
+          '2 +wheel_1',
+          '3 −wheel_2',
+          '4 +wheel_2',
+        ]);
+        const [first, second] = [await pictureOf(page, 0), await pictureOf(page, 1)];
+        for (const picture of [first, second]) {
+          // The body is above, legs below it; nothing is cut off, and no collision shape is seen.
+          const above = share(picture, [0.2, 0.2, 0.8, 0.55], deepBlue);
+          const below = share(picture, [0.2, 0.65, 0.8, 1], deepBlue);
+          assert.ok(above > 0.15 && above > 2 * below, `${above} above, ${below} below`);
+          for (const rim of [
+            [0, 0, 0.01, 1],
+            [0.99, 0, 1, 1],
+            [0, 0, 1, 0.01],
+          ]) {
+            assert.equal(share(picture, rim, deepBlue), 0);
+          }
+          assert.ok(share(picture, [0, 0, 1, 1], orange) < 0.01);
+        }
+        // Contacts are dots with a white rim: one less in the second stance.
+        assert.ok(difference(first, second) > 0.001);
+        // The view itself shows what it showed.
+        const clip = await page.locator('#view').boundingBox();
+        const view = await browser.pixels(page, clip);
+        await page.evaluate(() => window.locograph.setTime(0));
+        assert.equal(difference(view, await browser.pixels(page, clip)), 0);
+      },
+    ));
+
+  it('goes to the stance whose picture is clicked, and marks the present one', () =>
+    shown(stancesScene(), {}, async ({ page, state }) => {
+      await pictured(page, 5);
+      const present = async () => {
+        const marked = page.locator('.picture[aria-current=step]');
+        assert.equal(await marked.count(), 1);
+        return Number((await marked.textContent()).trim().split(' ')[0]);
+      };
+      assert.equal(await present(), 0);
+      await page.locator('.picture').nth(3).click();
+      assert.equal((await state()).index, 3);
+      assert.equal((await state()).time, 3);
+      await page.waitForFunction(() => document.querySelectorAll('.picture')[3].ariaCurrent);
+      assert.equal(await present(), 3);
+      await page.keyboard.press('ArrowRight');
+      await page.waitForFunction(() => document.querySelectorAll('.picture')[4].ariaCurrent);
+      // The keyboard's focus goes along, and is on one picture only.
+      assert.match(await page.evaluate(() => document.activeElement.title), /^Stance 4/);
+      assert.equal(await page.locator('.picture[tabindex="0"]').count(), 1);
+    }));
+
+  it('draws of 60 stances the pictures in sight, and rolls to the present one', () =>
+    shown({ ...stancesScene(60), check: planScene().check }, {}, async ({ page, state }) => {
+      await pictured(page, 5);
+      await page.waitForTimeout(500);
+      assert.ok((await state()).pictures < 20);
+      assert.equal(await page.locator('.picture').count(), 60);
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 1280);
+      await page.evaluate(() => window.locograph.setTime(59));
+      await page.waitForFunction(() => {
+        const strip = document.querySelector('.pictures').getBoundingClientRect();
+        const { left, right } = document.querySelectorAll('.picture')[59].getBoundingClientRect();
+        return left >= strip.left && right <= strip.right;
+      });
+      await pictured(page, 20);
+      assert.ok(share(await pictureOf(page, 59), [0, 0, 1, 1], blue) > 0.05);
+      assert.ok((await state()).pictures < 40);
+      await page.locator('.pictures').hover();
+      await page.mouse.wheel(0, -400);
+      await page.waitForFunction(() => {
+        const { scrollLeft, scrollWidth, clientWidth } = document.querySelector('.pictures');
+        return scrollLeft < scrollWidth - clientWidth - 300;
+      });
+      assert.equal((await state()).index, 59);
+      assert.match(await page.locator('.picture.bad').textContent(), /^30/);
+    }));
+
+  it('draws pictures in the colours of the page, and none when they are switched off', async () => {
+    const lightness = ({ data }) => data.reduce((sum, value) => sum + value, 0) / data.length;
+    await shown(stancesScene(), { hash: '#theme=light' }, async ({ page, state }) => {
+      await pictured(page, 5);
+      const light = lightness(await pictureOf(page, 1));
+      await page.keyboard.press('t');
+      await page.waitForFunction(() => window.locograph.state().pictures === 5);
+      assert.ok(lightness(await pictureOf(page, 1)) < 0.8 * light);
+      const before = await page.locator('#view').boundingBox();
+      await page.keyboard.press('i');
+      assert.equal((await state()).layers.pictures, false);
+      assert.equal(await page.locator('.pictures').isVisible(), false);
+      assert.ok((await page.locator('#view').boundingBox()).height > before.height + 80);
+    });
+    await shown(stancesScene(), { hash: '#hide=pictures' }, async ({ page, state }) => {
+      await page.waitForTimeout(500);
+      assert.equal((await state()).pictures, 0);
+    });
+    await shown(planScene(), {}, async ({ page, state }) => {
+      assert.equal((await state()).pictures, null);
+      assert.equal(await page.locator('.pictures').count(), 0);
+    });
+  });
+
+  it('shows the tree that was searched when it is asked for, the way to the goal in green', () =>
+    shown({ ...stancesScene(), tree: stancesTree() }, { hash: '#view=top' }, async ({ page, state }) => {
+      const green = (r, g, b) => g > r + 50 && g > b + 25;
+      const fiery = (r, g, b) => r > 150 && r > b + 60 && g < r - 40;
+      await page.keyboard.press('d'); // Without dots and forces, green is the way alone.
+      await page.keyboard.press('f');
+      await pictured(page, 5);
+      const clip = await page.locator('#view').boundingBox();
+      assert.equal((await state()).layers.tree, false);
+      const before = await browser.pixels(page, clip);
+      assert.equal(share(before, [0, 0, 1, 1], green), 0);
+      assert.doesNotMatch(await page.textContent('.legend'), /tree/);
+      const picture = await pictureOf(page, 2);
+      await page.keyboard.press('e');
+      const after = await browser.pixels(page, clip);
+      assert.ok(share(after, [0, 0, 1, 1], green) > 0.0005);
+      assert.ok(share(after, [0, 0, 1, 1], fiery) > share(before, [0, 0, 1, 1], fiery) + 0.001);
+      assert.match(await page.textContent('.legend'), /first moves.*5 moves deep.*failed.*way to/s);
+      assert.match(await page.textContent('#panel'), /Tree of stances \(14 moves tried\)/);
+      // Pictures of stances are drawn without it.
+      await page.keyboard.press('t');
+      await page.keyboard.press('t');
+      await page.waitForFunction(() => window.locograph.state().pictures === 5);
+      assert.equal(difference(picture, await pictureOf(page, 2)), 0);
+    }));
+
   it('shows surfaces from the side of their normal, bars, and what of a sole bears', () =>
     shown(stancesScene(), { hash: '#t=0&view=top&ui=0' }, async ({ page, state }) => {
       const { layers } = await state();
@@ -401,6 +567,17 @@ describe('viewer', () => {
       [with_((scene) => scene.plan.times.pop()), /41 configurations but 40 times/],
       [with_((scene) => (scene.robot.joints[0].child = 99)), /refers to link 99/],
       [with_((scene) => (scene.robot.joints[1].child = 1)), /two parents/],
+      [
+        with_((scene) => (scene.tree = { ...stancesTree(), states: pack([1], Int32Array) })),
+        /15 centres, 15 parents and 1 states/,
+      ],
+      [
+        with_((scene) => {
+          const numbers = { centres: pack([0, 0, 0]), states: pack([1], Int32Array) };
+          scene.tree = { ...numbers, parents: pack([4], Int32Array) };
+        }),
+        /Node 0 of the tree comes before its parent 4/,
+      ],
     ];
     for (const [scene, message] of cases) {
       await shown(scene, {}, async ({ page }) => {

@@ -11,8 +11,9 @@ namespace locograph {
 namespace {
 
 constexpr int kFacets = 8;
-/// Points of the polygon that are nearer to each other than this are one.
+/// Corners that are nearer to each other, or less far out, are left out.
 constexpr double kSame_m = 1e-4;
+constexpr int kMostProgrammes = 40;
 
 constexpr double kNoBound = std::numeric_limits<double>::max();
 
@@ -72,11 +73,7 @@ class Programme {
     const int x = model_.numberColumns() - 2;
     model_.objective()[x] = -direction.x();
     model_.objective()[x + 1] = -direction.y();
-    // From the last direction's corner, and by the primal method, Clp now and then ends at a corner
-    // that is not the furthest.
-    model_.allSlackBasis(true);
-    model_.dual();
-    if (model_.status() > 1) model_.primal();
+    model_.primal();  // from the last direction's corner
     if (!model_.isProvenOptimal()) return false;
     const double* solution = model_.primalColumnSolution();
     point = origin_.head<2>() + Eigen::Vector2d(solution[x], solution[x + 1]);
@@ -136,8 +133,8 @@ class Programme {
     row_upper.insert(row_upper.end(), most_.begin(), most_.end());
     const std::vector<double> costs(lower.size(), 0.0);
     model_.setLogLevel(0);
-    // All is of the order of one; with scaling, Clp now and then ends anywhere.
-    model_.scaling(0);
+    model_.scaling(0);            // all is of the order of one
+    model_.setPerturbation(102);  // none: so small a programme does not stall
     model_.setPrimalTolerance(1e-9);
     model_.setDualTolerance(1e-9);
     model_.loadProblem(static_cast<int>(lower.size()), rows, starts.data(), indices.data(),
@@ -153,29 +150,32 @@ class Programme {
   ClpSimplex model_;
 };
 
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
+/// Appends the corners between two, counter-clockwise.
+void corners_between(Programme& programme, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                     int& programmes, std::vector<Eigen::Vector2d>& corners) {
+  const Eigen::Vector2d along = to - from;
+  if (along.norm() < kSame_m || ++programmes > kMostProgrammes) return;
+  const Eigen::Vector2d out = Eigen::Vector2d(along.y(), -along.x()).normalized();
+  Eigen::Vector2d corner;
+  if (!programme.furthest(out, corner) || out.dot(corner - from) < kSame_m) return;
+  corners_between(programme, from, corner, programmes, corners);
+  corners.push_back(corner);
+  corners_between(programme, corner, to, programmes, corners);
 }
 
-/// Counter-clockwise. Andrew's monotone chain.
-std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
-  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
-    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-  });
-  std::vector<Eigen::Vector2d> hull;
-  for (int pass = 0; pass < 2; ++pass) {
-    const std::size_t start = hull.size();
-    for (const Eigen::Vector2d& point : points) {
-      while (hull.size() >= start + 2 && cross(hull.back() - hull[hull.size() - 2],
-                                               point - hull.back()) <= 1e-3 * kSame_m * kSame_m) {
-        hull.pop_back();
-      }
-      hull.push_back(point);
-    }
-    hull.pop_back();
-    std::reverse(points.begin(), points.end());
+/// Counter-clockwise; fewer than three where there is no area.
+std::vector<Eigen::Vector2d> corners_of(Programme& programme) {
+  Eigen::Vector2d left, right;
+  if (!programme.furthest(-Eigen::Vector2d::UnitX(), left) ||
+      !programme.furthest(Eigen::Vector2d::UnitX(), right)) {
+    return {};
   }
-  return hull;
+  int programmes = 2;
+  std::vector<Eigen::Vector2d> corners = {left};
+  corners_between(programme, left, right, programmes, corners);
+  corners.push_back(right);
+  corners_between(programme, right, left, programmes, corners);
+  return corners;
 }
 
 }  // namespace
@@ -223,34 +223,18 @@ BalanceRegion balance_region(double mass_kg, std::span<const BearingContact> con
     return region;
   }
   Programme programme(mass_kg * standard_gravity().norm(), contacts, margin);
-  std::vector<Eigen::Vector2d> points;
-  Eigen::Vector2d point;
-  constexpr int kDirections = 8;
-  for (int k = 0; k < kDirections; ++k) {
-    const double angle = k * 2.0 * std::numbers::pi / kDirections;
-    if (!programme.furthest({std::cos(angle), std::sin(angle)}, point)) return region;
-    points.push_back(point);
-  }
-  std::vector<Eigen::Vector2d> hull = convex_hull(points);
-  // Across each edge once more.
-  points = hull;
-  for (std::size_t i = 0; i < hull.size() && hull.size() >= 2; ++i) {
-    const Eigen::Vector2d along = hull[(i + 1) % hull.size()] - hull[i];
-    if (along.norm() < 10.0 * kSame_m) continue;
-    if (programme.furthest({along.y(), -along.x()}, point)) points.push_back(point);
-  }
-  hull = convex_hull(std::move(points));
-  if (hull.size() < 3) return region;
-  for (std::size_t i = 0; i < hull.size(); ++i) {
-    const Eigen::Vector2d along = hull[(i + 1) % hull.size()] - hull[i];
+  const std::vector<Eigen::Vector2d> corners = corners_of(programme);
+  if (corners.size() < 3) return region;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector2d along = corners[(i + 1) % corners.size()] - corners[i];
     if (along.norm() < kSame_m) continue;
     const Eigen::Vector2d normal = Eigen::Vector2d(along.y(), -along.x()).normalized();
-    region.sides.push_back({normal, normal.dot(hull[i])});
+    region.sides.push_back({normal, normal.dot(corners[i])});
   }
   region.width_m = std::numeric_limits<double>::infinity();
   for (const BalanceRegion::Side& side : region.sides) {
     double across = 0.0;
-    for (const Eigen::Vector2d& corner : hull) {
+    for (const Eigen::Vector2d& corner : corners) {
       across = std::max(across, side.offset_m - side.normal.dot(corner));
     }
     region.width_m = std::min(region.width_m, across);

@@ -9,8 +9,9 @@
 /// Bretl and Lall, "Testing static equilibrium for legged robots", IEEE Transactions on Robotics
 /// 24(4), 2008: gravity has no moment about the vertical through the centre of mass, so that its
 /// height does not matter, and the places that friction and the limits of force allow are convex.
-/// Linear programmes find its furthest points in eight directions and across each edge between
-/// those. The polygon of these points lies inside the true region. Torque limits are not in it.
+/// Linear programmes find the leftmost and the rightmost point, then the furthest one across each
+/// edge between two, until there is none. The polygon of these points lies inside the true region.
+/// Torque limits are not in it.
 
 #include <locograph/robots/contact.h>
 

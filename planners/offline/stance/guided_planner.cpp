@@ -1,10 +1,12 @@
 #include <locograph/common/uniform.h>
 #include <locograph/planners/offline/stance/guided_planner.h>
 #include <locograph/planners/offline/stance/plan_stances.h>
+#include <locograph/planners/offline/stance/stance_tree.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <queue>
 #include <random>
 #include <unordered_map>
@@ -13,13 +15,15 @@
 namespace locograph {
 namespace {
 
-constexpr double kGreed = 3.0, kNoise = 4.0, kUnlikely = 4.0, kFailedHere = 1.0, kLater = 6.0;
-
-constexpr int kFirstTree = 150, kMostMoves = 40, kMostDeadEnds = 20, kLiftRestarts = 4,
+constexpr double kGreed = 3.0, kNoise = 4.0, kUnlikely = 4.0, kFailedHere = 1.0, kCrowded = 2.0,
+                 kLater = 6.0;
+constexpr int kFirstTree = 75, kMostMoves = 40, kMostDeadEnds = 20, kLiftRestarts = 4,
               kLaterRestarts = 2;
 constexpr double kTreeGrowth = 1.25;
 /// Of its reach, what an end effector gets ahead in a move on average.
 constexpr double kUsualShare = 0.7;
+/// Of its reach: how far apart contacts of an end effector are that count as roughly the same.
+constexpr double kRoughShare = 0.3;
 
 /// How often moves like one were found: of the same length; to the same side of the same other
 /// contact.
@@ -98,22 +102,20 @@ class GuidedSearch {
  public:
   GuidedSearch(StanceSpace& space, const StancePlannerOptions& options, StancePlan& result)
       : space_(space),
-        options_(options),
         result_(result),
+        tree_(space, options, result),
         random_(options.seed),
         experience_(space) {}
 
   /// Appends the way to the goal; false if there is none.
   bool reach(const Footing& goal, StancePath& path) {
-    if (goal_ != goal) began_ = space_.transitions;
     goal_ = goal;
     double most = kFirstTree;
     int tree = 0, dead_ends = 0;
     while (!space_.ended()) {
       choose_manner(tree++);
-      grow_until_ = space_.transitions + static_cast<int>(most);
-      const int limit = options_.max_transitions;
-      if (limit > 0) grow_until_ = std::min(grow_until_, began_ + limit);
+      grow_until_ =
+          space_.transitions + std::min(static_cast<int>(most), space_.transitions_left());
       const int found = grow(path.footings.back(), path.configurations.back());
       if (found >= 0) {
         trace(found, path);
@@ -121,7 +123,7 @@ class GuidedSearch {
       }
       // Other noise, other moves; but not for ever where there are none.
       if (exhausted_ && ++dead_ends >= kMostDeadEnds) return false;
-      if (limit > 0 && space_.transitions - began_ >= limit) return false;
+      if (space_.tried_enough()) return false;
       most *= kTreeGrowth;
     }
     return false;
@@ -149,24 +151,28 @@ class GuidedSearch {
                       std::vector<int>(effectors, 0), std::vector<Eigen::VectorXd>(effectors),
                       std::vector<signed char>(effectors, 0)});
     ++result_.vertices_in_tree;
+    tree_.add(nodes_.back().footing, parent);
     const int number = static_cast<int>(nodes_.size()) - 1;
-    note_best(nodes_.back().footing);
+    ++crowds_[roughly(nodes_.back().footing)];
+    note_best(result_, space_, nodes_.back().footing, goal_);
     if (nodes_.back().footing != goal_) push_moves(number);
     return number;
   }
 
-  void note_best(const Footing& footing) {
-    int reached = 0;
-    for (std::size_t e = 0; e < footing.size(); ++e) {
-      if (goal_[e] != kFree && footing[e] == goal_[e]) ++reached;
+  /// Where the end effectors are in a node, and the moves that each has to go.
+  void locate(const Node& node) {
+    positions_.clear();
+    to_go_of_node_.clear();
+    for (int e = 0; e < space_.effectors(); ++e) {
+      const int at = node.footing[static_cast<std::size_t>(e)];
+      positions_.push_back(position(node, e, at));
+      to_go_of_node_.push_back(moves_to_go(e, at, positions_.back()));
     }
-    if (reached <= result_.best_contacts) return;
-    result_.best_contacts = reached;
-    result_.best = space_.stance(footing);
   }
 
   void push_moves(int number) {
     const Node& node = nodes_[static_cast<std::size_t>(number)];
+    locate(node);
     for (int e = 0; e < space_.effectors(); ++e) {
       const std::size_t k = static_cast<std::size_t>(e);
       const int now = node.footing[k], wanted = goal_[k];
@@ -175,15 +181,12 @@ class GuidedSearch {
           nodes_[static_cast<std::size_t>(node.parent)].footing[k] != now) {
         continue;
       }
+      to_go_ = to_go_of_node_;
       double others = 0.0;
-      to_go_.assign(static_cast<std::size_t>(space_.effectors()), 0.0);
-      for (int o = 0; o < space_.effectors(); ++o) {
-        if (o == e) continue;
-        const int at = node.footing[static_cast<std::size_t>(o)];
-        to_go_[static_cast<std::size_t>(o)] = moves_to_go(o, at, position(node, o, at));
-        others += to_go_[static_cast<std::size_t>(o)];
+      for (std::size_t o = 0; o < to_go_.size(); ++o) {
+        if (o != k) others += to_go_[o];
       }
-      const Eigen::Vector3d from = position(node, e, now);
+      const Eigen::Vector3d from = positions_[k];
       const double reach = reach_share_ * space_.reach_m(e);
       const int cost = now == kFree ? 1 : 2;
       moves_.clear();
@@ -222,10 +225,10 @@ class GuidedSearch {
 
   /// Trees differ: in how long moves are and how evenly end effectors move.
   void choose_manner(int tree) {
-    constexpr double kReaches[] = {0.7, 0.5, 1.0, 0.4};
-    constexpr double kUneven[] = {4.0, 8.0, 2.0, 0.0};
+    constexpr double kReaches[] = {0.5, 0.7, 0.4, 1.0};
+    constexpr double kUneven[] = {8.0, 4.0, 4.0, 0.0};
     reach_share_ = kReaches[tree % 4];
-    uneven_ = kUneven[(tree + tree / 4) % 4];
+    uneven_ = kUneven[tree % 4];
   }
 
   /// How much further some end effectors are on their way than others: those far ahead hold the
@@ -250,7 +253,28 @@ class GuidedSearch {
   double promise(const Move& move) const {
     const Node& node = nodes_[static_cast<std::size_t>(move.node)];
     return move.plain + kUnlikely * unlikelihood(move) +
-           kFailedHere * node.failed[static_cast<std::size_t>(move.effector)];
+           kFailedHere * node.failed[static_cast<std::size_t>(move.effector)] +
+           kCrowded * crowd(with(node.footing, move.effector, move.place));
+  }
+
+  /// Nodes whose contacts are roughly where these are: hundreds of ways to put the hands must not
+  /// keep the feet waiting.
+  int crowd(const Footing& footing) const {
+    const auto found = crowds_.find(roughly(footing));
+    return found == crowds_.end() ? 0 : found->second;
+  }
+  std::vector<int> roughly(const Footing& footing) const {
+    std::vector<int> cells;
+    for (std::size_t e = 0; e < footing.size(); ++e) {
+      if (footing[e] == kFree) {
+        cells.push_back(std::numeric_limits<int>::max());
+        continue;
+      }
+      const Eigen::Vector3d& at = space_.place(footing[e]).bearing.contact.position;
+      const double cell = kRoughShare * space_.reach_m(static_cast<int>(e));
+      for (int i = 0; i < 3; ++i) cells.push_back(static_cast<int>(std::lround(at[i] / cell)));
+    }
+    return cells;
   }
 
   double unlikelihood(const Move& move) const {
@@ -264,15 +288,13 @@ class GuidedSearch {
     nodes_.clear();
     open_ = {};
     known_.clear();
+    crowds_.clear();
     exhausted_ = false;
     known_.insert(start);
-    first_to_go_.assign(start.size(), 0.0);
-    const Node root{start, q, -1, 0, {}, {}, {}};
-    for (int e = 0; e < space_.effectors(); ++e) {
-      const int at = start[static_cast<std::size_t>(e)];
-      first_to_go_[static_cast<std::size_t>(e)] = moves_to_go(e, at, position(root, e, at));
-    }
-    if (add(start, q, -1, 0) >= 0 && start == goal_) return 0;
+    locate({start, q, -1, 0, {}, {}, {}});
+    first_to_go_ = to_go_of_node_;
+    add(start, q, -1, 0);
+    if (start == goal_) return 0;
     while (!open_.empty()) {
       if (space_.ended() || space_.transitions >= grow_until_) return -1;
       Move move = open_.top();
@@ -308,7 +330,11 @@ class GuidedSearch {
             space_.try_transition(before, between, nodes_[n].configuration,
                                   tried == 0 ? kLiftRestarts : 5 * move.restarts);
         tried = static_cast<signed char>(move.restarts + 1);
-        if (lift.found) nodes_[n].lifted[effector] = lift.configuration;
+        if (lift.found) {
+          nodes_[n].lifted[effector] = lift.configuration;
+        } else {
+          tree_.add_failed(between, move.node);
+        }
       }
       if (nodes_[n].lifted[effector].size() == 0) {
         again(move);
@@ -320,12 +346,10 @@ class GuidedSearch {
       known_.insert(after);
       return add(after, start, move.node, nodes_[n].stances + 1);
     }
-    const Eigen::Vector3d from = position(nodes_[n], move.effector, before[effector]);
-    const double share = (space_.place(move.place).bearing.contact.position - from).norm() /
-                         space_.reach_m(move.effector);
     const StanceSpace::Attempt put = space_.try_transition(between, after, start, move.restarts);
-    experience_.learn(before, move.effector, move.place, share, put.found);
+    experience_.learn(before, move.effector, move.place, move.share, put.found);
     if (!put.found) {
+      tree_.add_failed(after, move.node);
       again(move);
       return -1;
     }
@@ -344,38 +368,40 @@ class GuidedSearch {
     open_.push(move);
   }
 
-  void trace(int node, StancePath& path) const {
+  void trace(int node, StancePath& path) {
     std::vector<int> way;
     for (int n = node; n >= 0; n = nodes_[static_cast<std::size_t>(n)].parent) way.push_back(n);
     std::reverse(way.begin(), way.end());
+    for (const int n : way) tree_.mark(n);
     for (std::size_t i = 1; i < way.size(); ++i) {
       const Node& before = nodes_[static_cast<std::size_t>(way[i - 1])];
       const Node& after = nodes_[static_cast<std::size_t>(way[i])];
-      for (std::size_t e = 0; e < before.footing.size(); ++e) {
-        if (before.footing[e] == after.footing[e]) continue;
-        if (before.footing[e] != kFree && after.footing[e] != kFree) {
-          path.append(without(before.footing, static_cast<int>(e)), before.lifted[e]);
-        }
+      const int moved = changed_effector(before.footing, after.footing);
+      const std::size_t e = static_cast<std::size_t>(moved);
+      if (before.footing[e] != kFree && after.footing[e] != kFree) {
+        path.append(without(before.footing, moved), before.lifted[e]);
       }
       path.append(after.footing, after.configuration);
     }
   }
 
   StanceSpace& space_;
-  const StancePlannerOptions& options_;
   StancePlan& result_;
+  StanceTree tree_;
   std::mt19937_64 random_;
   Experience experience_;
   Footing goal_;
   std::vector<Node> nodes_;
   std::priority_queue<Move> open_;
   std::unordered_set<Footing, FootingHash> known_;
+  std::unordered_map<std::vector<int>, int, FootingHash> crowds_;  ///< nodes of each rough footing
   std::vector<Move> moves_;
+  std::vector<Eigen::Vector3d> positions_;  ///< locate() gives these two
+  std::vector<double> to_go_of_node_;
   std::vector<double> to_go_, first_to_go_;
-  double uneven_ = 6.0, reach_share_ = 1.0;
+  double uneven_ = 0.0, reach_share_ = 0.0;  ///< choose_manner() sets them for each tree
   long next_ = 0;
   int grow_until_ = 0;
-  int began_ = 0;  ///< transitions tried before this goal
   bool exhausted_ = false;
 };
 
@@ -388,12 +414,7 @@ const std::string& GuidedPlanner::name() const {
 
 StancePlan GuidedPlanner::plan(const StanceProblem& problem,
                                const StancePlannerOptions& options) const {
-  return plan_stances(
-      problem, options, [](StanceSpace& space, const StancePlannerOptions& o, StancePlan& result) {
-        auto search = std::make_shared<GuidedSearch>(space, o, result);
-        return
-            [search](const Footing& goal, StancePath& path) { return search->reach(goal, path); };
-      });
+  return plan_with<GuidedSearch>(problem, options);
 }
 
 }  // namespace locograph

@@ -8,8 +8,9 @@ namespace locograph {
 /// Best-first search over moves: an end effector is lifted and put down elsewhere. What promises
 /// most is tried first, by stances so far, stances to go were there no balance and no limits (each
 /// end effector by itself, in moves of the lengths that have worked), how often moves like it have
-/// failed, and noise. Transitions are only solved for what is tried. After 150 transitions the tree
-/// is begun anew with other noise, each time with a quarter more; what failed is remembered.
+/// failed, how crowded the tree is there, and noise. Transitions are only solved for what is tried.
+/// After 75 transitions the tree is begun anew with other noise, each time with a quarter more;
+/// what failed is remembered.
 class GuidedPlanner final : public StancePlanner {
  public:
   const std::string& name() const override;

@@ -1,14 +1,26 @@
 #include <locograph/planners/offline/stance/plan_stances.h>
+#include <locograph/planners/offline/stance/stance_tree.h>
 
 namespace locograph {
 namespace {
 
-std::string why_not_reached(const StancePlan& plan, const StanceSpace& space, std::size_t goal,
-                            std::size_t goals) {
-  std::string reason = goals > 1 ? "goal " + std::to_string(goal + 1) + " of " +
+/// Ways to a goal that the judge refused.
+struct RefusedWays {
+  int count = 0;
+  std::string last_violation = {};
+};
+
+std::string why_not_reached(const StancePlan& plan, const StanceSpace& space,
+                            const RefusedWays& refused, std::size_t goals) {
+  std::string reason = goals > 1 ? "goal " + std::to_string(plan.goals_reached + 1) + " of " +
                                        std::to_string(goals) + " is not reached"
                                  : "the goal is not reached";
-  if (space.ended()) reason += ": the time allowed is used up";
+  if (space.ended()) reason += space.stopped() ? ": interrupted" : ": the time allowed is used up";
+  if (refused.count > 0) {
+    reason += "; the judge refused " + std::to_string(refused.count) +
+              (refused.count == 1 ? " way to it: " : " ways to it, the last one: ") +
+              refused.last_violation;
+  }
   if (plan.failures.empty()) return reason;
   const StanceFailure& most = plan.failures.front();
   return reason + "; most often in the way: " + most.what + ", for " + most.end_effector + " (" +
@@ -18,16 +30,31 @@ std::string why_not_reached(const StancePlan& plan, const StanceSpace& space, st
 
 }  // namespace
 
-Motion stances_motion(const StancePlan& plan) {
+Motion stances_motion(std::vector<Stance> stances, std::vector<Eigen::VectorXd> configurations) {
   Motion motion;
   motion.stances_only = true;
-  motion.stances = plan.stances;
-  motion.configurations = plan.configurations;
-  for (std::size_t i = 0; i < plan.configurations.size(); ++i) {
+  motion.stances = std::move(stances);
+  motion.configurations = std::move(configurations);
+  for (std::size_t i = 0; i < motion.configurations.size(); ++i) {
     motion.time_s.push_back(static_cast<double>(i));
     motion.stance_from.push_back(static_cast<int>(i));
   }
   return motion;
+}
+
+Motion stances_motion(const StancePlan& plan) {
+  return stances_motion(plan.stances, plan.configurations);
+}
+
+void note_best(StancePlan& plan, const StanceSpace& space, const Footing& footing,
+               const Footing& goal) {
+  int reached = 0;
+  for (std::size_t e = 0; e < footing.size(); ++e) {
+    if (goal[e] != kFree && footing[e] == goal[e]) ++reached;
+  }
+  if (reached <= plan.best_contacts) return;
+  plan.best_contacts = reached;
+  plan.best = space.stance(footing);
 }
 
 void StancePlannerOptions::validate() const {
@@ -53,11 +80,14 @@ StancePlan plan_stances(const StanceProblem& problem, const StancePlannerOptions
   StancePath path;
   path.append(space.footing(problem.start), problem.start_configuration);
   plan.success = true;
+  RefusedWays refused;
   for (std::size_t g = 0; g < problem.goals.size() && plan.success; ++g) {
     const Footing goal = space.footing(problem.goals[g]);
-    const std::size_t first = path.changes();
+    const std::size_t first = path.changes(), first_node = plan.tree.size();
     plan.best_contacts = 0;
     plan.best = {};
+    refused = {};
+    space.begin_goal();
     StancePath tried = path;
     for (;;) {
       tried.footings.resize(first + 1);
@@ -72,11 +102,14 @@ StancePlan plan_stances(const StanceProblem& problem, const StancePlannerOptions
       plan.judge_s += judging.seconds();
       plan.report = judged.report;
       if (judged.report.feasible) break;
+      forget_way(plan, first_node);
       if (judged.refused == 0) {
         plan.success = false;
         plan.reason = "refused: " + violation_text(judged.report.worst());
         break;
       }
+      ++refused.count;
+      refused.last_violation = violation_text(judged.report.worst());
     }
     if (!plan.success) break;
     path = std::move(tried);
@@ -91,8 +124,7 @@ StancePlan plan_stances(const StanceProblem& problem, const StancePlannerOptions
   if (plan.success) {
     plan.reason = "planned";
   } else if (plan.reason.empty()) {
-    plan.reason = why_not_reached(plan, space, static_cast<std::size_t>(plan.goals_reached),
-                                  problem.goals.size());
+    plan.reason = why_not_reached(plan, space, refused, problem.goals.size());
   }
   plan.total_s = watch.seconds();
   return plan;

@@ -1,6 +1,7 @@
 #include <locograph/common/uniform.h>
 #include <locograph/planners/offline/stance/plan_stances.h>
 #include <locograph/planners/offline/stance/rrt_planner.h>
+#include <locograph/planners/offline/stance/stance_tree.h>
 
 #include <algorithm>
 #include <cmath>
@@ -60,16 +61,15 @@ Eigen::AlignedBox3d box_around(const World& world, const Eigen::Vector3d& centre
 class RrtSearch {
  public:
   RrtSearch(StanceSpace& space, const StancePlannerOptions& options, StancePlan& result)
-      : space_(space), options_(options), result_(result), random_(options.seed) {}
+      : space_(space), result_(result), tree_(space, options, result), random_(options.seed) {}
 
   /// Appends the way to the goal; false if there is none.
   bool reach(const Footing& goal, StancePath& path) {
-    const int before = space_.transitions, limit = options_.max_transitions;
     begin(goal, path.footings.back(), path.configurations.back());
     if (vertices_.front().footing == goal) return true;
     for (int idle = 0; idle < kMostIdle && !space_.ended();) {
+      if (space_.tried_enough()) return false;
       const int tried = space_.transitions;
-      if (limit > 0 && tried - before >= limit) return false;
       const int reached = iterate();
       if (reached >= 0 && vertex(reached).footing == goal_) {
         trace(reached, path);
@@ -165,13 +165,14 @@ class RrtSearch {
     Footing to = next(vertex(number), target);
     if (known_.contains(to)) return -1;
     const Footing from = vertex(number).footing;
-    Footing both = from;
-    both.insert(both.end(), to.begin(), to.end());
-    std::size_t& tries = tries_[std::move(both)];
+    std::size_t& tries = tries_[joined(from, to)];
     if (tries >= std::size(kRestarts)) return -1;
     StanceSpace::Attempt attempt =
         space_.try_transition(from, to, vertex(number).configuration, kRestarts[tries++]);
-    if (!attempt.found) return -1;
+    if (!attempt.found) {
+      tree_.add_failed(to, number);
+      return -1;
+    }
     const bool adds = contacts_of(to) > contacts_of(from);
     return add(std::move(to), std::move(attempt.configuration), number,
                adds ? target.effector : kNobody);
@@ -212,32 +213,27 @@ class RrtSearch {
       aims_.push_back(added);  // not in the goal: to be lifted again
     }
     known_.insert(footing);
-    note_best(footing);
+    note_best(result_, space_, footing, goal_);
+    tree_.add(footing, parent);
     vertices_.push_back({std::move(footing), std::move(q), parent, added, std::move(positions)});
     ++result_.vertices_in_tree;
     return static_cast<int>(vertices_.size()) - 1;
   }
 
-  void note_best(const Footing& footing) {
-    int reached = 0;
-    for (std::size_t e = 0; e < footing.size(); ++e) {
-      if (goal_[e] != kFree && footing[e] == goal_[e]) ++reached;
-    }
-    if (reached <= result_.best_contacts) return;
-    result_.best_contacts = reached;
-    result_.best = space_.stance(footing);
-  }
-
-  void trace(int number, StancePath& path) const {
+  void trace(int number, StancePath& path) {
     std::vector<int> way;
     for (int n = number; n > 0; n = vertex(n).parent) way.push_back(n);
     std::reverse(way.begin(), way.end());
-    for (const int n : way) path.append(vertex(n).footing, vertex(n).configuration);
+    tree_.mark(0);
+    for (const int n : way) {
+      tree_.mark(n);
+      path.append(vertex(n).footing, vertex(n).configuration);
+    }
   }
 
   StanceSpace& space_;
-  const StancePlannerOptions& options_;
   StancePlan& result_;
+  StanceTree tree_;
   std::mt19937_64 random_;
   Footing goal_;
   int fewest_ = 1;         ///< contacts that have to remain
@@ -246,7 +242,7 @@ class RrtSearch {
   std::vector<Vertex> vertices_;
   std::vector<double> sums_;
   std::unordered_set<Footing, FootingHash> known_;
-  std::unordered_map<Footing, std::size_t, FootingHash> tries_;  ///< both, one behind the other
+  std::unordered_map<Footing, std::size_t, FootingHash> tries_;  ///< of transitions: joined()
 };
 
 }  // namespace
@@ -258,12 +254,7 @@ const std::string& RrtPlanner::name() const {
 
 StancePlan RrtPlanner::plan(const StanceProblem& problem,
                             const StancePlannerOptions& options) const {
-  return plan_stances(
-      problem, options, [](StanceSpace& space, const StancePlannerOptions& o, StancePlan& result) {
-        auto search = std::make_shared<RrtSearch>(space, o, result);
-        return
-            [search](const Footing& goal, StancePath& path) { return search->reach(goal, path); };
-      });
+  return plan_with<RrtSearch>(problem, options);
 }
 
 }  // namespace locograph

@@ -25,8 +25,8 @@ struct StancePath {
   }
 };
 
-/// Leaves out moves that checked transitions make unnecessary, from the footing `first` on; the
-/// footings `kept` stay. Returns how many stances fewer.
+/// Leaves out moves that checked transitions make unnecessary. The footings up to number `first`
+/// stay, and so does the last one. Returns how many stances fewer.
 int shorten(StanceSpace& space, StancePath& path, std::size_t first);
 
 /// Judges the whole path; transitions that the judge refuses are solved again with wider margins.
@@ -37,6 +37,7 @@ struct JudgedPath {
 };
 JudgedPath judge_path(StanceSpace& space, const Judge& judge, StancePath& path);
 
+/// See stances_motion.
 Motion path_motion(const StanceSpace& space, const StancePath& path);
 
 }  // namespace locograph

@@ -28,6 +28,7 @@
 #include <Eigen/Core>
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -44,6 +45,15 @@ struct StanceProblem {
   CheckOptions check;                   ///< what the judge is asked
 };
 
+/// One change of stance that a planner asked for, and what came of it.
+struct TransitionAttempt {
+  Stance from, to;
+  Eigen::VectorXd start;  ///< the configuration it was looked for from
+  int restarts = 0;       ///< at most
+  bool found = false;
+  double seconds = 0.0;
+};
+
 struct StancePlannerOptions {
   std::uint64_t seed = 0;
   Deadline deadline;
@@ -53,6 +63,10 @@ struct StancePlannerOptions {
   double reach = 0.7;
   /// Transitions that may be tried for each goal; 0: no end but the deadline.
   int max_transitions = 20000;
+  /// Told of every transition of the search and of shortening, in their order, by the thread that
+  /// plans; may be empty.
+  std::function<void(const TransitionAttempt&)> observe = nullptr;
+  bool keep_tree = false;  ///< StancePlan::tree is filled
 
   /// Throws Error naming the option that is out of range.
   void validate() const;
@@ -63,6 +77,14 @@ struct StanceFailure {
   std::string end_effector;  ///< that was to move
   std::string what;          ///< name of a TransitionFailure, or of the judge's constraint
   int count = 0;
+};
+
+/// A stance that the search tried to come to.
+struct StanceTreeNode {
+  Stance stance;
+  int parent = -1;  ///< an earlier node; -1: a tree begins here
+  bool found = false;
+  bool on_way = false;  ///< to a goal, before moves were left out of that way
 };
 
 struct StancePlan {
@@ -78,11 +100,14 @@ struct StancePlan {
   int vertices_in_tree = 0, iterations = 0;
   int transitions = 0, transitions_found = 0;
   std::vector<StanceFailure> failures;  ///< the most frequent first
+  std::vector<StanceTreeNode> tree;     ///< in the order of trying, one tree after the other
   CheckReport report;                   ///< of the judge
   double transitions_s = 0.0, judge_s = 0.0, total_s = 0.0;
 };
 
-/// The plan as a motion that holds still: what the judge is asked.
+/// Stances and as many configurations as a motion that holds still, one vertex a second: what the
+/// judge is asked.
+Motion stances_motion(std::vector<Stance> stances, std::vector<Eigen::VectorXd> configurations);
 Motion stances_motion(const StancePlan& plan);
 
 class StancePlanner {

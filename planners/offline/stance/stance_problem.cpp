@@ -2,15 +2,18 @@
 #include <locograph/planners/offline/stance/stance_problem.h>
 #include <locograph/planners/offline/stance/stance_space.h>
 #include <locograph/planners/posture/posture_solver.h>
+#include <locograph/planners/scenario/contact_place.h>
+#include <locograph/planners/scenario/move_contacts.h>
 #include <locograph/planners/scenario/snap_to_places.h>
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace locograph {
 namespace {
 
-constexpr int kMostAttempts = 4;
+constexpr int kMostAttempts = 4, kMostDraws = 20;
 
 /// Runs f; what it throws is the fault of a line of the scenario.
 template <class F>
@@ -48,17 +51,12 @@ Eigen::VectorXd given_configuration(const Scenario& scenario, const Robot& robot
   return q;
 }
 
-}  // namespace
-
-StartedProblem stance_problem(const Scenario& scenario) {
-  if (!scenario.contacts)
-    throw Error(scenario.source, 0, "no <start> and <goal>", "a contact task");
+/// The scenario's task as it says it, without a start configuration.
+StanceProblem problem_of(const Scenario& scenario) {
   const ContactTask& task = *scenario.contacts;
-  StartedProblem started;
-  StanceProblem& problem = started.problem;
+  StanceProblem problem;
   problem.robot =
       std::make_shared<const RobotParameter>(scenario.urdf, scenario.srdf, scenario.robot);
-  const Robot& robot = *problem.robot->robot;
   problem.world = world_of(scenario);
   problem.end_effectors = scenario.end_effectors;
   problem.start = task.start;
@@ -69,24 +67,29 @@ StartedProblem stance_problem(const Scenario& scenario) {
   problem.check.known = scenario.end_effectors;
   problem.check.enforce_torque_limits = scenario.enforce_torque_limits;
   problem.check.effort_scale = scenario.effort_scale;
-  for (std::size_t e = 0; e < scenario.end_effectors.size(); ++e) {
-    blame_line(scenario, scenario.end_effector_lines[e],
-               [&] { require_sound_effector(robot, scenario.end_effectors[e]); });
-  }
-  for (std::size_t g = 0; g < task.goals.size(); ++g) {
-    blame_line(scenario, task.goal_lines[g],
-               [&] { require_sound_stance(robot, problem.goals[g]); });
-  }
-  Eigen::VectorXd given;
-  blame_line(scenario, task.start_line, [&] {
-    require_sound_stance(robot, problem.start);
-    given = given_configuration(scenario, robot, problem.start);
-  });
-  problem.start_configuration = given;
+  return problem;
+}
 
-  const Judge judge(problem.robot->robot, problem.world);
+void require_sound_goals(const Scenario& scenario, const StanceProblem& problem) {
+  for (std::size_t g = 0; g < problem.goals.size(); ++g) {
+    blame_line(scenario, scenario.contacts->goal_lines[g], [&] {
+      require_sound_stance(*problem.robot->robot, problem.goals[g]);
+      for (const Contact& contact : problem.goals[g].contacts) {
+        if (lies_on_something(problem.world, contact)) continue;
+        throw Error("the contact of " + contact.name() + " touches nothing",
+                    "one on a surface or a bar of the environment");
+      }
+    });
+  }
+}
+
+/// Finds a configuration that stands at the start, the given one if it does. Returns why there is
+/// none; empty: found.
+std::string find_start(const Judge& judge, const Eigen::VectorXd& given, StartedProblem& started) {
+  StanceProblem& problem = started.problem;
+  problem.start_configuration = given;
   const CheckReport as_given = judge.check(given, problem.start, problem.check);
-  if (as_given.feasible) return started;
+  if (as_given.feasible) return "";
   const StancePlannerOptions options;
   StanceSpace space(problem, options);
   std::string reason;
@@ -103,14 +106,56 @@ StartedProblem stance_problem(const Scenario& scenario) {
     }
     problem.start_configuration = found.configuration;
     started.moved_base_m = (found.configuration.head<3>() - given.head<3>()).norm();
-    started.moved_joint_rad =
-        (found.configuration - given).tail(robot.active_joint_count()).cwiseAbs().maxCoeff();
-    return started;
+    started.moved_joint_rad = (found.configuration - given)
+                                  .tail(problem.robot->robot->active_joint_count())
+                                  .cwiseAbs()
+                                  .maxCoeff();
+    return "";
   }
-  throw Error(scenario.source, task.start_line,
-              "no configuration stands at the start: " + reason + "; as given, " +
-                  violation_text(as_given.worst()),
-              "contacts that can be held");
+  return reason + "; as given, " + violation_text(as_given.worst());
+}
+
+}  // namespace
+
+StartedProblem stance_problem(const Scenario& scenario, const ContactMoves& moves) {
+  if (!scenario.contacts)
+    throw Error(scenario.source, 0, "no <start> and <goal>", "a contact task");
+  const int start_line = scenario.contacts->start_line;
+  StartedProblem started;
+  StanceProblem& problem = started.problem;
+  problem = problem_of(scenario);
+  const Robot& robot = *problem.robot->robot;
+  for (std::size_t e = 0; e < scenario.end_effectors.size(); ++e) {
+    blame_line(scenario, scenario.end_effector_lines[e],
+               [&] { require_sound_effector(robot, scenario.end_effectors[e]); });
+  }
+  require_sound_goals(scenario, problem);
+  blame_line(scenario, start_line, [&] { require_sound_stance(robot, problem.start); });
+
+  const bool moved = moves.most_m > 0.0;
+  std::mt19937_64 goal_places(2 * moves.seed), start_places(2 * moves.seed + 1);
+  if (moved) {
+    for (Stance& goal : problem.goals) {
+      move_contacts(goal, problem.world, moves.most_m, goal_places);
+    }
+    require_sound_goals(scenario, problem);
+  }
+  const Judge judge(problem.robot->robot, problem.world);
+  const Stance unmoved = problem.start;
+  for (;; ++started.draws) {
+    Eigen::VectorXd given;
+    problem.start = unmoved;
+    if (moved) move_contacts(problem.start, problem.world, moves.most_m, start_places);
+    blame_line(scenario, start_line, [&] {
+      require_sound_stance(robot, problem.start);
+      given = given_configuration(scenario, robot, problem.start);
+    });
+    const std::string reason = find_start(judge, given, started);
+    if (reason.empty()) return started;
+    if (moved && started.draws < kMostDraws) continue;
+    throw Error(scenario.source, start_line, "no configuration stands at the start: " + reason,
+                "contacts that can be held");
+  }
 }
 
 }  // namespace locograph

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace locograph {
 namespace {
@@ -85,6 +86,16 @@ int contacts_of(const Footing& footing) {
       std::count_if(footing.begin(), footing.end(), [](int place) { return place != kFree; }));
 }
 
+Footing joined(Footing from, const Footing& to) {
+  from.insert(from.end(), to.begin(), to.end());
+  return from;
+}
+
+int changed_effector(const Footing& before, const Footing& after) {
+  const auto [changed, now] = std::mismatch(before.begin(), before.end(), after.begin());
+  return static_cast<int>(changed - before.begin());
+}
+
 StanceSpace::StanceSpace(const StanceProblem& problem, const StancePlannerOptions& options)
     : problem_(problem),
       options_(options),
@@ -110,6 +121,7 @@ int StanceSpace::intern(int effector, const Contact& contact) {
   if (!added) return found->second;
   Place place{effector, {contact, area_on_surfaces(contact)}};
   place.bearing.contact.effector.friction = friction_at(contact);
+  place.bearing.contact.locked = contact.effector.kind == ContactKind::kWheel;
   places_.push_back(std::move(place));
   return found->second;
 }
@@ -215,13 +227,14 @@ std::vector<int> StanceSpace::places_near(int effector, const Eigen::Vector3d& p
 void StanceSpace::places_on(int effector, const Surface& surface, const Eigen::Vector3d& point,
                             double reach_m, std::vector<int>& places) {
   const EndEffector& of = problem_.end_effectors[static_cast<std::size_t>(effector)];
-  if (of.kind != ContactKind::kSurface && of.kind != ContactKind::kPoint) return;
+  if (of.kind == ContactKind::kRung) return;
   const Eigen::Isometry3d& pose = surface.world_from_surface;
   const Eigen::Vector3d local = pose.inverse() * point;
   const double off = std::abs(local.z());
   if (off >= reach_m) return;
   const double radius = std::sqrt(reach_m * reach_m - off * off);
-  // A sole stays whole on the surface where it can, else in its middle.
+  // A sole stays whole on the surface where it can, else in its middle; a wheel a radius away from
+  // where it would roll off.
   Eigen::Vector2d inset = Eigen::Vector2d::Zero();
   Contact contact;
   contact.effector = of;
@@ -229,6 +242,8 @@ void StanceSpace::places_on(int effector, const Surface& surface, const Eigen::V
   if (of.kind == ContactKind::kSurface) {
     contact.forward = pose.linear().col(0);
     inset << of.half_x_m, of.half_y_m;
+  } else if (of.kind == ContactKind::kWheel) {
+    inset.setConstant(of.radius_m);
   }
   std::vector<double> along[2];
   for (int axis = 0; axis < 2; ++axis) {
@@ -283,13 +298,18 @@ void StanceSpace::places_on(int effector, const Bar& bar, const Eigen::Vector3d&
   }
 }
 
-const BalanceRegion& StanceSpace::region(const Footing& footing) {
-  const auto found = regions_.find(footing);
-  if (found != regions_.end()) return found->second;
+std::vector<BearingContact> StanceSpace::bearing_contacts(const Footing& footing) const {
   std::vector<BearingContact> bearing;
   for (const int number : footing) {
     if (number != kFree) bearing.push_back(place(number).bearing);
   }
+  return bearing;
+}
+
+const BalanceRegion& StanceSpace::region(const Footing& footing) {
+  const auto found = regions_.find(footing);
+  if (found != regions_.end()) return found->second;
+  const std::vector<BearingContact> bearing = bearing_contacts(footing);
   BalanceRegion region;
   if (!bearing.empty()) region = balance_region(mass_kg_, bearing, kRegionMargin);
   return regions_.emplace(footing, std::move(region)).first->second;
@@ -335,11 +355,8 @@ StanceSpace::Attempt StanceSpace::stand(const Stance& stance, const Eigen::Vecto
 
 void StanceSpace::ease_torques(const Footing& smaller, TransitionProblem& problem,
                                const TransitionOptions& options, TransitionResult& result) {
-  std::vector<BearingContact> bearing;
-  for (const int number : smaller) {
-    if (number != kFree) bearing.push_back(place(number).bearing);
-  }
-  TorqueProgramme torques(state_.robot(), bearing, problem_.check.effort_scale, kRegionMargin);
+  TorqueProgramme torques(state_.robot(), bearing_contacts(smaller), problem_.check.effort_scale,
+                          kRegionMargin);
   state_.update(result.configuration.data());
   Eigen::VectorXd gradient;
   if (torques.solve(state_, gradient) <= 1.0 - options.torque_margin) return;
@@ -350,18 +367,16 @@ void StanceSpace::ease_torques(const Footing& smaller, TransitionProblem& proble
 
 StanceSpace::Attempt StanceSpace::try_transition(const Footing& from, const Footing& to,
                                                  const Eigen::VectorXd& start, int restarts) {
-  Footing both = from;
-  both.insert(both.end(), to.begin(), to.end());
-  if (refused_.contains(both)) return {};
+  if (refused_.contains(joined(from, to))) return {};
   TransitionOptions options;
   options.restarts = restarts;
+  const Stopwatch watch;
   Attempt attempt = change(from, to, start, options);
+  if (options_.observe) {
+    options_.observe({stance(from), stance(to), start, restarts, attempt.found, watch.seconds()});
+  }
   if (!attempt.found) {
-    for (std::size_t e = 0; e < from.size(); ++e) {
-      if (from[e] != to[e]) {
-        count_failure(static_cast<int>(e), transition_failure_name(attempt.failure));
-      }
-    }
+    count_failure(changed_effector(from, to), transition_failure_name(attempt.failure));
   }
   return attempt;
 }
@@ -374,13 +389,12 @@ StanceSpace::Attempt StanceSpace::try_harder(const Footing& from, const Footing&
 }
 
 void StanceSpace::forbid(const Footing& from, const Footing& to) {
-  Footing both = from;
-  both.insert(both.end(), to.begin(), to.end());
-  refused_.emplace(std::move(both), 1);
+  refused_.insert(joined(from, to));
 }
 
-bool StanceSpace::ended() const {
-  return options_.deadline.passed() || (options_.stop != nullptr && *options_.stop);
+int StanceSpace::transitions_left() const {
+  if (options_.max_transitions == 0) return std::numeric_limits<int>::max();
+  return options_.max_transitions - (transitions - began_);
 }
 
 void StanceSpace::count_failure(int effector, const std::string& what) {

@@ -15,6 +15,7 @@
 
 #include <map>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace locograph {
@@ -32,6 +33,10 @@ inline Footing without(Footing footing, int effector) {
   return with(std::move(footing), effector, kFree);
 }
 int contacts_of(const Footing& footing);
+/// Both, one behind the other: the key of a transition.
+Footing joined(Footing from, const Footing& to);
+/// The first end effector that two footings differ in; they must differ.
+int changed_effector(const Footing& before, const Footing& after);
 
 class StanceSpace {
  public:
@@ -77,7 +82,18 @@ class StanceSpace {
   /// The transition is not to be found again: the judge refused it.
   void forbid(const Footing& from, const Footing& to);
 
-  bool ended() const;
+  /// From here on transitions count for the next goal; plan_stances calls it.
+  void begin_goal() { began_ = transitions; }
+  /// How many transitions may still be tried for this goal, below 0 where shortening and mending
+  /// took more; the largest int: any number.
+  int transitions_left() const;
+  /// StancePlannerOptions::max_transitions is used up for this goal.
+  bool tried_enough() const { return transitions_left() <= 0; }
+
+  /// StancePlannerOptions::stop is set.
+  bool stopped() const { return options_.stop != nullptr && *options_.stop; }
+  /// Stopped, or the time allowed is used up.
+  bool ended() const { return options_.deadline.passed() || stopped(); }
 
   int transitions = 0, transitions_found = 0;
   double transitions_s = 0.0;
@@ -92,6 +108,7 @@ class StanceSpace {
                  std::vector<int>& places);
   std::vector<Eigen::Vector2d> area_on_surfaces(const Contact& contact) const;
   double friction_at(const Contact& contact) const;
+  std::vector<BearingContact> bearing_contacts(const Footing& footing) const;
   void ease_torques(const Footing& smaller, TransitionProblem& problem,
                     const TransitionOptions& options, TransitionResult& result);
   Attempt solve(const Footing& larger, const Footing& smaller, const Eigen::VectorXd& start,
@@ -109,8 +126,9 @@ class StanceSpace {
   std::vector<Place> places_;
   std::map<std::vector<long long>, int> numbers_;
   std::unordered_map<Footing, BalanceRegion, FootingHash> regions_;
-  std::unordered_map<Footing, int, FootingHash> refused_;  ///< both footings, one behind the other
+  std::unordered_set<Footing, FootingHash> refused_;  ///< transitions, as joined() gives them
   std::map<std::pair<int, std::string>, int> failures_;
+  int began_ = 0;  ///< transitions tried before this goal
 };
 
 }  // namespace locograph

@@ -1,0 +1,33 @@
+#pragma once
+/// Options that several commands have, said once. Variables must outlive the parsing.
+///
+///     add_scenario_argument(parser, o.scenario);
+///     add_torque_limits_option(parser, o.torques, "enforce: keep to them; report: only tell
+///     them"); add_threads_option(parser, o.threads);
+
+#include <locograph/apps/option_parser.h>
+
+#include <string>
+
+namespace locograph {
+
+/// The positional argument SCENARIO.
+inline void add_scenario_argument(OptionParser& parser, std::string& scenario) {
+  parser.add_option("SCENARIO", scenario, "File, or a name that `locograph list scenarios` gives")
+      .required();
+}
+
+/// `--torque-limits enforce|report`.
+inline ParserOption add_torque_limits_option(OptionParser& parser, std::string& torques,
+                                             const std::string& help) {
+  return parser.add_option("--torque-limits", torques, help).one_of({"enforce", "report"});
+}
+
+/// `--threads N` of a command that takes no more than one yet.
+inline void add_threads_option(OptionParser& parser, int& threads) {
+  parser.add_option("--threads", threads, "Most threads to use (this version uses one)")
+      .positive()
+      .show_default();
+}
+
+}  // namespace locograph

@@ -1,0 +1,48 @@
+#include <locograph/planners/offline/stance/standing_wheels.h>
+#include <locograph/robots/wheel.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace locograph {
+namespace {
+
+struct StandingWheel {
+  std::size_t effector;
+  Wheel wheel;
+};
+
+std::vector<StandingWheel> wheels_that_turn(const StanceProblem& problem) {
+  std::vector<StandingWheel> wheels;
+  for (std::size_t e = 0; e < problem.end_effectors.size(); ++e) {
+    if (problem.end_effectors[e].kind != ContactKind::kWheel) continue;
+    Wheel wheel = wheel_of(*problem.robot->robot, problem.end_effectors[e]);
+    if (wheel.joint >= 0) wheels.push_back({e, std::move(wheel)});
+  }
+  return wheels;
+}
+
+}  // namespace
+
+void hold_wheels(const StanceSpace& space, StancePath& path) {
+  const Robot& robot = *space.problem().robot->robot;
+  const std::vector<StandingWheel> wheels = wheels_that_turn(space.problem());
+  if (wheels.empty()) return;
+  RobotState before(robot), after(robot);
+  for (std::size_t i = 1; i < path.footings.size(); ++i) {
+    before.update(path.configurations[i - 1].data());
+    after.update(path.configurations[i].data());
+    for (const auto& [effector, wheel] : wheels) {
+      const int held = path.footings[i - 1][effector];
+      if (held == kFree) continue;
+      const Eigen::Vector3d normal = space.place(held).bearing.contact.normal.stableNormalized();
+      const double pitched =
+          carrier_pitch(after, wheel, normal) - carrier_pitch(before, wheel, normal);
+      const int joint = robot.base_configuration_size() + wheel.joint;
+      path.configurations[i][joint] =
+          path.configurations[i - 1][joint] - std::remainder(pitched, 2.0 * std::numbers::pi);
+    }
+  }
+}
+
+}  // namespace locograph
