@@ -2,8 +2,8 @@
 /// Options that several commands have, said once. Variables must outlive the parsing.
 ///
 ///     add_scenario_argument(parser, o.scenario);
-///     add_torque_limits_option(parser, o.torques, "enforce: keep to them; report: only tell
-///     them"); add_threads_option(parser, o.threads);
+///     add_torque_limits_option(parser, o.torques, "report: only tell them");
+///     add_threads_option(parser, o.threads);
 
 #include <locograph/apps/option_parser.h>
 
@@ -24,10 +24,10 @@ inline ParserOption add_torque_limits_option(OptionParser& parser, std::string& 
 }
 
 /// `--threads N` of a command that takes no more than one yet.
-inline void add_threads_option(OptionParser& parser, int& threads) {
-  parser.add_option("--threads", threads, "Most threads to use (this version uses one)")
-      .positive()
-      .show_default();
+inline void add_threads_option(
+    OptionParser& parser, int& threads,
+    const std::string& what = "Most threads to use (this version uses one)") {
+  parser.add_option("--threads", threads, what).positive().show_default();
 }
 
 }  // namespace locograph

@@ -9,6 +9,7 @@
 #include <locograph/common/stop_signals.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
+#include <locograph/planners/offline/stance/improve_stances.h>
 #include <locograph/planners/offline/stance/stance_graph.h>
 #include <locograph/planners/offline/stance/stance_problem.h>
 #include <locograph/planners/plan/judging.h>
@@ -23,7 +24,7 @@ namespace {
 
 struct PlanOptions {
   std::string scenario, output, tree, torques, planner = "guided";
-  bool stances_only = false;
+  bool stances_only = false, improve = false;
   unsigned seed = 0;
   double timeout_s = 0.0;
   double move_contacts_m = 0.0;
@@ -133,11 +134,15 @@ ExitCode plan_stances_of(const Scenario& scenario, const PlanOptions& options) {
   const FinishOnSignal finish;
   asked.stop = &stop_flag();
   StancePlan plan;
+  int improved = 0;
   Graph graph;
   double total_s = 0.0;
   {
     const Progress progress("planning " + options.scenario);
     plan = planner->plan(problem, asked);
+    if (options.improve) {
+      improved = improve_stances(*planner, problem, asked, options.threads, plan);
+    }
     graph = stance_graph(scenario, problem, plan);
     total_s = total.seconds();
   }
@@ -169,6 +174,7 @@ ExitCode plan_stances_of(const Scenario& scenario, const PlanOptions& options) {
         {"judge", plan.judge_s},
         {"total", total_s}}},
   };
+  if (options.improve) json["improved"] = improved;
   if (options.move_contacts_m > 0.0) {
     json["moved_contacts"] = {{"up_to_m", options.move_contacts_m}, {"start_draws", started.draws}};
   }
@@ -194,6 +200,7 @@ ExitCode plan_stances_of(const Scenario& scenario, const PlanOptions& options) {
   text += counted(json["stances"], "stance", "stances") + ", " +
           counted(json["transitions"]["tried"], "transition", "transitions") + " tried, in " +
           short_number(total_s) + " s\nwritten: " + options.output + '\n';
+  if (options.improve) text += "improved " + counted(improved, "time", "times") + '\n';
   if (asked.keep_tree) text += "written: " + options.tree + '\n';
   print_text(text);
   return plan.success ? kDone : kNo;
@@ -202,6 +209,9 @@ ExitCode plan_stances_of(const Scenario& scenario, const PlanOptions& options) {
 ExitCode plan_scenario(const PlanOptions& options) {
   if (!options.tree.empty() && !options.stances_only) {
     throw Error("--tree has no search for stances to show", "--stances-only");
+  }
+  if (options.improve && !(options.stances_only && options.timeout_s > 0.0)) {
+    throw Error("--improve goes on until the time is used up", "--stances-only and --timeout");
   }
   for (const std::string& file : {options.output, options.tree}) {
     if (!file.empty()) check_output(file, options.json);
@@ -238,6 +248,9 @@ Command add_plan(OptionParser& app) {
       .required();
   parser.add_flag("--stances-only", o.stances_only,
                   "Stances and the configurations between them, no motion");
+  parser.add_flag("--improve", o.improve,
+                  "Plan again with other seeds until --timeout and keep the plan with the fewest "
+                  "stances, on --threads threads");
   parser.add_option("--tree", o.tree,
                     "File to write what the search for stances tried (.json), for `view --tree`");
   parser
@@ -257,7 +270,7 @@ Command add_plan(OptionParser& app) {
                   "surface or bar at random, by the seed, up to so far along each axis [m]")
       .between(0.0, 10.0)
       .show_default();
-  add_threads_option(parser, o.threads);
+  add_threads_option(parser, o.threads, "Most threads to use; --improve does");
   parser.add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] { return plan_scenario(*options); }};
 }

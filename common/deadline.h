@@ -21,6 +21,7 @@ class Deadline {
                                       std::chrono::duration<double>(seconds));
     return deadline;
   }
+  bool exists() const { return at_.has_value(); }
   bool passed() const { return at_ && Clock::now() >= *at_; }
 
  private:

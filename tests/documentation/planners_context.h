@@ -3,6 +3,7 @@
 
 #include <locograph/check/judge.h>
 #include <locograph/core/graph_file.h>
+#include <locograph/planners/offline/stance/improve_stances.h>
 #include <locograph/planners/offline/stance/plan_stances.h>
 #include <locograph/planners/offline/stance/stance_graph.h>
 #include <locograph/planners/offline/stance/stance_path.h>
@@ -57,6 +58,11 @@ bool search(StanceSpace& space, const Footing& goal, StancePath& path);
 namespace offline_stance_rrt_planner_h {
 extern const StanceProblem problem;
 }
+namespace offline_stance_improve_stances_h {
+extern const std::unique_ptr<const StancePlanner> planner;
+extern const StanceProblem problem;
+extern StancePlannerOptions options;
+}  // namespace offline_stance_improve_stances_h
 namespace offline_stance_stance_path_h {
 extern StanceSpace space;
 extern const Judge judge;

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <queue>
 #include <random>
 #include <unordered_map>
-#include <unordered_set>
 
 namespace locograph {
 namespace {
@@ -18,7 +18,11 @@ namespace {
 constexpr double kGreed = 3.0, kNoise = 4.0, kUnlikely = 4.0, kFailedHere = 1.0, kCrowded = 2.0,
                  kLater = 6.0;
 constexpr int kFirstTree = 75, kMostMoves = 40, kMostDeadEnds = 20, kLiftRestarts = 4,
-              kLaterRestarts = 2;
+              kLaterRestarts = 2, kStandAttempts = 4;
+/// Trees that look around: some moves more of each end effector, more transitions; how little the
+/// length of the way counts.
+constexpr int kMoreAround = 10;
+constexpr double kLookAroundLonger = 16.0, kLengthAround = 0.2;
 constexpr double kTreeGrowth = 1.25;
 /// Of its reach, what an end effector gets ahead in a move on average.
 constexpr double kUsualShare = 0.7;
@@ -80,6 +84,7 @@ struct Node {
   Eigen::VectorXd configuration;
   int parent;  ///< -1: the root
   int stances;
+  Footing aim;              ///< where its moves lead to
   std::vector<int> failed;  ///< of each end effector: moves from here
   /// Of each end effector in contact: the configuration with it lifted, once it was tried.
   std::vector<Eigen::VectorXd> lifted;
@@ -98,27 +103,38 @@ struct Move {
   }
 };
 
+/// Grown from the start or, since a transition serves both ways, backwards from the goal.
+struct Tree {
+  bool backwards = false;
+  std::vector<Node> nodes;
+  std::priority_queue<Move> ahead;   ///< moves by how near they come to where they lead
+  std::priority_queue<Move> around;  ///< the same moves by how new what they come to is
+  std::unordered_map<Footing, int, FootingHash> known;            ///< the node of each footing
+  std::unordered_map<std::vector<int>, int, FootingHash> crowds;  ///< nodes of each rough footing
+};
+
 class GuidedSearch {
  public:
   GuidedSearch(StanceSpace& space, const StancePlannerOptions& options, StancePlan& result)
       : space_(space),
         result_(result),
-        tree_(space, options, result),
+        kept_{{space, options, result}, {space, options, result}},
         random_(options.seed),
         experience_(space) {}
 
   /// Appends the way to the goal; false if there is none.
   bool reach(const Footing& goal, StancePath& path) {
     goal_ = goal;
+    goal_posture_.reset();
     double most = kFirstTree;
     int tree = 0, dead_ends = 0;
     while (!space_.ended()) {
-      choose_manner(tree++);
-      grow_until_ =
-          space_.transitions + std::min(static_cast<int>(most), space_.transitions_left());
-      const int found = grow(path.footings.back(), path.configurations.back());
-      if (found >= 0) {
-        trace(found, path);
+      choose_manner(tree++, path.configurations.back());
+      const int budget = static_cast<int>(look_around_ ? kLookAroundLonger * most : most);
+      grow_until_ = space_.transitions + std::min(budget, space_.transitions_left());
+      const bool found = grow(path.footings.back(), path.configurations.back());
+      if (found) {
+        trace(path);
         return true;
       }
       // Other noise, other moves; but not for ever where there are none.
@@ -131,7 +147,7 @@ class GuidedSearch {
 
  private:
   double moves_to_go(int effector, int place, const Eigen::Vector3d& at) const {
-    const int wanted = goal_[static_cast<std::size_t>(effector)];
+    const int wanted = (*aim_)[static_cast<std::size_t>(effector)];
     if (wanted == place) return 0.0;
     if (wanted == kFree) return 0.5;
     const Eigen::Vector3d& there = space_.place(wanted).bearing.contact.position;
@@ -147,38 +163,67 @@ class GuidedSearch {
 
   int add(Footing footing, Eigen::VectorXd configuration, int parent, int stances) {
     const std::size_t effectors = footing.size();
-    nodes_.push_back({std::move(footing), std::move(configuration), parent, stances,
-                      std::vector<int>(effectors, 0), std::vector<Eigen::VectorXd>(effectors),
-                      std::vector<signed char>(effectors, 0)});
+    const int number = static_cast<int>(own_->nodes.size());
+    own_->known.emplace(footing, number);
+    own_->nodes.push_back({std::move(footing), std::move(configuration), parent, stances, start_,
+                           std::vector<int>(effectors, 0), std::vector<Eigen::VectorXd>(effectors),
+                           std::vector<signed char>(effectors, 0)});
+    Node& node = own_->nodes.back();
+    if (own_->backwards && !from_both_ends_) return number;  // the goal, which others aim at
     ++result_.vertices_in_tree;
-    tree_.add(nodes_.back().footing, parent);
-    const int number = static_cast<int>(nodes_.size()) - 1;
-    ++crowds_[roughly(nodes_.back().footing)];
-    note_best(result_, space_, nodes_.back().footing, goal_);
-    if (nodes_.back().footing != goal_) push_moves(number);
+    ++own_->crowds[roughly(node.footing)];
+    kept().add(node.footing, parent);
+    if (!own_->backwards) note_best(result_, space_, node.footing, goal_);
+    choose_aim(node);
+    if (!other_->known.contains(node.footing)) push_moves(number);
     return number;
   }
 
-  /// Where the end effectors are in a node, and the moves that each has to go.
+  /// A node leads to what is nearest in the other tree.
+  void choose_aim(Node& node) {
+    locate(node);
+    const Node* nearest = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Node& there : other_->nodes) {
+      measure(node, there.footing);
+      double far = there.stances;
+      for (const double to_go : to_go_of_node_) far += kGreed * 2.0 * to_go;
+      if (far >= least) continue;
+      least = far;
+      nearest = &there;
+    }
+    if (nearest != nullptr) node.aim = nearest->footing;
+  }
+
+  /// Where the end effectors are in a node.
   void locate(const Node& node) {
     positions_.clear();
+    for (int e = 0; e < space_.effectors(); ++e) {
+      positions_.push_back(position(node, e, node.footing[static_cast<std::size_t>(e)]));
+    }
+  }
+
+  /// The moves that each end effector has to go, from the node that was located.
+  void measure(const Node& node, const Footing& aim) {
+    aim_ = &aim;
     to_go_of_node_.clear();
     for (int e = 0; e < space_.effectors(); ++e) {
-      const int at = node.footing[static_cast<std::size_t>(e)];
-      positions_.push_back(position(node, e, at));
-      to_go_of_node_.push_back(moves_to_go(e, at, positions_.back()));
+      const std::size_t k = static_cast<std::size_t>(e);
+      to_go_of_node_.push_back(moves_to_go(e, node.footing[k], positions_[k]));
     }
   }
 
   void push_moves(int number) {
-    const Node& node = nodes_[static_cast<std::size_t>(number)];
+    const Node& node = own_->nodes[static_cast<std::size_t>(number)];
     locate(node);
+    measure(node, node.aim);
+    if (number == 0) first_to_go_ = to_go_of_node_;
     for (int e = 0; e < space_.effectors(); ++e) {
       const std::size_t k = static_cast<std::size_t>(e);
-      const int now = node.footing[k], wanted = goal_[k];
+      const int now = node.footing[k], wanted = node.aim[k];
       // What was moved last is not moved again at once.
       if (node.parent >= 0 && now != kFree &&
-          nodes_[static_cast<std::size_t>(node.parent)].footing[k] != now) {
+          own_->nodes[static_cast<std::size_t>(node.parent)].footing[k] != now) {
         continue;
       }
       to_go_ = to_go_of_node_;
@@ -195,7 +240,10 @@ class GuidedSearch {
         const Eigen::Vector3d& there = space_.place(place).bearing.contact.position;
         const double to_go = moves_to_go(e, place, there);
         to_go_[k] = to_go;
-        const double plain = node.stances + cost + kGreed * 2.0 * (others + to_go) +
+        // Where the other tree is already, nothing is left to go.
+        const bool meets = from_both_ends_ && other_->known.contains(with(node.footing, e, place));
+        const double all_to_go = meets ? 0.0 : others + to_go;
+        const double plain = node.stances + cost + kGreed * 2.0 * all_to_go +
                              uneven_ * unevenness() + kNoise * uniform(random_, 0.0, 1.0);
         Move move{plain, plain, (there - from).norm() / space_.reach_m(e), 0, number, e, place, 0};
         move.f = promise(move);
@@ -213,27 +261,58 @@ class GuidedSearch {
       for (const int place : space_.places_near(e, from, reach)) {
         if (place != wanted) consider(place);
       }
-      const std::size_t kept = std::min<std::size_t>(moves_.size(), kMostMoves);
+      std::size_t kept = std::min<std::size_t>(moves_.size(), kMostMoves);
       std::partial_sort(moves_.begin(), moves_.begin() + static_cast<std::ptrdiff_t>(kept),
                         moves_.end(), [](const Move& a, const Move& b) { return a.f < b.f; });
-      for (std::size_t i = 0; i < kept; ++i) {
-        moves_[i].number = next_++;
-        open_.push(moves_[i]);
+      // Some of the others too, for those that look around.
+      const std::size_t most =
+          look_around_ ? std::min<std::size_t>(moves_.size(), kept + kMoreAround) : kept;
+      for (; kept < most; ++kept) {
+        const double drawn = uniform(random_, 0.0, static_cast<double>(moves_.size() - kept));
+        const std::size_t other = kept + static_cast<std::size_t>(drawn);
+        std::swap(moves_[kept], moves_[std::min(moves_.size() - 1, other)]);
       }
+      for (std::size_t i = 0; i < kept; ++i) push(moves_[i]);
     }
   }
 
-  /// Trees differ: in how long moves are and how evenly end effectors move.
-  void choose_manner(int tree) {
-    constexpr double kReaches[] = {0.5, 0.7, 0.4, 1.0};
-    constexpr double kUneven[] = {8.0, 4.0, 4.0, 0.0};
-    reach_share_ = kReaches[tree % 4];
-    uneven_ = kUneven[tree % 4];
+  void push(Move move) {
+    move.number = static_cast<long>(followed_.size());
+    followed_.push_back(false);
+    own_->ahead.push(move);
+    if (!look_around_) return;
+    move.f = newness(move);
+    own_->around.push(move);
+  }
+
+  /// Trees differ: in how long moves are and how evenly end effectors move, and whether they are
+  /// grown from both ends.
+  void choose_manner(int tree, const Eigen::VectorXd& q) {
+    constexpr struct {
+      double reach_share, uneven;
+      bool from_both_ends, look_around;
+    } kManners[] = {{0.5, 8.0, false, false}, {1.0, 0.0, true, false},  {0.7, 4.0, false, false},
+                    {0.5, 0.0, true, false},  {0.4, 4.0, false, false}, {1.0, 0.0, true, true}};
+    const auto& manner = kManners[tree % 6];
+    reach_share_ = manner.reach_share;
+    uneven_ = manner.uneven;
+    from_both_ends_ = manner.from_both_ends && stand_at_goal(q);
+    look_around_ = manner.look_around && from_both_ends_;
+  }
+
+  /// Whether there is a posture at the goal; looked for once for each goal.
+  bool stand_at_goal(const Eigen::VectorXd& q) {
+    for (int attempt = 0; attempt < kStandAttempts && !goal_posture_; ++attempt) {
+      StanceSpace::Attempt stand = space_.stand(space_.stance(goal_), q, attempt);
+      if (stand.found || attempt + 1 == kStandAttempts) goal_posture_ = std::move(stand);
+    }
+    return goal_posture_->found;
   }
 
   /// How much further some end effectors are on their way than others: those far ahead hold the
   /// others back.
   double unevenness() const {
+    if (uneven_ == 0.0) return 0.0;
     double mean = 0.0, sum = 0.0;
     int moving = 0;
     for (std::size_t e = 0; e < to_go_.size(); ++e) {
@@ -251,7 +330,7 @@ class GuidedSearch {
 
   /// What has been learned since makes a move worth less.
   double promise(const Move& move) const {
-    const Node& node = nodes_[static_cast<std::size_t>(move.node)];
+    const Node& node = own_->nodes[static_cast<std::size_t>(move.node)];
     return move.plain + kUnlikely * unlikelihood(move) +
            kFailedHere * node.failed[static_cast<std::size_t>(move.effector)] +
            kCrowded * crowd(with(node.footing, move.effector, move.place));
@@ -260,8 +339,16 @@ class GuidedSearch {
   /// Nodes whose contacts are roughly where these are: hundreds of ways to put the hands must not
   /// keep the feet waiting.
   int crowd(const Footing& footing) const {
-    const auto found = crowds_.find(roughly(footing));
-    return found == crowds_.end() ? 0 : found->second;
+    const auto found = own_->crowds.find(roughly(footing));
+    return found == own_->crowds.end() ? 0 : found->second;
+  }
+
+  /// As promise(), whatever the way to go: the least for what is unlike the nodes there are.
+  double newness(const Move& move) const {
+    const Node& node = own_->nodes[static_cast<std::size_t>(move.node)];
+    return kLengthAround * node.stances + (move.restarts > 0 ? kLater : 0.0) + unlikelihood(move) +
+           kFailedHere * node.failed[static_cast<std::size_t>(move.effector)] +
+           kCrowded * crowd(with(node.footing, move.effector, move.place));
   }
   std::vector<int> roughly(const Footing& footing) const {
     std::vector<int> cells;
@@ -279,103 +366,134 @@ class GuidedSearch {
 
   double unlikelihood(const Move& move) const {
     if (move.place == kFree) return 0.0;
-    const Node& node = nodes_[static_cast<std::size_t>(move.node)];
+    const Node& node = own_->nodes[static_cast<std::size_t>(move.node)];
     return experience_.unlikelihood(node.footing, move.effector, move.place, move.share);
   }
 
-  /// The node that has reached the goal; -1: none. exhausted_: there is nothing left to try.
-  int grow(const Footing& start, const Eigen::VectorXd& q) {
-    nodes_.clear();
-    open_ = {};
-    known_.clear();
-    crowds_.clear();
+  StanceTree& kept() { return kept_[own_->backwards ? 1 : 0]; }
+
+  void take_turn(bool backwards) {
+    own_ = &trees_[backwards ? 1 : 0];
+    other_ = &trees_[backwards ? 0 : 1];
+  }
+
+  /// Whether the trees meet, at met_. exhausted_: there is nothing left to try.
+  bool grow(const Footing& start, const Eigen::VectorXd& q) {
+    trees_[0] = {};
+    trees_[1] = {};
+    trees_[1].backwards = true;
+    followed_.clear();
     exhausted_ = false;
-    known_.insert(start);
-    locate({start, q, -1, 0, {}, {}, {}});
-    first_to_go_ = to_go_of_node_;
+    start_ = met_ = start;
+    take_turn(true);
+    add(goal_, from_both_ends_ ? goal_posture_->configuration : q, -1, 0);
+    take_turn(false);
     add(start, q, -1, 0);
-    if (start == goal_) return 0;
-    while (!open_.empty()) {
-      if (space_.ended() || space_.transitions >= grow_until_) return -1;
-      Move move = open_.top();
-      open_.pop();
-      move.f = promise(move);
-      if (!open_.empty() && open_.top().f < move.f) {
-        open_.push(move);
-        continue;
-      }
-      const int reached = follow(move);
-      if (reached >= 0 && nodes_[static_cast<std::size_t>(reached)].footing == goal_) {
-        return reached;
-      }
+    if (start == goal_) return true;
+    for (int turn = 0; !trees_[0].ahead.empty() || !trees_[1].ahead.empty(); ++turn) {
+      if (space_.ended() || space_.transitions >= grow_until_) return false;
+      take_turn(from_both_ends_ && turn % 2 == 1);
+      const bool around = look_around_ && turn / 2 % 2 == 1;
+      const int reached = follow_best(around);
+      if (reached < 0) continue;
+      met_ = own_->nodes[static_cast<std::size_t>(reached)].footing;
+      if (other_->known.contains(met_)) return true;
     }
     exhausted_ = true;
+    return false;
+  }
+
+  /// The node that the best move leads to; -1: none.
+  int follow_best(bool around) {
+    std::priority_queue<Move>& queue = around ? own_->around : own_->ahead;
+    while (!queue.empty()) {
+      Move move = queue.top();
+      queue.pop();
+      if (followed_[static_cast<std::size_t>(move.number)]) continue;
+      move.f = around ? newness(move) : promise(move);
+      if (!queue.empty() && queue.top().f < move.f) {
+        queue.push(move);
+        continue;
+      }
+      followed_[static_cast<std::size_t>(move.number)] = true;
+      return follow(move);
+    }
     return -1;
+  }
+
+  /// The path goes from the start to the goal, whichever way the tree grows.
+  StanceSpace::Attempt try_transition(const Footing& from, const Footing& to,
+                                      const Eigen::VectorXd& q, int restarts) {
+    return own_->backwards ? space_.try_transition(to, from, q, restarts)
+                           : space_.try_transition(from, to, q, restarts);
   }
 
   int follow(const Move& move) {
     const std::size_t effector = static_cast<std::size_t>(move.effector);
-    const std::size_t n = static_cast<std::size_t>(move.node);
-    const Footing before = nodes_[n].footing;
-    const Footing after = with(before, move.effector, move.place);
-    if (known_.contains(after)) return -1;
+    Node& node = own_->nodes[static_cast<std::size_t>(move.node)];
+    const Footing after = with(node.footing, move.effector, move.place);
+    if (own_->known.contains(after)) return -1;
     ++result_.iterations;
-    const bool in_contact = before[effector] != kFree;
-    const Footing between = without(before, move.effector);
-    Eigen::VectorXd start = nodes_[n].configuration;
+    const bool in_contact = node.footing[effector] != kFree;
+    const Footing between = without(node.footing, move.effector);
     if (in_contact) {
-      signed char& tried = nodes_[n].lift_tried[effector];
-      if (tried <= move.restarts && nodes_[n].lifted[effector].size() == 0) {
-        const StanceSpace::Attempt lift =
-            space_.try_transition(before, between, nodes_[n].configuration,
-                                  tried == 0 ? kLiftRestarts : 5 * move.restarts);
+      Eigen::VectorXd& lifted = node.lifted[effector];
+      signed char& tried = node.lift_tried[effector];
+      if (tried <= move.restarts && lifted.size() == 0) {
+        StanceSpace::Attempt lift = try_transition(node.footing, between, node.configuration,
+                                                   tried == 0 ? kLiftRestarts : 5 * move.restarts);
         tried = static_cast<signed char>(move.restarts + 1);
         if (lift.found) {
-          nodes_[n].lifted[effector] = lift.configuration;
+          lifted = std::move(lift.configuration);
         } else {
-          tree_.add_failed(between, move.node);
+          kept().add_failed(between, move.node);
         }
       }
-      if (nodes_[n].lifted[effector].size() == 0) {
+      if (lifted.size() == 0) {
         again(move);
         return -1;
       }
-      start = nodes_[n].lifted[effector];
     }
-    if (move.place == kFree) {
-      known_.insert(after);
-      return add(after, start, move.node, nodes_[n].stances + 1);
-    }
-    const StanceSpace::Attempt put = space_.try_transition(between, after, start, move.restarts);
-    experience_.learn(before, move.effector, move.place, move.share, put.found);
+    const Eigen::VectorXd& start = in_contact ? node.lifted[effector] : node.configuration;
+    if (move.place == kFree) return add(after, start, move.node, node.stances + 1);
+    StanceSpace::Attempt put = try_transition(between, after, start, move.restarts);
+    experience_.learn(node.footing, move.effector, move.place, move.share, put.found);
     if (!put.found) {
-      tree_.add_failed(after, move.node);
+      kept().add_failed(after, move.node);
       again(move);
       return -1;
     }
-    known_.insert(after);
-    return add(after, put.configuration, move.node, nodes_[n].stances + (in_contact ? 2 : 1));
+    return add(after, std::move(put.configuration), move.node, node.stances + (in_contact ? 2 : 1));
   }
 
   /// A failed move is tried once more, later and harder.
   void again(Move move) {
-    ++nodes_[static_cast<std::size_t>(move.node)].failed[static_cast<std::size_t>(move.effector)];
+    ++own_->nodes[static_cast<std::size_t>(move.node)]
+          .failed[static_cast<std::size_t>(move.effector)];
     if (move.restarts > 0) return;
     move.restarts = kLaterRestarts;
     move.plain += kLater;
     move.f = promise(move);
-    move.number = next_++;
-    open_.push(move);
+    push(move);
   }
 
-  void trace(int node, StancePath& path) {
+  /// The numbers of the nodes from where the trees met to the root.
+  std::vector<int> way_to_root(const Tree& tree) const {
     std::vector<int> way;
-    for (int n = node; n >= 0; n = nodes_[static_cast<std::size_t>(n)].parent) way.push_back(n);
+    for (int n = tree.known.at(met_); n >= 0; n = tree.nodes[static_cast<std::size_t>(n)].parent) {
+      way.push_back(n);
+    }
+    return way;
+  }
+
+  /// From the start to where the trees met, and from there to the goal.
+  void trace(StancePath& path) {
+    std::vector<int> way = way_to_root(trees_[0]);
     std::reverse(way.begin(), way.end());
-    for (const int n : way) tree_.mark(n);
+    for (const int n : way) kept_[0].mark(n);
     for (std::size_t i = 1; i < way.size(); ++i) {
-      const Node& before = nodes_[static_cast<std::size_t>(way[i - 1])];
-      const Node& after = nodes_[static_cast<std::size_t>(way[i])];
+      const Node& before = trees_[0].nodes[static_cast<std::size_t>(way[i - 1])];
+      const Node& after = trees_[0].nodes[static_cast<std::size_t>(way[i])];
       const int moved = changed_effector(before.footing, after.footing);
       const std::size_t e = static_cast<std::size_t>(moved);
       if (before.footing[e] != kFree && after.footing[e] != kFree) {
@@ -383,24 +501,41 @@ class GuidedSearch {
       }
       path.append(after.footing, after.configuration);
     }
+    way = way_to_root(trees_[1]);
+    for (const int n : way) {
+      if (from_both_ends_) kept_[1].mark(n);
+    }
+    for (std::size_t i = 1; i < way.size(); ++i) {
+      const Node& before = trees_[1].nodes[static_cast<std::size_t>(way[i - 1])];
+      const Node& after = trees_[1].nodes[static_cast<std::size_t>(way[i])];
+      const int moved = changed_effector(before.footing, after.footing);
+      const std::size_t e = static_cast<std::size_t>(moved);
+      if (before.footing[e] != kFree && after.footing[e] != kFree) {
+        path.append(without(before.footing, moved), before.configuration);
+        path.append(after.footing, after.lifted[e]);
+      } else {
+        path.append(after.footing, before.configuration);
+      }
+    }
   }
 
   StanceSpace& space_;
   StancePlan& result_;
-  StanceTree tree_;
+  StanceTree kept_[2];  ///< of each of trees_
   std::mt19937_64 random_;
   Experience experience_;
-  Footing goal_;
-  std::vector<Node> nodes_;
-  std::priority_queue<Move> open_;
-  std::unordered_set<Footing, FootingHash> known_;
-  std::unordered_map<std::vector<int>, int, FootingHash> crowds_;  ///< nodes of each rough footing
+  Footing start_, goal_, met_;
+  std::optional<StanceSpace::Attempt> goal_posture_;
+  Tree trees_[2];  ///< from the start; from the goal, only the goal if not from_both_ends_
+  Tree *own_ = nullptr, *other_ = nullptr;  ///< the one that grows, and the one it is to meet
+  const Footing* aim_ = nullptr;            ///< what moves_to_go() is about; measure() sets it
+  std::vector<bool> followed_;              ///< moves, by their numbers
   std::vector<Move> moves_;
-  std::vector<Eigen::Vector3d> positions_;  ///< locate() gives these two
-  std::vector<double> to_go_of_node_;
+  std::vector<Eigen::Vector3d> positions_;  ///< locate() gives them
+  std::vector<double> to_go_of_node_;       ///< measure() gives them
   std::vector<double> to_go_, first_to_go_;
   double uneven_ = 0.0, reach_share_ = 0.0;  ///< choose_manner() sets them for each tree
-  long next_ = 0;
+  bool from_both_ends_ = false, look_around_ = false;
   int grow_until_ = 0;
   bool exhausted_ = false;
 };

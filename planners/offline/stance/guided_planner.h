@@ -10,7 +10,8 @@ namespace locograph {
 /// end effector by itself, in moves of the lengths that have worked), how often moves like it have
 /// failed, how crowded the tree is there, and noise. Transitions are only solved for what is tried.
 /// After 75 transitions the tree is begun anew with other noise, each time with a quarter more;
-/// what failed is remembered.
+/// what failed is remembered. Every second time two trees grow towards each other, one of them
+/// backwards from the goal: a transition serves both ways.
 class GuidedPlanner final : public StancePlanner {
  public:
   const std::string& name() const override;

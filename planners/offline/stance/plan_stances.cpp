@@ -10,12 +10,28 @@ struct RefusedWays {
   std::string last_violation = {};
 };
 
+/// Why no posture was found in the goal's stance; empty: one was.
+std::string why_none_stands(StanceSpace& space, const Stance& goal, const Eigen::VectorXd& from) {
+  constexpr int kAttempts = 2;
+  std::string reason;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const StanceSpace::Attempt found = space.stand(goal, from, attempt);
+    if (found.found) return "";
+    if (reason.empty()) reason = found.reason;
+  }
+  return reason;
+}
+
 std::string why_not_reached(const StancePlan& plan, const StanceSpace& space,
-                            const RefusedWays& refused, std::size_t goals) {
+                            const RefusedWays& refused, std::size_t goals,
+                            const std::string& none_stands) {
   std::string reason = goals > 1 ? "goal " + std::to_string(plan.goals_reached + 1) + " of " +
                                        std::to_string(goals) + " is not reached"
                                  : "the goal is not reached";
   if (space.ended()) reason += space.stopped() ? ": interrupted" : ": the time allowed is used up";
+  if (!none_stands.empty()) {
+    reason += "; no posture was found that holds the goal's contacts: " + none_stands;
+  }
   if (refused.count > 0) {
     reason += "; the judge refused " + std::to_string(refused.count) +
               (refused.count == 1 ? " way to it: " : " ways to it, the last one: ") +
@@ -124,7 +140,9 @@ StancePlan plan_stances(const StanceProblem& problem, const StancePlannerOptions
   if (plan.success) {
     plan.reason = "planned";
   } else if (plan.reason.empty()) {
-    plan.reason = why_not_reached(plan, space, refused, problem.goals.size());
+    const Stance& goal = problem.goals[static_cast<std::size_t>(plan.goals_reached)];
+    plan.reason = why_not_reached(plan, space, refused, problem.goals.size(),
+                                  why_none_stands(space, goal, path.configurations.back()));
   }
   plan.total_s = watch.seconds();
   return plan;

@@ -1,0 +1,68 @@
+#include <locograph/common/error.h>
+#include <locograph/common/thread_pool.h>
+#include <locograph/planners/offline/stance/improve_stances.h>
+
+#include <utility>
+#include <vector>
+
+namespace locograph {
+namespace {
+
+/// Stances, then how far the joints move [rad, m].
+std::pair<std::size_t, double> price_of(const StanceProblem& problem, const StancePlan& plan) {
+  const Eigen::Index first = problem.robot->robot->base_configuration_size();
+  double moved = 0.0;
+  for (std::size_t i = 1; i < plan.configurations.size(); ++i) {
+    const Eigen::VectorXd step = plan.configurations[i] - plan.configurations[i - 1];
+    moved += step.tail(step.size() - first).cwiseAbs().sum();
+  }
+  return {plan.stances.size(), moved};
+}
+
+void add_effort(const StancePlan& spent, StancePlan& plan) {
+  plan.vertices_in_tree += spent.vertices_in_tree;
+  plan.iterations += spent.iterations;
+  plan.transitions += spent.transitions;
+  plan.transitions_found += spent.transitions_found;
+  plan.transitions_s += spent.transitions_s;
+  plan.judge_s += spent.judge_s;
+}
+
+}  // namespace
+
+int improve_stances(const StancePlanner& planner, const StanceProblem& problem,
+                    const StancePlannerOptions& options, int threads, StancePlan& plan) {
+  if (!options.deadline.exists() && options.stop == nullptr) {
+    throw Error("plans are to be improved without end", "a deadline, or a flag that stops it");
+  }
+  const auto ended = [&] {
+    return options.deadline.passed() || (options.stop != nullptr && *options.stop);
+  };
+  const Stopwatch watch;
+  ThreadPool pool(threads);
+  std::vector<StancePlan> others(static_cast<std::size_t>(threads));
+  auto best = price_of(problem, plan);
+  int better = 0;
+  for (std::uint64_t tried = 1; plan.success && !ended();
+       tried += static_cast<std::uint64_t>(threads)) {
+    pool.run(threads, [&](int i) {
+      StancePlannerOptions other = options;
+      other.seed += 0x9e3779b97f4a7c15ULL * (tried + static_cast<std::uint64_t>(i));
+      others[static_cast<std::size_t>(i)] = planner.plan(problem, other);
+    });
+    for (StancePlan& other : others) {
+      const auto price = price_of(problem, other);
+      const bool found = other.success && price < best;
+      add_effort(found ? plan : other, found ? other : plan);
+      if (!found) continue;
+      best = price;
+      other.total_s = plan.total_s;
+      plan = std::move(other);
+      ++better;
+    }
+  }
+  plan.total_s += watch.seconds();
+  return better;
+}
+
+}  // namespace locograph

@@ -1,0 +1,20 @@
+#pragma once
+/// Uses the time that is left: plans again with other seeds and keeps the best.
+///
+///     options.deadline = Deadline::after(5.0);
+///     StancePlan plan = planner->plan(problem, options);
+///     const int better = improve_stances(*planner, problem, options, 2, plan);
+
+#include <locograph/planners/offline/stance/stance_planner.h>
+
+namespace locograph {
+
+/// Until the deadline or `stop`, each seed on one of `threads`. The best plan has the fewest
+/// stances; of as many, the one whose joints move least from configuration to configuration (sum of
+/// the angles). Counts and times are those of all plans together. Returns how often a better one
+/// was found. Throws Error where neither deadline nor stop is given. A plan without success is left
+/// alone.
+int improve_stances(const StancePlanner& planner, const StanceProblem& problem,
+                    const StancePlannerOptions& options, int threads, StancePlan& plan);
+
+}  // namespace locograph
