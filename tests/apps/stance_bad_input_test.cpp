@@ -34,7 +34,7 @@ std::string floor_with_hole(double least_x, double most_x, double least_y, doubl
   const double inner[4][2] = {
       {least_x, least_y}, {most_x, least_y}, {most_x, most_y}, {least_x, most_y}};
   std::string stl = "solid floor\n";
-  const auto corner = [&stl](const double(&xy)[2]) {
+  const auto corner = [&stl](const double* xy) {
     stl += "vertex " + std::to_string(xy[0]) + ' ' + std::to_string(xy[1]) + " 0\n";
   };
   for (int i = 0; i < 4; ++i) {
