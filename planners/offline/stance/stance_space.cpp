@@ -71,7 +71,7 @@ double chain_length(const Robot& robot, const EndEffector& effector) {
 std::size_t FootingHash::operator()(const Footing& footing) const {
   std::size_t hash = 1469598103934665603ULL;
   for (const int place : footing) {
-    hash = (hash ^ static_cast<std::size_t>(place + 2)) * 1099511628211ULL;
+    hash = (hash ^ (static_cast<std::size_t>(place) + 2)) * 1099511628211ULL;
   }
   return hash;
 }
