@@ -14,10 +14,12 @@
 #include <locograph/planners/offline/stance/stance_problem.h>
 #include <locograph/planners/plan/judging.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 
 namespace locograph {
 namespace {
@@ -56,7 +58,7 @@ Planned plan_and_judge(const Scenario& scenario, const PlanOptions& options,
   if (!options.torques.empty()) {
     judging.options.enforce_torque_limits = options.torques == "enforce";
   }
-  const std::optional<CheckReport> report = judged(motion, plan, judging, job);
+  const std::optional<CheckReport> report = judged(motion, judging, job);
   planned.judge_s = watch.lap();
   if (!report || job.deadline.passed()) return planned;
   planned.success = report->feasible;
@@ -141,7 +143,8 @@ ExitCode plan_stances_of(const Scenario& scenario, const PlanOptions& options) {
     const Progress progress("planning " + options.scenario);
     plan = planner->plan(problem, asked);
     if (options.improve) {
-      improved = improve_stances(*planner, problem, asked, options.threads, plan);
+      const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+      improved = improve_stances(*planner, problem, asked, std::min(options.threads, cores), plan);
     }
     graph = stance_graph(scenario, problem, plan);
     total_s = total.seconds();
@@ -212,6 +215,9 @@ ExitCode plan_scenario(const PlanOptions& options) {
   }
   if (options.improve && !(options.stances_only && options.timeout_s > 0.0)) {
     throw Error("--improve goes on until the time is used up", "--stances-only and --timeout");
+  }
+  if (!options.tree.empty() && options.tree == options.output) {
+    throw Error("--tree and -o name the same file, " + options.output, "two files");
   }
   for (const std::string& file : {options.output, options.tree}) {
     if (!file.empty()) check_output(file, options.json);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <set>
 
 namespace locograph {
 namespace {
@@ -154,11 +155,13 @@ JudgedStance::JudgedStance(const Robot& robot, const World& world, const Stance&
     return body_of[std::size_t(robot.link_index(link))];
   };
   Stance taken = stance;
+  std::set<const EndEffector*> used;
   for (Contact& contact : taken.contacts) {
     const auto found = std::find_if(known.begin(), known.end(), [&](const EndEffector& effector) {
       return name_of(effector) == contact.name();
     });
     if (found != known.end()) {
+      if (!used.insert(&*found).second) other.push_back(contact.name() + " touches twice");
       const std::string is_other = other_claim(contact.effector, *found);
       const std::string more = is_other.empty() ? excess_claim(contact.effector, *found) : "";
       if (!is_other.empty()) other.push_back(contact.name() + is_other);
@@ -172,6 +175,8 @@ JudgedStance::JudgedStance(const Robot& robot, const World& world, const Stance&
     });
     if (alias != known.end())
       other.push_back(contact.name() + " is on the body that is known as " + name_of(*alias));
+    else if (!known.empty())
+      other.push_back(contact.name() + " is no end effector that is known");
     else
       unknown.push_back(contact.name());
   }

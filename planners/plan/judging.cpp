@@ -16,13 +16,41 @@ bool same_file(const fs::path& a, const fs::path& b) {
   return !a.empty() && !b.empty() && fs::equivalent(a, b, unknown);
 }
 
-/// A stronger or lighter robot than the scenario's would keep other limits.
-void require_robot_of(const Scenario& scenario, const Robot& robot) {
-  if (same_file(robot.urdf_file(), scenario.urdf)) return;
-  if (read_file(robot.urdf_file()) == read_file(scenario.urdf)) return;
-  throw Error("the plan's robot, " + robot.urdf_file().string() +
-                  ", is not the one of the scenario " + scenario.source,
-              scenario.urdf.string());
+std::vector<std::string> active_names(const Robot& robot) {
+  std::vector<std::string> names;
+  for (int i = 0; i < robot.active_joint_count(); ++i) names.push_back(robot.active_joint(i).name);
+  return names;
+}
+
+/// The scenario's robot, also where the plan says less of its own: that it does not float, that
+/// joints are frozen, that links may meet.
+std::shared_ptr<const Robot> robot_of(const Scenario& scenario,
+                                      const std::shared_ptr<const Robot>& own) {
+  const std::string names_robot = "the plan's robot, " + own->urdf_file().string();
+  const bool same_urdf = same_file(own->urdf_file(), scenario.urdf);
+  if (!same_urdf && read_file(own->urdf_file()) != read_file(scenario.urdf)) {
+    throw Error(names_robot + ", is not the one of the scenario " + scenario.source,
+                scenario.urdf.string());
+  }
+  const RobotOptions &ours = own->options(), &theirs = scenario.robot;
+  const bool same_srdf = (own->srdf_file().empty() && scenario.srdf.empty()) ||
+                         same_file(own->srdf_file(), scenario.srdf);
+  if (same_urdf && same_srdf && ours.floating_base == theirs.floating_base &&
+      ours.active_joints == theirs.active_joints && ours.frozen_state == theirs.frozen_state) {
+    return own;
+  }
+  auto robot =
+      std::make_shared<const Robot>(Robot::load(scenario.urdf, scenario.srdf, scenario.robot));
+  if (robot->floating_base() != own->floating_base()) {
+    throw Error(names_robot + ", is " + (own->floating_base() ? "floating" : "fixed") +
+                    ", that of the scenario " + scenario.source + " is not",
+                robot->floating_base() ? "floating" : "fixed");
+  }
+  if (active_names(*robot) != active_names(*own)) {
+    throw Error(names_robot + ", moves other joints than that of the scenario " + scenario.source,
+                "the same active joints");
+  }
+  return robot;
 }
 
 void take_word_of(const Scenario& scenario, CheckOptions& options) {
@@ -53,11 +81,12 @@ Judging judging_of(const Graph& graph, const Plan& plan, const JudgingRequest& r
     throw Error("a plan with both a PARAMS_SCENARIO and a PARAMS_CONTACTS", "one of them");
   }
   Judging judging;
+  judging.robot = plan.robot->robot;
   std::optional<Scenario> scenario;
   const bool other = !request.scenario.empty();
   if (other || origin) {
     scenario = load_scenario(other ? request.scenario : origin->scenario, request.data_folder);
-    require_robot_of(*scenario, *plan.robot->robot);
+    judging.robot = robot_of(*scenario, plan.robot->robot);
     take_word_of(*scenario, judging.options);
     judging.options.compare_claims = !other;
     judging.world = world_of(*scenario);
@@ -82,12 +111,12 @@ Judging judging_of(const Graph& graph, const Plan& plan, const JudgingRequest& r
 }
 
 CheckReport judged(const Graph& graph, const Plan& plan, const Judging& judging) {
-  return *judged(motion_of(graph, plan), plan, judging, JobControl());
+  return *judged(motion_of(graph, plan), judging, JobControl());
 }
 
-std::optional<CheckReport> judged(const Motion& motion, const Plan& plan, const Judging& judging,
+std::optional<CheckReport> judged(const Motion& motion, const Judging& judging,
                                   const JobControl& job) {
-  const Judge judge(plan.robot->robot, judging.world);
+  const Judge judge(judging.robot, judging.world);
   const bool posture = motion.configurations.size() == 1 && motion.stance_from.front() >= 0;
   if (!posture) return judge.check(motion, judging.options, job);
   return judge.check(motion.configurations.front(), motion.stances.front(), judging.options);

@@ -6,7 +6,8 @@
 ///     const Judging judging = judging_of(graph, plan, request);
 ///     const CheckReport report = judged(graph, plan, judging);
 ///
-/// A plan does not vouch for itself. What is in the way and what may be touched is its scenario's
+/// A plan does not vouch for itself. The robot, its limits and the pairs of links that may meet are
+/// its scenario's; what is in the way and what may be touched is its scenario's
 /// own environment, and what its PARAMS_WORLD adds; what end effectors can bear is the word of the
 /// scenario or of the contacts file. A plan that names neither stands on the plane z = 0 among what
 /// its PARAMS_WORLD names, and what it says of its contacts is taken on trust, which the report
@@ -16,9 +17,11 @@
 #include <locograph/check/check_report.h>
 #include <locograph/common/job_control.h>
 #include <locograph/planners/plan/plan.h>
+#include <locograph/robots/robot.h>
 #include <locograph/world/world.h>
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -35,18 +38,19 @@ struct JudgingRequest {
 };
 
 struct Judging {
+  std::shared_ptr<const Robot> robot;  ///< the scenario's, whatever the plan says of its own
   World world;
   CheckOptions options;
 };
 
 /// Throws Error for files that cannot be used, for a plan that names both a scenario and a contacts
-/// file, and for a plan of another robot than the scenario's.
+/// file, and for a plan of another robot than the scenario's, or one that moves other joints.
 Judging judging_of(const Graph& graph, const Plan& plan, const JudgingRequest& request);
 
 /// A posture, one configuration that stands, is judged as PostureSolver does; others as motions.
 CheckReport judged(const Graph& graph, const Plan& plan, const Judging& judging);
 /// The same of motion_of(graph, plan); nothing when the job ends before the check does.
-std::optional<CheckReport> judged(const Motion& motion, const Plan& plan, const Judging& judging,
+std::optional<CheckReport> judged(const Motion& motion, const Judging& judging,
                                   const JobControl& job);
 
 }  // namespace locograph

@@ -86,6 +86,8 @@ Plan plan_of(const Graph& graph) {
   if (plan.slots.empty()) throw Error("the graph holds no plan", "VERTEX_CONFIGURATION lines");
   const auto format = only<PlanParameter>(parameters);
   if (!format) throw Error("a plan without a format version", "a PARAMS_PLAN line");
+  only<ScenarioParameter>(parameters);
+  only<ContactsParameter>(parameters);
   plan.stances_only = format->stances_only;
   plan.incomplete = format->incomplete;
   plan.world = only<WorldParameter>(parameters);

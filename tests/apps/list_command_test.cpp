@@ -59,7 +59,11 @@ TEST(List, EveryKernelItNamesCanBeChosen) {
   }
 }
 
-TEST(List, FindsTheRobotsThatComeAlong) { EXPECT_TRUE(list("robots").count("centauro")); }
+TEST(List, FindsTheRobotsThatComeAlong) {
+  for (const char* robot : {"centauro", "coman_plus", "go2"}) {
+    EXPECT_TRUE(list("robots").count(robot)) << robot;
+  }
+}
 
 TEST(List, NamesTheScenariosThatComeAlong) {
   EXPECT_TRUE(list("scenarios").count("centauro_drive"));

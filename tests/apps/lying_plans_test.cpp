@@ -135,6 +135,48 @@ TEST(LyingPlan, AVertexThatIsFixedIsBeyondItsLimit) {
       refused(runner, plan.text() + "FIX " + std::to_string(vertex.id) + '\n', "joint_limits"));
 }
 
+/// The plan's robot by these words instead of its own.
+std::string with_robot(PlanText plan, const std::string& robot) {
+  for (std::string& line : plan.parameters) {
+    if (line.rfind("PARAMS_ROBOT", 0) != 0) continue;
+    std::istringstream fields(line);
+    std::string tag, number;
+    fields >> tag >> number;
+    line = tag + ' ' + number + ' ' + robot;
+  }
+  return plan.text();
+}
+
+TEST(LyingPlan, LinksMayMeetAndJointsMoveAsTheScenariosRobotSays) {
+  const Drive runner;
+  const std::string stem = LOCOGRAPH_SOURCE_DIR "/robots/models/centauro/centauro";
+  std::ifstream in(stem + ".srdf");
+  std::string srdf((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  srdf.insert(srdf.find("</robot>"),
+              "<group name=\"fewer\"><joint name=\"knee_pitch_1\"/></group>\n");
+  runner.write("other.srdf", srdf);
+  // Another file with the same words: the scenario's is taken, and the plan is what it was.
+  runner.write("same.g2o",
+               with_robot(runner.plan(), stem + ".urdf other.srdf floating 1 lower_body"));
+  EXPECT_EQ(runner.run("check same.g2o").exit_code, 0);
+  PlanText fewer = runner.plan();
+  for (PlanText::Configuration& c : fewer.configurations) c.q.resize(8);
+  runner.write("fewer.g2o", with_robot(fewer, stem + ".urdf other.srdf floating 1 fewer"));
+  const Outcome outcome = runner.run("check fewer.g2o");
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
+  EXPECT_NE(outcome.err.find("moves other joints"), std::string::npos) << outcome.err;
+}
+
+TEST(LyingPlan, ASecondScenarioIsKinder) {
+  const Drive runner;
+  PlanText plan = runner.plan();
+  plan.parameters.push_back("PARAMS_SCENARIO 99 centauro_drive");
+  runner.write("lie.g2o", plan.text());
+  const Outcome outcome = runner.run("check lie.g2o");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("a second PARAMS_SCENARIO"), std::string::npos) << outcome.err;
+}
+
 TEST(LyingPlan, ARobotIsStrongerThanTheScenariosOne) {
   const Drive runner;
   const std::string stem = LOCOGRAPH_SOURCE_DIR "/robots/models/centauro/centauro";

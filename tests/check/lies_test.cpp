@@ -178,6 +178,14 @@ TEST(Lie, MoreIsClaimedThanIsKnown) {
   EXPECT_EQ(claims([](Contact& c) { c.effector.half_x_m *= 100.0; }), Names{"static_balance"});
 }
 
+TEST(Lie, AnEndEffectorThatNobodyKnowsBears) {
+  CheckOptions options;
+  options.known = {standing().known.front()};
+  EXPECT_EQ(violated(standing().check(standing().motion(2), options)), Names{"contact_claims"});
+  options.known.clear();
+  EXPECT_EQ(violated(standing().check(standing().motion(2), options)), Names{}) << "on trust";
+}
+
 TEST(Lie, TheSolesStandBesideWhatIsThere) {
   World world = standing().world();
   const auto on = [&](double half_x) {

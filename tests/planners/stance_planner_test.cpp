@@ -120,7 +120,8 @@ INSTANTIATE_TEST_SUITE_P(Tasks, ShippedTasks,
                          testing::Values(Task{"quadrupedal_walking", true, 0},
                                          Task{"standing_up", true, 0},
                                          Task{"parallel_walls", false, 1},
-                                         Task{"centauro_platform", true, 0}),
+                                         Task{"centauro_platform", true, 0},
+                                         Task{"stepping_stones", true, 1}),
                          [](const auto& info) { return info.param.name; });
 
 /// All fours of standing_up, with the left hand 50 m ahead.

@@ -104,7 +104,7 @@ TEST_P(ShippedRobots, LeaveOutOnlyPairsThatCannotMeetOrAlwaysDo) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ShippedRobots, testing::Values("centauro"),
+INSTANTIATE_TEST_SUITE_P(All, ShippedRobots, testing::Values("centauro", "go2"),
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace

@@ -156,6 +156,7 @@ struct TransitionSolver::Parts {
         find_step(q, preferred, damping);
         share = share_within(radius);
       }
+      if (!step.allFinite()) break;
       step *= share;
       trial.resize(q.size());
       rows.robot().integrate(q.data(), step.data(), trial.data());
