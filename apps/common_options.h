@@ -23,7 +23,7 @@ inline ParserOption add_torque_limits_option(OptionParser& parser, std::string& 
   return parser.add_option("--torque-limits", torques, help).one_of({"enforce", "report"});
 }
 
-/// `--threads N` of a command that takes no more than one yet.
+/// `--threads N`.
 inline void add_threads_option(
     OptionParser& parser, int& threads,
     const std::string& what = "Most threads to use (this version uses one)") {

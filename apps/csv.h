@@ -1,7 +1,6 @@
 #pragma once
-/// Tables of comma-separated values (RFC 4180): fields in double quotes hold commas, line breaks
-/// and
-/// "" for a quote.
+/// Tables of comma-separated values (RFC 4180): fields in double quotes hold commas and line
+/// breaks, and "" for a quote.
 ///
 ///     CsvReader reader(text, "runs.csv");
 ///     while (const std::optional<CsvRow> row = reader.next()) {

@@ -213,9 +213,9 @@ class GuidedSearch {
     }
   }
 
+  /// Of the node that was located last.
   void push_moves(int number) {
     const Node& node = own_->nodes[static_cast<std::size_t>(number)];
-    locate(node);
     measure(node, node.aim);
     if (number == 0) first_to_go_ = to_go_of_node_;
     for (int e = 0; e < space_.effectors(); ++e) {
@@ -490,32 +490,30 @@ class GuidedSearch {
   void trace(StancePath& path) {
     std::vector<int> way = way_to_root(trees_[0]);
     std::reverse(way.begin(), way.end());
-    for (const int n : way) kept_[0].mark(n);
-    for (std::size_t i = 1; i < way.size(); ++i) {
-      const Node& before = trees_[0].nodes[static_cast<std::size_t>(way[i - 1])];
-      const Node& after = trees_[0].nodes[static_cast<std::size_t>(way[i])];
-      const int moved = changed_effector(before.footing, after.footing);
-      const std::size_t e = static_cast<std::size_t>(moved);
-      if (before.footing[e] != kFree && after.footing[e] != kFree) {
-        path.append(without(before.footing, moved), before.lifted[e]);
-      }
-      path.append(after.footing, after.configuration);
-    }
-    way = way_to_root(trees_[1]);
-    for (const int n : way) {
-      if (from_both_ends_) kept_[1].mark(n);
+    append(0, way, path);
+    append(1, way_to_root(trees_[1]), path);
+  }
+
+  /// What comes behind the first node of a way through a tree. The parent has the configuration in
+  /// which its end effector is lifted, the child the one in which it is put down; from the goal the
+  /// way leads from child to parent.
+  void append(std::size_t tree, const std::vector<int>& way, StancePath& path) {
+    if (tree == 0 || from_both_ends_) {
+      for (const int n : way) kept_[tree].mark(n);
     }
     for (std::size_t i = 1; i < way.size(); ++i) {
-      const Node& before = trees_[1].nodes[static_cast<std::size_t>(way[i - 1])];
-      const Node& after = trees_[1].nodes[static_cast<std::size_t>(way[i])];
+      const Node& before = trees_[tree].nodes[static_cast<std::size_t>(way[i - 1])];
+      const Node& after = trees_[tree].nodes[static_cast<std::size_t>(way[i])];
+      const Node &parent = tree == 0 ? before : after, &child = tree == 0 ? after : before;
       const int moved = changed_effector(before.footing, after.footing);
       const std::size_t e = static_cast<std::size_t>(moved);
-      if (before.footing[e] != kFree && after.footing[e] != kFree) {
-        path.append(without(before.footing, moved), before.configuration);
-        path.append(after.footing, after.lifted[e]);
-      } else {
-        path.append(after.footing, before.configuration);
+      if (before.footing[e] == kFree || after.footing[e] == kFree) {
+        path.append(after.footing, child.configuration);
+        continue;
       }
+      const Eigen::VectorXd &lifted = parent.lifted[e], &put = child.configuration;
+      path.append(without(before.footing, moved), tree == 0 ? lifted : put);
+      path.append(after.footing, tree == 0 ? put : lifted);
     }
   }
 

@@ -35,15 +35,12 @@ int improve_stances(const StancePlanner& planner, const StanceProblem& problem,
   if (!options.deadline.exists() && options.stop == nullptr) {
     throw Error("plans are to be improved without end", "a deadline, or a flag that stops it");
   }
-  const auto ended = [&] {
-    return options.deadline.passed() || (options.stop != nullptr && *options.stop);
-  };
   const Stopwatch watch;
   ThreadPool pool(threads);
   std::vector<StancePlan> others(static_cast<std::size_t>(threads));
   auto best = price_of(problem, plan);
   int better = 0;
-  for (std::uint64_t tried = 1; plan.success && !ended();
+  for (std::uint64_t tried = 1; plan.success && !options.ended();
        tried += static_cast<std::uint64_t>(threads)) {
     pool.run(threads, [&](int i) {
       StancePlannerOptions other = options;

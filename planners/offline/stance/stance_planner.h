@@ -68,6 +68,9 @@ struct StancePlannerOptions {
   std::function<void(const TransitionAttempt&)> observe = nullptr;
   bool keep_tree = false;  ///< StancePlan::tree is filled
 
+  bool stopped() const { return stop != nullptr && *stop; }
+  bool ended() const { return deadline.passed() || stopped(); }
+
   /// Throws Error naming the option that is out of range.
   void validate() const;
 };

@@ -91,9 +91,9 @@ class StanceSpace {
   bool tried_enough() const { return transitions_left() <= 0; }
 
   /// StancePlannerOptions::stop is set.
-  bool stopped() const { return options_.stop != nullptr && *options_.stop; }
+  bool stopped() const { return options_.stopped(); }
   /// Stopped, or the time allowed is used up.
-  bool ended() const { return options_.deadline.passed() || stopped(); }
+  bool ended() const { return options_.ended(); }
 
   int transitions = 0, transitions_found = 0;
   double transitions_s = 0.0;
