@@ -37,7 +37,7 @@ struct CampaignOptions {
   unsigned seed = 0;
   bool stances_only = false;
   double timeout_s = 0.0, move_contacts_m = 0.0;
-  int threads = 0;  ///< 0: as many as `plan` takes
+  int threads = 0;  ///< 0: an even share of the cores for each process
   int processes = 1;
   bool json = false;
 
@@ -99,6 +99,12 @@ class PlanProcess {
     if (!options.planner.empty()) words.insert(words.end(), {"--planner", options.planner});
     const std::vector<std::string> others = options.passed_on();
     words.insert(words.end(), others.begin(), others.end());
+    // Runs at the same time share the cores.
+    if (options.threads == 0 && options.processes > 1) {
+      const int cores = static_cast<int>(std::thread::hardware_concurrency());
+      words.insert(words.end(),
+                   {"--threads", std::to_string(std::max(1, cores / options.processes))});
+    }
     return words;
   }
 
@@ -261,13 +267,13 @@ std::vector<unsigned> seeds_of(const CampaignOptions& options) {
   return seeds;
 }
 
-CampaignTable table_of(const CampaignOptions& options, const std::string& scenario) {
-  CampaignTable table({scenario, options.planner, joined(options.passed_on())});
+CampaignTable table_of(const CampaignOptions& options, const Scenario& scenario) {
+  CampaignTable table({scenario.source, options.planner, joined(options.passed_on())});
   if (options.csv.empty()) return table;
   if (is_standard_output(options.csv)) {
     throw Error(options.csv, 0, "standard output as a table that grows", "a file");
   }
-  check_output(options.csv);
+  check_output(options.csv, files_of(scenario));
   if (std::filesystem::exists(options.csv)) table.read(options.csv);
   return table;
 }
@@ -279,8 +285,9 @@ ExitCode run_campaign(const CampaignOptions& options) {
   }
   const std::vector<unsigned> seeds = seeds_of(options);
   // Where it is wrong that is said before anything runs.
-  const std::string scenario = load_scenario(options.scenario, data_folder()).source;
-  CampaignTable table = table_of(options, scenario);
+  const Scenario loaded = load_scenario(options.scenario, data_folder());
+  const std::string& scenario = loaded.source;
+  CampaignTable table = table_of(options, loaded);
   const FinishOnSignal finish;
   run_seeds(options, seeds, table);
   std::vector<CampaignRun> runs;
@@ -317,7 +324,9 @@ Command add_campaign(OptionParser& app) {
                   "As for plan: each run moves the contacts of start and goals by its seed [m]")
       .between(0.0, 10.0)
       .show_default();
-  parser.add_option("--threads", o.threads, "Most threads of each run (without it, as for plan)")
+  parser
+      .add_option("--threads", o.threads,
+                  "Most threads of each run (without it, an even share of the cores)")
       .positive();
   parser
       .add_option("--processes", o.processes,

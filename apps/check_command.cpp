@@ -28,6 +28,17 @@ struct CommandOptions {
   bool all = false, json = false;
 };
 
+/// "scenario: standing_up; it begins at the start, and reaches 1 of 1 goal", a line
+std::string task_text(const Judging& judging, const CheckReport& report) {
+  std::string text = "scenario: " + (judging.scenario.empty() ? "none" : judging.scenario);
+  if (!report.ends) return text + '\n';
+  const PlanEnds& ends = *report.ends;
+  text += ends.starts() ? "; it begins at the start"
+                        : "; it does not begin at the start (" + ends.off_start + ")";
+  return text + ", and reaches " + std::to_string(ends.goals_reached) + " of " +
+         counted(ends.goals, "goal", "goals") + '\n';
+}
+
 ExitCode check(const CommandOptions& options) {
   const Stopwatch total;
   std::optional<Progress> progress("reading " + options.input);
@@ -47,6 +58,12 @@ ExitCode check(const CommandOptions& options) {
   };
   if (options.json) {
     Json json = check_json(report, ids);
+    json["scenario"] = judging.scenario.empty() ? Json(nullptr) : Json(judging.scenario);
+    if (judging.moves.most_m > 0.0) {
+      json["moved_contacts"] = {{"up_to_m", judging.moves.most_m},
+                                {"seed", judging.moves.seed},
+                                {"start_draws", judging.moves.draws}};
+    }
     json["stances_only"] = file.plan.stances_only;
     json["incomplete"] = file.plan.incomplete;
     json["time"] = {{"total", total.seconds()}};
@@ -56,7 +73,7 @@ ExitCode check(const CommandOptions& options) {
                counted(report.configurations, "configuration", "configurations") +
                (file.plan.stances_only ? " of a plan of stances" : "") +
                (file.plan.incomplete ? ", the first part of an incomplete plan" : "") + '\n' +
-               check_text(report, ids, options.all));
+               task_text(judging, report) + check_text(report, ids, options.all));
   }
   return report.feasible ? kDone : kNo;
 }
@@ -68,18 +85,25 @@ Command add_check(OptionParser& app) {
   CommandOptions& o = *options;
   OptionParser parser =
       app.add_subcommand("check", "Check a plan's feasibility, at every vertex and in between");
-  parser.add_option("PLAN", o.input, "Plan file (.g2o)").required();
-  parser.add_option("--scenario", o.world.scenario,
-                    "Scenario to judge in instead of the plan's own: its world, friction, limits");
+  parser.add_option("PLAN", o.input, "Plan file (.g2o); - reads standard input").required();
+  parser.add_option(
+      "--scenario", o.world.scenario,
+      "Scenario to judge in instead of the plan's own: its world, friction, limits, task");
   add_world_options(parser, o.world);
-  parser.add_option("--clearance", o.clearance_m, "Distance to keep to obstacles [m]")
+  parser
+      .add_option(
+          "--clearance", o.clearance_m,
+          "Distance to keep to obstacles, and to surfaces, boxes and bars where a link does "
+          "not touch them [m]")
       .between(0.0, 0.5)
       .show_default();
   add_torque_limits_option(parser, o.torques,
                            "enforce: torques keep to the URDF's efforts; report: only tell them "
                            "(without it, what the scenario says, else enforce)");
-  parser.add_option("--until", o.until_s,
-                    "Time [s] until which the robot stands on where the plan ends");
+  parser
+      .add_option("--until", o.until_s,
+                  "Time [s] until which the robot stands on where the plan ends")
+      .finite();
   add_threads_option(parser, o.threads);
   add_plugin_option(parser, o.plugins);
   parser.add_flag("--all", o.all, "List every constraint, also those that hold");

@@ -17,8 +17,10 @@ std::string list(const std::vector<std::string>& items) {
 /// "joint_limits, worst 0.1 rad (limit 0 rad) at vertex 7"
 std::string judged_text(const Violation& v, const VertexIds& ids) {
   const std::string unit = v.unit == "1" ? "" : ' ' + v.unit;
-  return v.constraint + ", worst " + short_number(v.worst) + unit + " (limit " +
-         short_number(v.limit) + unit + ") at vertex " + std::to_string(ids(v.at_vertex));
+  const std::string worst =
+      std::isfinite(v.worst) ? short_number(v.worst) + unit : std::string(kBeyondMeasure);
+  return v.constraint + ", worst " + worst + " (limit " + short_number(v.limit) + unit +
+         ") at vertex " + std::to_string(ids(v.at_vertex));
 }
 
 /// A line for each reason why something was not judged.
@@ -58,7 +60,8 @@ std::string extremes_text(const CheckReport& report) {
   std::string text;
   const auto told = [&text](const char* what, const std::optional<double>& value, const char* unit,
                             double scale = 1.0) {
-    if (value) text += (text.empty() ? "" : ", ") + (what + short_number(scale * *value)) + unit;
+    if (!value || !std::isfinite(*value)) return;
+    text += (text.empty() ? "" : ", ") + (what + short_number(scale * *value)) + unit;
   };
   told("clearance ", report.min_clearance_m, " m");
   told("to itself ", report.min_self_clearance_m, " m");
@@ -102,6 +105,7 @@ Json violations_json(const CheckReport& report, const VertexIds& ids) {
 }
 
 Json check_json(const CheckReport& report, const VertexIds& ids) {
+  const auto& ends = report.ends;
   return {{"feasible", report.feasible},
           {"configurations", report.configurations},
           {"violations", violations_json(report, ids)},
@@ -111,6 +115,9 @@ Json check_json(const CheckReport& report, const VertexIds& ids) {
           {"max_torque_ratio", number_json(report.max_torque_ratio)},
           {"max_velocity_ratio", number_json(report.max_velocity_ratio)},
           {"max_contact_error_m", number_json(report.max_contact_error_m)},
+          {"start", ends ? Json(ends->starts()) : Json(nullptr)},
+          {"goals_reached", ends ? Json(ends->goals_reached) : Json(nullptr)},
+          {"goals", ends ? Json(ends->goals) : Json(nullptr)},
           {"trusted", report.trusted}};
 }
 

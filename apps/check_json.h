@@ -19,7 +19,8 @@ using VertexIds = std::function<int(int vertex)>;
 Json violation_json(const Violation& violation);
 /// Every constraint, with the vertex, the time and the place where it is worst.
 Json violations_json(const CheckReport& report, const VertexIds& ids);
-/// All of a report: `feasible`, `violations`, the extreme values, `trusted`.
+/// All of a report: `feasible`, `violations`, the extreme values, whether it begins at the `start`
+/// and how many `goals` are reached, `trusted`.
 Json check_json(const CheckReport& report, const VertexIds& ids);
 
 /// What matters first: a line for each constraint that is violated, the worst first, then what was

@@ -48,6 +48,8 @@ Json describe_xml(const std::filesystem::path& path, const std::string& text) {
 }  // namespace
 
 Json describe_file(const std::filesystem::path& path, const TypeRegistry& types) {
+  // What comes from there cannot be looked at twice.
+  if (path == "-") return describe_graph(path, types);
   const std::string text = beginning(path);
   const std::string extension = path.extension().string();
   const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");

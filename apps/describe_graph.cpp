@@ -1,4 +1,5 @@
 #include <locograph/apps/describe.h>
+#include <locograph/apps/graph_types.h>
 #include <locograph/apps/progress.h>
 #include <locograph/apps/violations_json.h>
 #include <locograph/core/connectivity.h>
@@ -86,9 +87,9 @@ Json describe_bal(const std::filesystem::path& path) {
 Json describe_graph(const std::filesystem::path& path, const TypeRegistry& types) {
   ReadReport report;
   Progress progress("reading " + path.string());
-  Graph graph = read_graph(
-      path, types, {.lenient = true, .progress = [&progress](double read) { progress.show(read); }},
-      &report);
+  Graph graph = read_input_graph(
+      path.string(), types,
+      {.lenient = true, .progress = [&progress](double read) { progress.show(read); }}, &report);
   if (graph.vertex_count() == 0 && !report.unknown.empty()) {
     throw Error(path.string(), 0,
                 "no line is a known vertex or edge; the first: " + report.unknown.front(), "");

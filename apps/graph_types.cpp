@@ -1,4 +1,5 @@
 #include <locograph/apps/graph_types.h>
+#include <locograph/common/input_file.h>
 #include <locograph/core/plugin_library.h>
 #include <locograph/plugins/robot_types.h>
 #include <locograph/types/standard_types.h>
@@ -32,6 +33,15 @@ TypeRegistry graph_types(const std::vector<std::string>& plugins) {
     load_plugin(find_plugin(name, plugin_folders()), types);
   }
   return types;
+}
+
+std::string input_name(const std::string& input) { return input == "-" ? "stdin" : input; }
+
+Graph read_input_graph(const std::string& input, const TypeRegistry& types,
+                       const ReadOptions& options, ReadReport* report) {
+  if (input != "-") return read_graph(input, types, options, report);
+  const std::string text = read_input(input, kMostInputBytes, "a graph");
+  return read_graph_text(text, input_name(input), ".", types, options, report);
 }
 
 void add_plugin_option(OptionParser& parser, std::vector<std::string>& plugins) {

@@ -23,7 +23,8 @@ Command add_info(OptionParser& app) {
   parser
       .add_option("FILE", options->file,
                   "A graph (.g2o), robot (.urdf), map (.bt, .ot), scenario, obstacles or contacts "
-                  "file (.xml), or bundle adjustment in the large (.txt, .bal)")
+                  "file (.xml), or bundle adjustment in the large (.txt, .bal); - reads a graph "
+                  "from standard input")
       .required();
   add_plugin_option(parser, options->plugins);
   options->sampling.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));

@@ -15,7 +15,8 @@ int line_of(const std::string& text, std::size_t at) {
 }  // namespace
 
 Json read_json(const std::filesystem::path& file, const std::string& expected) {
-  const std::string text = read_file(file, kMostInputBytes, expected);
+  const std::string text = file == "-" ? read_input(file, kMostInputBytes, expected)
+                                       : read_file(file, kMostInputBytes, expected);
   try {
     return Json::parse(text);
   } catch (const Json::parse_error& failure) {

@@ -45,8 +45,6 @@ struct OptimizeOptions {
   std::vector<std::string> plugins;
   bool graduated = false, lenient = false, json = false, diagnose = false;
   bool bal = false;  ///< the input is a file of bundle adjustment in the large
-
-  std::string input_name() const { return input == "-" ? "stdin" : input; }
 };
 
 struct Times {
@@ -91,25 +89,18 @@ bool is_bal_file(const std::string& path) {
 }
 
 Graph load(const OptimizeOptions& options, ReadReport& report) {
-  Progress progress("reading " + options.input_name());
+  Progress progress("reading " + input_name(options.input));
   if (options.bal) return read_bal(options.input);
   const ReadOptions read = {.lenient = options.lenient,
                             .progress = [&progress](double read) { progress.show(read); }};
   const TypeRegistry types = graph_types(options.plugins);
-  Graph graph;
-  if (options.input == "-") {
-    const std::string text((std::istreambuf_iterator<char>(std::cin)),
-                           std::istreambuf_iterator<char>());
-    graph = read_graph_text(text, options.input_name(), ".", types, read, &report);
-  } else {
-    graph = read_graph(options.input, types, read, &report);
-  }
+  Graph graph = read_input_graph(options.input, types, read, &report);
   if (graph.vertex_count() == 0) {
-    throw Error(options.input_name(), 0, "holds no vertex of a known type", "VERTEX_… lines");
+    throw Error(input_name(options.input), 0, "holds no vertex of a known type", "VERTEX_… lines");
   }
   for (const std::string& unknown : report.unknown) print_warning(unknown + ": line left out");
   if (report.indefinite_information > 0) {
-    print_warning(options.input_name() + ":" + std::to_string(report.first_indefinite_line) +
+    print_warning(input_name(options.input) + ":" + std::to_string(report.first_indefinite_line) +
                   ": the first of " + std::to_string(report.indefinite_information) +
                   " indefinite information matrices, all projected to the nearest positive "
                   "semi-definite ones");
@@ -184,7 +175,7 @@ OptimiserResult run(Start& start, const OptimizeOptions& options, LinearSolver& 
   Optimiser optimiser(options.optimiser);
   optimiser.start(workspace, solver);
   times.compile += watch.lap();
-  Progress progress("optimising " + options.input_name());
+  Progress progress("optimising " + input_name(options.input));
   while (optimiser.iterate()) {
     progress.show({}, [&] {
       const OptimiserResult& so_far = optimiser.result();
@@ -253,7 +244,7 @@ void print_summary(const OptimizeOptions& options, const Json& result) {
   const auto number = [&result](const char* key) {
     return result[key].is_null() ? "not a number" : short_number(result[key].get<double>());
   };
-  std::string text = options.input_name() + ": " +
+  std::string text = input_name(options.input) + ": " +
                      counted(result["vertices"], "vertex", "vertices") + ", " +
                      counted(result["edges"], "edge", "edges") + ", " +
                      counted(result["dimension"], "unknown", "unknowns") + ", " +
@@ -288,7 +279,7 @@ void print_summary(const OptimizeOptions& options, const Json& result) {
 }
 
 ExitCode optimize(const OptimizeOptions& options) {
-  if (!options.output.empty()) check_output(options.output, options.json);
+  if (!options.output.empty()) check_output(options.output, {options.input}, options.json);
   options.optimiser.validate();
   const bool ceres = options.linear_solver == "ceres";
   if (ceres && options.graduated) throw Error("Ceres does not graduate", "--gnc without ceres");
@@ -306,7 +297,7 @@ ExitCode optimize(const OptimizeOptions& options) {
   if (options.bal) {
     gauge.text = "free, held by damping";
   } else {
-    gauge = hold_gauge(graph, options.input_name(), options.lenient);
+    gauge = hold_gauge(graph, input_name(options.input), options.lenient);
     mark_points_for_elimination(graph);
   }
   Stopwatch watch;

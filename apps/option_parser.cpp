@@ -3,11 +3,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <sstream>
+#include <type_traits>
 
 namespace locograph {
 namespace {
@@ -63,6 +66,29 @@ CLI::Validator finite_numbers_between(Number least, Number most) {
   });
 }
 
+/// CLI11's own answer to what is no number of the type is that it could not convert it.
+template <class Whole>
+CLI::Validator whole_numbers() {
+  const auto wrong = [](std::string& text) -> std::string {
+    const char* end = text.data() + text.size();
+    Whole value = 0;
+    const std::from_chars_result parsed = std::from_chars(text.data(), end, value);
+    if (parsed.ec == std::errc() && parsed.ptr == end) return "";
+    const bool digits =
+        text.find_first_not_of("0123456789", text.starts_with('-') ? 1 : 0) == std::string::npos;
+    const std::string range = " from " + std::to_string(std::numeric_limits<Whole>::min()) +
+                              " to " + std::to_string(std::numeric_limits<Whole>::max());
+    const bool beyond = digits && text.size() > (text.starts_with('-') ? 1 : 0);
+    return "'" + text + "', expected a whole number" + (beyond ? range : "");
+  };
+  return CLI::Validator(wrong, "");
+}
+
+CLI::Validator some_text() {
+  return CLI::Validator([](std::string& text) { return text.empty() ? "'', expected a name" : ""; },
+                        "");
+}
+
 }  // namespace
 
 ParserOption& ParserOption::required() { return option_->required(), *this; }
@@ -77,6 +103,11 @@ ParserOption& ParserOption::positive() {
 ParserOption& ParserOption::not_negative() {
   const auto accepted = [](double value) { return value >= 0.0; };
   return option_->check(finite_numbers("NONNEGATIVE", "a number >= 0", accepted)), *this;
+}
+
+ParserOption& ParserOption::finite() {
+  const auto accepted = [](double) { return true; };
+  return option_->check(finite_numbers("", "a number", accepted)), *this;
 }
 
 ParserOption& ParserOption::between(int least, int most) {
@@ -110,7 +141,13 @@ OptionParser::OptionParser(const std::string& description, const std::string& na
 template <class Value>
 ParserOption OptionParser::add_option(const std::string& names, Value& value,
                                       const std::string& help) {
-  return ParserOption(*app_->add_option(names, value, help));
+  CLI::Option* option = app_->add_option(names, value, help);
+  if constexpr (std::is_integral_v<Value> && !std::is_same_v<Value, bool>) {
+    option->check(whole_numbers<Value>());
+  } else if constexpr (std::is_convertible_v<Value, std::filesystem::path>) {
+    option->check(some_text());
+  }
+  return ParserOption(*option);
 }
 
 #define LOCOGRAPH_OPTION(VALUE) \

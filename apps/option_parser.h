@@ -36,6 +36,8 @@ class ParserOption {
   ParserOption& required();
   ParserOption& positive();
   ParserOption& not_negative();
+  /// Any number but those that are infinite or none.
+  ParserOption& finite();
   ParserOption& between(int least, int most);
   ParserOption& between(double least, double most);
   ParserOption& one_of(const std::vector<std::string>& values);
@@ -58,7 +60,7 @@ class OptionParser {
 
   /// names: "NAME" for a positional argument, "-o,--output" for an option. Value: bool, a signed or
   /// unsigned integer, double, std::string, std::filesystem::path, or a list of int, std::string or
-  /// std::filesystem::path.
+  /// std::filesystem::path. Names are not empty, integers those that the variable holds.
   template <class Value>
   ParserOption add_option(const std::string& names, Value& value, const std::string& help = "");
   ParserOption add_flag(const std::string& names, bool& value, const std::string& help);

@@ -1,5 +1,6 @@
 #include <locograph/apps/output.h>
 #include <locograph/common/atomic_file.h>
+#include <locograph/common/control_characters.h>
 #include <locograph/common/error.h>
 #include <unistd.h>
 
@@ -15,11 +16,13 @@ namespace {
 /// check_output() was told so: then nothing else goes to standard output.
 bool output_is_a_file = false;
 bool silenced = false;
+std::vector<std::filesystem::path> outputs;  // that check_output() was asked for
+constexpr const char *kEscape = "\\x", *kJsonEscape = "\\u00";
 
 std::string one_line(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
   std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
+  return without_controls(text, kEscape);
 }
 
 std::string scalar_text(const Json& value) {
@@ -95,15 +98,27 @@ void write_value(std::ostream& out, const Json& value, const std::string& unit,
   }
 }
 
-}  // namespace
+/// Of a file that keeps what is in it.
+bool is_one_file(const std::filesystem::path& output, const std::filesystem::path& input) {
+  std::error_code failed;
+  return !input.empty() && input != "-" && !is_standard_output(output) &&
+         std::filesystem::is_regular_file(output, failed) &&
+         std::filesystem::equivalent(output, input, failed);
+}
 
-void print_text(const std::string& text) {
+/// What names hold that a terminal would obey is escaped.
+void print_escaped(const std::string& raw, const char* escape) {
+  const std::string text = without_controls(raw, escape, "\n");
   if (output_is_a_file) {
     std::cerr << text << std::flush;
   } else {
     write_to_descriptor(STDOUT_FILENO, text, "standard output");
   }
 }
+
+}  // namespace
+
+void print_text(const std::string& text) { print_escaped(text, kEscape); }
 
 void print_result(const Json& result, bool as_json) {
   std::ostringstream text;
@@ -117,7 +132,7 @@ void print_result(const Json& result, bool as_json) {
       write_value(text, value, unit, "  ");
     }
   }
-  print_text(text.str());
+  print_escaped(text.str(), as_json ? kJsonEscape : kEscape);
 }
 
 void be_quiet() { silenced = true; }
@@ -133,7 +148,20 @@ void print_error(const std::string& what) {
   std::cerr << "locograph: " << one_line(what) << std::endl;
 }
 
-void check_output(const std::filesystem::path& path, bool json) {
+void check_not_input(const std::filesystem::path& output,
+                     const std::vector<std::filesystem::path>& inputs) {
+  for (const std::filesystem::path& input : inputs) {
+    if (!is_one_file(output, input)) continue;
+    throw Error(output.string(), 0,
+                "is to be written and is an input" +
+                    (output == input ? "" : ", " + input.string()) + ", which would be lost",
+                "another file");
+  }
+}
+
+void check_output(const std::filesystem::path& path,
+                  const std::vector<std::filesystem::path>& inputs, bool json) {
+  check_not_input(path, inputs);
   if (is_standard_output(path)) {
     if (json || output_is_a_file) {
       throw Error(path.string(), 0, "two results on standard output",
@@ -142,6 +170,16 @@ void check_output(const std::filesystem::path& path, bool json) {
     output_is_a_file = true;
   }
   check_output_path(path);
+  if (is_standard_output(path)) return;
+  std::error_code failed;
+  const std::filesystem::path file =
+      std::filesystem::weakly_canonical(std::filesystem::absolute(path), failed);
+  const bool keeps =
+      std::filesystem::is_regular_file(file, failed) || !std::filesystem::exists(file, failed);
+  if (keeps && std::find(outputs.begin(), outputs.end(), file) != outputs.end()) {
+    throw Error(path.string(), 0, "two results in one file", "two files");
+  }
+  outputs.push_back(file);
 }
 
 std::string short_number(double value) {

@@ -24,13 +24,15 @@
 namespace locograph {
 namespace {
 
+int cores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
 struct PlanOptions {
   std::string scenario, output, tree, torques, planner = "guided";
   bool stances_only = false, improve = false;
   unsigned seed = 0;
   double timeout_s = 0.0;
   double move_contacts_m = 0.0;
-  int threads = 1;
+  int threads = cores();
   bool json = false;
 };
 
@@ -54,7 +56,8 @@ Planned plan_and_judge(const Scenario& scenario, const PlanOptions& options,
   const Motion motion = motion_of(*planned.graph, plan);
   planned.configurations = motion.configurations.size();
   planned.duration_s = motion.time_s.back() - motion.time_s.front();
-  Judging judging = judging_of(*planned.graph, plan, {.data_folder = data_folder()});
+  Judging judging =
+      judging_of(*planned.graph, plan, {.deadline = job.deadline, .data_folder = data_folder()});
   if (!options.torques.empty()) {
     judging.options.enforce_torque_limits = options.torques == "enforce";
   }
@@ -75,7 +78,11 @@ ExitCode plan_drive(const Scenario& scenario, const PlanOptions& options, const 
     job.report = [&](std::string_view what, double fraction) {
       progress.show(fraction, [&] { return std::string(what); });
     };
-    planned = plan_and_judge(scenario, options, job);
+    try {
+      planned = plan_and_judge(scenario, options, job);
+    } catch (const OutOfTime&) {
+      planned = {};
+    }
   }
   if (planned.success) {
     const Progress progress("writing " + options.output);
@@ -120,37 +127,54 @@ Json failures_json(const StancePlan& plan) {
   return all;
 }
 
+/// Without a robot, and with the reason in the plan, if it is not ready in time.
+StartedProblem started_problem(const Scenario& scenario, const PlanOptions& options,
+                               const Deadline& deadline, StancePlan& plan) {
+  StartedProblem started;
+  try {
+    started = stance_problem(scenario, {.most_m = options.move_contacts_m, .seed = options.seed},
+                             deadline);
+  } catch (const OutOfTime& late) {
+    plan.reason = std::string("before the search began, ") + late.what();
+    return {};
+  }
+  if (!options.torques.empty()) {
+    started.problem.check.enforce_torque_limits = options.torques == "enforce";
+  }
+  return started;
+}
+
 ExitCode plan_stances_of(const Scenario& scenario, const PlanOptions& options) {
   const auto planner = make_stance_planner(options.planner);
   const Stopwatch total;
-  StartedProblem started =
-      stance_problem(scenario, {.most_m = options.move_contacts_m, .seed = options.seed});
-  StanceProblem& problem = started.problem;
-  if (!options.torques.empty()) {
-    problem.check.enforce_torque_limits = options.torques == "enforce";
-  }
   StancePlannerOptions asked;
   asked.seed = options.seed;
   asked.keep_tree = !options.tree.empty();
+  asked.threads = std::min(options.threads, cores());
   if (options.timeout_s > 0.0) asked.deadline = Deadline::after(options.timeout_s);
-  const FinishOnSignal finish;
-  asked.stop = &stop_flag();
   StancePlan plan;
   int improved = 0;
   Graph graph;
   double total_s = 0.0;
-  {
-    const Progress progress("planning " + options.scenario);
+  std::optional<Progress> progress("preparing " + options.scenario);
+  const StartedProblem started = started_problem(scenario, options, asked.deadline, plan);
+  const StanceProblem& problem = started.problem;
+  const bool prepared = problem.robot != nullptr;
+  std::optional<FinishOnSignal> finish;
+  if (prepared) {
+    finish.emplace();
+    asked.stop = &stop_flag();
+    progress.emplace("planning " + options.scenario);
     plan = planner->plan(problem, asked);
     if (options.improve) {
-      const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-      improved = improve_stances(*planner, problem, asked, std::min(options.threads, cores), plan);
+      improved = improve_stances(*planner, problem, asked, asked.threads, plan);
     }
     graph = stance_graph(scenario, problem, plan);
-    total_s = total.seconds();
   }
-  write_graph(graph, options.output);
-  if (asked.keep_tree) {
+  total_s = total.seconds();
+  progress.reset();
+  if (prepared) write_graph(graph, options.output);
+  if (prepared && asked.keep_tree) {
     write_file_atomically(options.tree,
                           stance_tree_text(scenario.name, planner->name(), options.seed, plan));
   }
@@ -179,7 +203,8 @@ ExitCode plan_stances_of(const Scenario& scenario, const PlanOptions& options) {
   };
   if (options.improve) json["improved"] = improved;
   if (options.move_contacts_m > 0.0) {
-    json["moved_contacts"] = {{"up_to_m", options.move_contacts_m}, {"start_draws", started.draws}};
+    json["moved_contacts"] = {{"up_to_m", options.move_contacts_m},
+                              {"start_draws", problem.moves.draws}};
   }
   if (!plan.success) {
     json["best"] = {{"stances", plan.stances.size()},
@@ -202,9 +227,10 @@ ExitCode plan_stances_of(const Scenario& scenario, const PlanOptions& options) {
   text += plan.success ? "" : "no plan: " + plan.reason + "; so far ";
   text += counted(json["stances"], "stance", "stances") + ", " +
           counted(json["transitions"]["tried"], "transition", "transitions") + " tried, in " +
-          short_number(total_s) + " s\nwritten: " + options.output + '\n';
+          short_number(total_s) + " s\n";
+  if (prepared) text += "written: " + options.output + '\n';
   if (options.improve) text += "improved " + counted(improved, "time", "times") + '\n';
-  if (asked.keep_tree) text += "written: " + options.tree + '\n';
+  if (prepared && asked.keep_tree) text += "written: " + options.tree + '\n';
   print_text(text);
   return plan.success ? kDone : kNo;
 }
@@ -216,14 +242,14 @@ ExitCode plan_scenario(const PlanOptions& options) {
   if (options.improve && !(options.stances_only && options.timeout_s > 0.0)) {
     throw Error("--improve goes on until the time is used up", "--stances-only and --timeout");
   }
-  if (!options.tree.empty() && options.tree == options.output) {
-    throw Error("--tree and -o name the same file, " + options.output, "two files");
-  }
   for (const std::string& file : {options.output, options.tree}) {
-    if (!file.empty()) check_output(file, options.json);
+    if (!file.empty()) check_output(file, {}, options.json);
   }
   const Stopwatch total;
   const Scenario scenario = load_scenario(options.scenario, data_folder());
+  for (const std::string& file : {options.output, options.tree}) {
+    if (!file.empty()) check_not_input(file, files_of(scenario));
+  }
   if (scenario.drive) {
     if (options.stances_only) {
       throw Error(scenario.source, scenario.drive->line, "a drive has no stances to plan",
@@ -276,7 +302,11 @@ Command add_plan(OptionParser& app) {
                   "surface or bar at random, by the seed, up to so far along each axis [m]")
       .between(0.0, 10.0)
       .show_default();
-  add_threads_option(parser, o.threads, "Most threads to use; --improve does");
+  parser
+      .add_option("--threads", o.threads,
+                  "Most threads to use (all cores); without --improve and --timeout the plan does "
+                  "not depend on it")
+      .positive();
   parser.add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] { return plan_scenario(*options); }};
 }

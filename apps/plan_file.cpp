@@ -2,6 +2,7 @@
 #include <locograph/apps/plan_file.h>
 #include <locograph/check/judge.h>
 #include <locograph/common/data_folder.h>
+#include <locograph/plugins/configuration/plan_parameters.h>
 
 #include <memory>
 
@@ -33,7 +34,21 @@ PlanFile plan_in(Graph graph, const std::string& file) {
 }
 
 PlanFile load_plan(const std::string& file, const std::vector<std::string>& plugins) {
-  return plan_in(read_graph(file, graph_types(plugins)), file);
+  return plan_in(read_input_graph(file, graph_types(plugins)), input_name(file));
+}
+
+std::vector<std::filesystem::path> files_of(const PlanFile& file) {
+  std::vector<std::filesystem::path> files = {file.plan.robot->urdf, file.plan.robot->srdf};
+  if (file.plan.world) {
+    files.insert(files.end(), {file.plan.world->map, file.plan.world->obstacles});
+  }
+  const Parameters& parameters = file.graph.parameters();
+  if (const auto origin = parameters.find<ScenarioParameter>();
+      origin && origin->scenario.find('/') != std::string::npos) {
+    files.emplace_back(origin->scenario);
+  }
+  if (const auto contacts = parameters.find<ContactsParameter>()) files.push_back(contacts->file);
+  return files;
 }
 
 void add_world_options(OptionParser& parser, WorldOptions& options) {

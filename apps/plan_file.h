@@ -11,6 +11,7 @@
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
 
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -27,6 +28,9 @@ struct PlanFile {
 PlanFile load_plan(const std::string& file, const std::vector<std::string>& plugins = {});
 /// The plan in a graph that was read from this file, likewise.
 PlanFile plan_in(Graph graph, const std::string& file);
+
+/// The files that it names: of its robot, its world, its scenario, its contacts.
+std::vector<std::filesystem::path> files_of(const PlanFile& file);
 
 /// What commands are told about the world: see JudgingRequest.
 struct WorldOptions {

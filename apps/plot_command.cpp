@@ -17,7 +17,7 @@ struct CommandOptions {
 };
 
 ExitCode plot(const CommandOptions& options) {
-  check_output(options.output);
+  check_output(options.output, {options.input});
   {
     const Progress progress("drawing " + options.input);
     plot_result(options.input, options.plugins).write(options.output);
@@ -33,8 +33,10 @@ Command add_plot(OptionParser& app) {
   CommandOptions& o = *options;
   OptionParser parser = app.add_subcommand("plot", "Draw a diagram of a result");
   parser
-      .add_option("RESULT", o.input,
-                  "JSON of optimize, refine or check, a plan (.g2o) or a table (.csv)")
+      .add_option(
+          "RESULT", o.input,
+          "JSON of optimize, refine or check (also -, standard input), a plan (.g2o) or a table "
+          "(.csv)")
       .required();
   parser.add_option("-o,--output", o.output, "Diagram to write (.svg); - is standard output")
       .required();

@@ -125,10 +125,13 @@ void print_summary(const Robot& robot, const PostureResult& result, const Comman
 }
 
 ExitCode posture(const CommandOptions& options) {
-  if (!options.output.empty()) check_output(options.output, options.json);
+  const std::vector<std::filesystem::path> given = {options.contacts, options.map,
+                                                    options.obstacles};
+  if (!options.output.empty()) check_output(options.output, given, options.json);
   const Stopwatch total;
   std::optional<Progress> progress("finding a posture of " + options.robot);
   const RobotFiles files = robot_files(options.robot, options.srdf);
+  if (!options.output.empty()) check_not_input(options.output, {files.urdf, files.srdf});
   const auto robot = std::make_shared<const RobotParameter>(
       files.urdf, files.srdf, RobotOptions{.active_joints = {}, .lenient_srdf = true});
   PostureProblem problem;

@@ -1,5 +1,6 @@
 #include <locograph/apps/output.h>
 #include <locograph/apps/progress.h>
+#include <locograph/common/control_characters.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -46,7 +47,7 @@ std::string progress_line(const std::string& what, double seconds, std::optional
   return line + (text.empty() ? "" : ", " + text);
 }
 
-Progress::Progress(std::string what) : what_(std::move(what)) {
+Progress::Progress(const std::string& what) : what_(without_controls(what, "\\x")) {
   if (!is_quiet() && ::isatty(STDERR_FILENO) != 0) painter_ = std::thread([this] { paint(); });
 }
 

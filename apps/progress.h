@@ -25,7 +25,7 @@ namespace locograph {
 class Progress {
  public:
   /// what: what is being done.
-  explicit Progress(std::string what);
+  explicit Progress(const std::string& what);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress();

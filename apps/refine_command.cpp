@@ -101,7 +101,8 @@ double require_feasible(const PlanFile& file, RefineReport& report) {
 }
 
 ExitCode refine_plan(const CommandOptions& options) {
-  check_output(options.output, options.json);
+  check_output(options.output, {options.input, options.world.map, options.world.obstacles},
+               options.json);
   RefineOptions refine_options;
   refine_options.planner.horizon = options.horizon;
   refine_options.planner.deadline_s = 1e-3 * options.deadline_ms;
@@ -112,6 +113,7 @@ ExitCode refine_plan(const CommandOptions& options) {
   std::optional<Progress> progress("reading " + options.input);
   PlanFile file = load_plan(options.input, options.plugins);
   if (!file.plan.world) throw Error(file.name, 0, "the plan has no world", "a PARAMS_WORLD line");
+  check_not_input(options.output, files_of(file));
   const Judging judging = judging_of(file, options.world);
   const Stopwatch watch;
   const WorldDistance seen = seen_world(file.graph, file.plan, judging.world);
@@ -161,7 +163,7 @@ Command add_refine(OptionParser& app) {
   CommandOptions& o = *options;
   OptionParser parser =
       app.add_subcommand("refine", "Walk along a plan and re-optimise a moving horizon of it");
-  parser.add_option("PLAN", o.input, "Plan file (.g2o)").required();
+  parser.add_option("PLAN", o.input, "Plan file (.g2o); - reads standard input").required();
   parser.add_option("-o,--output", o.output, "Refined plan to write (.g2o); - is standard output")
       .required();
   add_world_options(parser, o.world);

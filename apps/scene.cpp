@@ -4,6 +4,8 @@
 #include <locograph/common/data_folder.h>
 #include <locograph/common/input_file.h>
 #include <locograph/core/graph_file.h>
+#include <locograph/planners/scenario/scenario.h>
+#include <locograph/plugins/configuration/plan_parameters.h>
 
 #include <cmath>
 #include <optional>
@@ -30,6 +32,22 @@ std::optional<Judging> known_judging(const PlanFile& file, const SceneOptions& o
   }
 }
 
+/// "" where it names none, or one that is not there.
+std::string scenario_name(const PlanFile& file) {
+  const auto origin = file.graph.parameters().find<ScenarioParameter>();
+  if (!origin) return "";
+  try {
+    return load_scenario(origin->scenario, data_folder()).name;
+  } catch (const Error&) {
+    return "";
+  }
+}
+
+Stance first_stance(const PlanFile& file) {
+  const auto& first = file.plan.stance_from.front();
+  return first ? first->stance : Stance();
+}
+
 Json plan_scene(PlanFile file, const SceneOptions& options) {
   const Robot& robot = *file.plan.robot->robot;
   Json scene = {{"version", 1},
@@ -38,7 +56,9 @@ Json plan_scene(PlanFile file, const SceneOptions& options) {
                 {"robot", robot_scene(robot)}};
   const std::optional<Judging> judging = known_judging(file, options);
   add_plan_scene(file, judging ? &*judging : nullptr, options, scene);
-  if (!options.tree.empty()) scene["tree"] = tree_scene(options.tree);
+  if (!options.tree.empty()) {
+    scene["tree"] = tree_scene(options.tree, scenario_name(file), first_stance(file));
+  }
   Eigen::AlignedBox3d near;
   if (robot.floating_base()) {
     for (const int slot : file.plan.slots) {
@@ -85,10 +105,10 @@ Json make_scene(const std::string& file, const SceneOptions& options) {
   if (robot) return standing_scene(file, options);
   ReadReport report;
   Graph graph =
-      read_graph(file, graph_types(options.plugins), {.lenient = options.lenient}, &report);
+      read_input_graph(file, graph_types(options.plugins), {.lenient = options.lenient}, &report);
   require_plan(has_configurations(graph));
   if (!has_configurations(graph)) return pose_graph_scene(std::move(graph), file, options);
-  return plan_scene(plan_in(std::move(graph), file), options);
+  return plan_scene(plan_in(std::move(graph), input_name(file)), options);
 }
 
 std::string scene_page(const Json& scene) {

@@ -4,6 +4,7 @@
 #include <locograph/apps/stance_tree_file.h>
 #include <locograph/common/error.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -34,6 +35,19 @@ std::optional<Eigen::Vector3d> point_of(const Json& json) {
     point[static_cast<Eigen::Index>(i)] = json[i].get<double>();
   }
   return point;
+}
+
+/// Whether a node that was checked has the contacts of a stance.
+bool is_at(const Json& node, const Stance& stance) {
+  constexpr double kWritten_m = 1e-5;
+  const Json& contacts = node["contacts"];
+  return contacts.size() == stance.contacts.size() &&
+         std::all_of(stance.contacts.begin(), stance.contacts.end(), [&](const Contact& contact) {
+           const std::optional<Eigen::Vector3d> point = contacts.contains(contact.name())
+                                                            ? point_of(contacts[contact.name()])
+                                                            : std::nullopt;
+           return point && (*point - contact.position).norm() <= kWritten_m;
+         });
 }
 
 /// Nodes of a file, each checked as it is added.
@@ -116,13 +130,23 @@ std::string stance_tree_text(const std::string& scenario, const std::string& pla
   return text + "\n]}\n";
 }
 
-Json tree_scene(const std::string& file) {
+Json tree_scene(const std::string& file, const std::string& scenario, const Stance& first) {
   const Json tree = read_json(file, kExpectedTree);
   if (!tree.is_object() || !tree.contains("nodes") || !tree["nodes"].is_array()) {
     throw Error(file, 0, "has no nodes", kExpectedTree);
   }
   NodeReader nodes(file);
   for (const Json& node : tree["nodes"]) nodes.add(node);
+  const Json of = tree.value("scenario", Json());
+  if (!scenario.empty() && of != scenario) {
+    throw Error(file, 0, "is a tree of the scenario " + of.dump(),
+                "one of the plan's, \"" + scenario + '"');
+  }
+  if (std::none_of(tree["nodes"].begin(), tree["nodes"].end(),
+                   [&](const Json& node) { return node["parent"] == -1 && is_at(node, first); })) {
+    throw Error(file, 0, "is the tree of another plan: none of its roots is where that one starts",
+                "what `locograph plan --tree` wrote with the plan");
+  }
   return nodes.scene();
 }
 

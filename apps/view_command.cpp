@@ -85,7 +85,13 @@ ExitCode view(const CommandOptions& options) {
     throw Error("nothing to write", "-o OUT.html, --png FILE or --serve PORT");
   }
   for (const std::string& file : {options.output, options.png}) {
-    if (!file.empty()) check_output(file, options.json);
+    if (file.empty()) continue;
+    const SceneOptions& scene = options.scene;
+    check_output(file, {options.input, scene.map, scene.obstacles, scene.tree, scene.srdf},
+                 options.json);
+  }
+  if (serving && options.input == "-") {
+    throw Error("standard input", 0, "can be read once only", "a file to --serve");
   }
   if (!options.png.empty()) require_browser();
   std::optional<Progress> progress("reading " + options.input);
@@ -108,7 +114,11 @@ Command add_view(OptionParser& app) {
   CommandOptions& o = *options;
   OptionParser parser =
       app.add_subcommand("view", "Show a plan, a pose graph or a robot in one self-contained page");
-  parser.add_option("FILE", o.input, "Plan or pose graph (.g2o), or robot (.urdf)").required();
+  parser
+      .add_option(
+          "FILE", o.input,
+          "Plan or pose graph (.g2o), or robot (.urdf); - reads a graph from standard input")
+      .required();
   parser.add_option("-o,--output", o.output,
                     "Page to write (.html); opens without a network; - is standard output");
   parser.add_option("--map", o.scene.map, "OctoMap to show instead of the plan's own world");
@@ -116,7 +126,7 @@ Command add_view(OptionParser& app) {
   parser.add_option("--tree", o.scene.tree,
                     "Plans of stances: what the search tried, as `plan --tree` wrote it");
   parser.add_option("--png", o.png, "Picture to write, taken by headless Chromium");
-  parser.add_option("--at", o.at_s, "Time of the picture [s]").show_default();
+  parser.add_option("--at", o.at_s, "Time of the picture [s]").finite().show_default();
   parser
       .add_option("--serve", o.port,
                   "Serve the page on 127.0.0.1:PORT and refine the plan live (0: any port)")

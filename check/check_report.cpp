@@ -61,7 +61,9 @@ std::string violation_text(const Violation& v) {
   const std::string name = v.constraint + (v.what.empty() ? "" : " (" + v.what + ")");
   if (!v.judged) return v.constraint + " is not judged: " + v.why_not;
   const std::string unit = v.unit == "1" ? "" : " " + v.unit;
-  return name + " is " + number(v.worst) + unit + ", limit " + number(v.limit) + unit;
+  const std::string worst =
+      std::isfinite(v.worst) ? number(v.worst) + unit : std::string(kBeyondMeasure);
+  return name + " is " + worst + ", limit " + number(v.limit) + unit;
 }
 
 const Violation& CheckReport::worst() const {

@@ -44,7 +44,9 @@ struct CheckOptions {
   /// Where the motion ends, the robot stands still on, in the stance it ends in, until this time.
   std::optional<double> until_s;
 
-  double min_clearance_m = 0.0;       ///< to obstacles and voxels
+  /// To obstacles and voxels; above 0 also to surfaces, bars and solids that a link touches neither
+  /// in a step's stance nor in the one before or after it.
+  double min_clearance_m = 0.0;
   double min_self_clearance_m = 0.0;  ///< of the pairs of Robot::self_collision_pairs()
   double min_balance_margin = 0.0;    ///< of balance_certificate.h, below 1
   bool enforce_torque_limits = true;  ///< else torques are told, and never too large
@@ -93,8 +95,20 @@ struct Violation {
   std::string why_not;  ///< why it was not judged
 };
 
+/// What texts say instead of a worst value that is not finite, as that of a contact in a world
+/// where nothing faces it.
+inline constexpr char kBeyondMeasure[] = "beyond all measure";
+
 /// "contact_position (l_sole) is 0.31 m, limit 0.0001 m", or "… is not judged: …".
 std::string violation_text(const Violation& violation);
+
+/// Where a whole plan begins and what it gets to, by the word of its task; see plan_ends.h.
+struct PlanEnds {
+  std::string off_start;  ///< what is elsewhere where it begins; empty: nothing
+  int goals_reached = 0, goals = 0;
+  std::string off_goal;  ///< the same of the first goal that is not reached
+  bool starts() const { return off_start.empty(); }
+};
 
 struct CheckReport {
   /// Every constraint that is required was judged and holds.
@@ -112,6 +126,9 @@ struct CheckReport {
   std::optional<double> max_velocity_ratio, max_contact_error_m;
   /// Of the vertex with the least margin; one wrench for each contact of its stance.
   std::optional<BalanceCertificate> balance;
+
+  /// Nothing where no task is known; windows and postures have none.
+  std::optional<PlanEnds> ends;
 
   double geometry_s = 0.0, balance_s = 0.0;  ///< what the check took
 

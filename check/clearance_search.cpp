@@ -32,7 +32,9 @@ ClearanceSearch::ClearanceSearch(CheckContext& context)
                              : nullptr),
       sampler_(standing_ ? *own_sampler_ : context.sampler),
       obstacle_path_(context.world.obstacles),
-      further_m_(context.moves() || standing_ ? kFurther_m : 0.0) {}
+      way_s_(context.motion.stances_only && context.shapes != nullptr ? obstacle_path_.end_s()
+                                                                      : 0.0),
+      further_m_(context.moves() || standing_ || way_s_ > 0.0 ? kFurther_m : 0.0) {}
 
 void ClearanceSearch::add(std::size_t channel, CollisionWorld::Closest closest, int vertex,
                           double time_s) {
@@ -57,8 +59,8 @@ ClearanceSearch::Sample ClearanceSearch::sample(int vertex, double fraction,
                  std::min(vertex, int(context_.vertices())));
   Sample sample;
   sample.fraction = fraction;
-  sampler_.link_poses(vertex, fraction, sample.world_from_link);
-  const double time_s = sampler_.time_s(vertex, fraction);
+  sampler_.link_poses(vertex, way_s_ > 0.0 ? 0.0 : fraction, sample.world_from_link);
+  const double time_s = this->time_s(vertex, fraction);
   ++samples_;
   if (self_) {
     CollisionWorld::Closest closest =
@@ -67,20 +69,68 @@ ClearanceSearch::Sample ClearanceSearch::sample(int vertex, double fraction,
     add(0, std::move(closest), vertex, time_s);
     return sample;
   }
-  const std::vector<CollisionWorld::Touch> touches = stance == nullptr
-                                                         ? std::vector<CollisionWorld::Touch>{}
-                                                         : stance->touches(sample.world_from_link);
-  const CollisionWorld::Surroundings around =
-      context_.exact.surroundings({.world_from_link = sample.world_from_link,
-                                   .time_s = time_s,
-                                   .touches = touches,
-                                   .cutoff_m = context_.cutoff_m + further_m_});
+  std::vector<CollisionWorld::Touch> touches;
+  if (stance != nullptr) touches = stance->touches(sample.world_from_link);
+  if (context_.motion.stances_only) add_grasps(vertex, stance, sample.world_from_link, touches);
+  CollisionWorld::Query query{.world_from_link = sample.world_from_link,
+                              .time_s = time_s,
+                              .touches = touches,
+                              .cutoff_m = context_.cutoff_m + further_m_};
+  CollisionWorld::Surroundings around = context_.exact.surroundings(query);
+  if (keeps_from_surfaces_) keep_from_surfaces(stance, query, around.obstacle);
   sample.distances = {around.obstacle.distance_m, around.surface.distance_m,
                       around.touched.distance_m};
   add(0, around.obstacle, vertex, time_s);
   if (has_places(context_.world)) add(1, around.surface, vertex, time_s);
   if (stance != nullptr) add(2, around.touched, vertex, time_s);
   return sample;
+}
+
+void ClearanceSearch::add_grasps(int vertex, const JudgedStance* stance, const LinkPoses& poses,
+                                 std::vector<CollisionWorld::Touch>& touches) const {
+  for (const JudgedStance* other : context_.stances_at(vertex)) {
+    if (other == stance) continue;
+    const std::vector<CollisionWorld::Touch> there = other->touches(poses);
+    for (std::size_t i = 0; i < there.size(); ++i) {
+      const JudgedContact& hand = other->contacts[i];
+      const bool held = stance != nullptr &&
+                        std::ranges::find(stance->contacts, hand.body, &JudgedContact::body) !=
+                            stance->contacts.end();
+      if (hand.is_grasp() && !hand.bars.empty() && !held) touches.push_back(there[i]);
+    }
+  }
+}
+
+void ClearanceSearch::keep_from_surfaces(const JudgedStance* stance, CollisionWorld::Query query,
+                                         CollisionWorld::Closest& nearest) const {
+  std::vector<CollisionWorld::Touch> touches(query.touches.begin(), query.touches.end());
+  for (const JudgedStance* other : around_.at(stance)) {
+    const std::vector<CollisionWorld::Touch> more = other->touches(query.world_from_link);
+    touches.insert(touches.end(), more.begin(), more.end());
+  }
+  query.touches = touches;
+  query.surface_cutoff_m = query.cutoff_m;
+  CollisionWorld::Closest surface = context_.exact.surroundings(query).surface;
+  if (surface.distance_m < nearest.distance_m) nearest = std::move(surface);
+}
+
+void ClearanceSearch::find_stances_around() {
+  around_ = {{nullptr, {}}};
+  for (const JudgedStance& stance : context_.stances) around_[&stance];
+  const auto add = [this](const JudgedStance* to, const JudgedStance* other) {
+    std::vector<const JudgedStance*>& others = around_[to];
+    if (std::ranges::find(others, other) == others.end()) others.push_back(other);
+  };
+  const JudgedStance* before = nullptr;
+  for (std::size_t i = 0; i < context_.vertices(); ++i) {
+    const JudgedStance* stance = context_.stance_from(int(i));
+    if (i > 0 && stance == before) continue;
+    if (before != nullptr && stance != nullptr) {
+      add(stance, before);
+      add(before, stance);
+    }
+    before = stance;
+  }
 }
 
 double ClearanceSearch::path_bound(int step, const Sample& from, const Sample& to,
@@ -91,8 +141,7 @@ double ClearanceSearch::path_bound(int step, const Sample& from, const Sample& t
   const double robot =
       shapes.path_bound(from.world_from_link, to.world_from_link, fraction, channel.links);
   if (&channel != &channels_[0]) return robot;  // surfaces do not move, nor what may be touched
-  return robot + obstacle_path_.bound(sampler_.time_s(step, from.fraction),
-                                      sampler_.time_s(step, to.fraction));
+  return robot + obstacle_path_.bound(time_s(step, from.fraction), time_s(step, to.fraction));
 }
 
 void ClearanceSearch::refine(int step, const JudgedStance* stance, const Sample& from,
@@ -131,12 +180,21 @@ void ClearanceSearch::run_step(int step, const JudgedStance* stance, const Sampl
   refine(step, stance, begin, end);
 }
 
+void ClearanceSearch::run_way(int vertex, const JudgedStance* stance, const Sample& from) {
+  const Eigen::VectorXd& held = context_.motion.configurations[std::size_t(vertex)];
+  context_.shapes->set_step(configuration_step(context_.robot, held, held));
+  const Sample to = sample(vertex, 1.0, stance);
+  refine(vertex, stance, from, to);
+}
+
 void ClearanceSearch::run_around(ViolationTally& obstacle, ViolationTally& surface,
                                  ViolationTally& touching) {
   self_ = false;
   const World& world = context_.world;
   channels_ = {{&obstacle, 1.0, true}, {&surface, -1.0, false}, {&touching, -1.0, false}};
-  channels_[0].exists = world.map != nullptr || !world.obstacles.empty();
+  keeps_from_surfaces_ = context_.options.min_clearance_m > 0.0 && has_places(world);
+  if (keeps_from_surfaces_) find_stances_around();
+  channels_[0].exists = world.map != nullptr || !world.obstacles.empty() || keeps_from_surfaces_;
   const std::size_t vertices = context_.vertices();
   const JudgedStance* stance = nullptr;
   Sample here;
@@ -150,6 +208,7 @@ void ClearanceSearch::run_around(ViolationTally& obstacle, ViolationTally& surfa
     const JudgedStance* next = context_.stance_from(vertex);
     if (!sampled || next != stance) here = sample(vertex, 0.0, next);
     stance = next;
+    if (way_s_ > 0.0) run_way(vertex, stance, here);
     if (i + 1 == vertices) break;
     if (!context_.usable.vertices[i + 1]) continue;
     // The next vertex as the end of this step; there it is looked at with this step's stance.

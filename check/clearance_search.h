@@ -12,13 +12,23 @@
 /// violation, and for a new smallest distance to obstacles and of the robot to itself.
 ///
 /// What a link may touch is what the stance of the step says, at a vertex the stances on both
-/// sides. Tallies get depths as positive numbers.
+/// sides. In a plan of stances a grasp that begins or ends at a vertex is closed there: its hand
+/// touches what it holds in both stances, as deep as a hand may. Tallies get depths as positive
+/// numbers.
+///
+/// Where a clearance is asked for (CheckOptions::min_clearance_m), the distance to obstacles counts
+/// surfaces, bars and solids, too, but for what a link touches in this stance, the one before or
+/// the one after: it has to leave it and to get there.
+///
+/// Nobody knows when a plan of stances is carried out: obstacles that move are looked at all along
+/// their way, as if each configuration was held for as long.
 
 #include <locograph/check/check_context.h>
 #include <locograph/check/obstacle_path.h>
 #include <locograph/check/violation_tally.h>
 
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -53,8 +63,21 @@ class ClearanceSearch {
 
   Sample sample(int vertex, double fraction, const JudgedStance* stance);
   void add(std::size_t channel, CollisionWorld::Closest closest, int vertex, double time_s);
+  /// What hands hold that close or open here, in the other one of a vertex's stances.
+  void add_grasps(int vertex, const JudgedStance* stance, const LinkPoses& poses,
+                  std::vector<CollisionWorld::Touch>& touches) const;
+  /// `nearest` becomes what links are to keep away from of surfaces, bars and solids, if that is
+  /// nearer.
+  void keep_from_surfaces(const JudgedStance* stance, CollisionWorld::Query query,
+                          CollisionWorld::Closest& nearest) const;
+  void find_stances_around();
   void run_step(int step, const JudgedStance* stance, const Sample& from, const Sample& to);
   void refine(int step, const JudgedStance* stance, const Sample& from, const Sample& to);
+  /// All along the way of the obstacles, in the configuration of a vertex, from where they begin.
+  void run_way(int vertex, const JudgedStance* stance, const Sample& from);
+  double time_s(int step, double fraction) const {
+    return way_s_ > 0.0 ? fraction * way_s_ : sampler_.time_s(step, fraction);
+  }
   double path_bound(int step, const Sample& from, const Sample& to, const Channel& channel) const;
 
   CheckContext& context_;
@@ -63,8 +86,11 @@ class ClearanceSearch {
   std::unique_ptr<MotionSampler> own_sampler_;
   MotionSampler& sampler_;
   ObstaclePath obstacle_path_;
+  double way_s_;  // what fractions are of in a plan of stances where something moves; else 0
   double further_m_;
   std::vector<Channel> channels_;
+  bool keeps_from_surfaces_ = false;
+  std::map<const JudgedStance*, std::vector<const JudgedStance*>> around_;  // before and after it
   bool self_ = false;
   int samples_ = 0;
 };

@@ -35,8 +35,9 @@
 ///                          of a grasp to the axis of its bar, or beyond its ends (m)
 ///   lateral_slip        *- across a wheel's heading, see wheel_rolling.h (m)
 ///   longitudinal_slip   *- along it (m)
-///   obstacle_distance      to voxels and obstacles that the link does not touch (m)
-///   ground_penetration     into surfaces and bars that the link does not touch (m)
+///   obstacle_distance      to voxels and obstacles that the link does not touch; with a clearance
+///                          that is asked for, also to surfaces, bars and solids (m)
+///   ground_penetration     into surfaces, bars and solids that the link does not touch (m)
 ///   touching_depth         of links in what they touch (m)
 ///   self_collision         see Robot::self_collision_pairs() (m)
 ///   static_balance       + margin of balance_certificate.h, with the torque limits if they are

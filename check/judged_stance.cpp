@@ -219,6 +219,9 @@ std::vector<CollisionWorld::Touch> JudgedStance::touches(
          .surfaces = contact.surfaces,
          .bars = contact.bars,
          .links = contact.links});
+    const EndEffector& effector = contact.contact.effector;
+    touches.back().reach_m =
+        std::max(touches.back().reach_m, std::hypot(effector.half_x_m, effector.half_y_m));
     // A wheel touches its plane, wherever its own height is.
     if (contact.is_wheel())
       touches.back().position -=

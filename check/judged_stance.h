@@ -49,7 +49,7 @@ struct JudgedContact {
 
 /// The world says what there is to touch.
 inline bool has_places(const World& world) {
-  return !world.surfaces.empty() || !world.bars.empty();
+  return !world.surfaces.empty() || !world.bars.empty() || !world.solids.empty();
 }
 
 struct JudgedStance {

@@ -40,6 +40,12 @@ double ObstaclePath::Track::length_until(double time) const {
   return length + length_m[after - 1] + share * (length_m[after] - length_m[after - 1]);
 }
 
+double ObstaclePath::end_s() const {
+  double end = 0.0;
+  for (const Track& track : tracks_) end = std::max(end, track.time_s.back());
+  return end;
+}
+
 double ObstaclePath::bound(double from_s, double to_s) const {
   double longest = 0.0;
   for (const Track& track : tracks_)

@@ -19,6 +19,8 @@ class ObstaclePath {
 
   /// Path length [m] between two times, in either order: the largest of all obstacles.
   double bound(double from_s, double to_s) const;
+  /// When every obstacle has been wherever it gets to, counted from time 0; 0: none moves.
+  double end_s() const;
 
  private:
   struct Track {

@@ -15,10 +15,15 @@ bool is_one_file(const std::filesystem::path& a, const std::filesystem::path& b)
 
 std::optional<RobotFiles> shipped_robot(const std::string& name) {
   const auto data = find_data_folder();
-  if (!data || name.empty() || name.find('/') != std::string::npos) return std::nullopt;
+  return data ? shipped_robot(name, *data) : std::nullopt;
+}
+
+std::optional<RobotFiles> shipped_robot(const std::string& name,
+                                        const std::filesystem::path& data_folder) {
+  if (name.empty() || name.find('/') != std::string::npos) return std::nullopt;
   std::error_code failed;
   const std::filesystem::path folder =
-      std::filesystem::canonical(*data / "robots/models" / name, failed);
+      std::filesystem::canonical(data_folder / "robots/models" / name, failed);
   RobotFiles files{folder / (name + ".urdf"), folder / (name + ".srdf")};
   if (failed || !std::filesystem::exists(files.urdf)) return std::nullopt;
   if (!std::filesystem::exists(files.srdf)) files.srdf.clear();

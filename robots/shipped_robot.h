@@ -16,6 +16,9 @@ struct RobotFiles {
 
 /// With real paths, links followed. None for other names, and for names that are paths.
 std::optional<RobotFiles> shipped_robot(const std::string& name);
+/// That of another data folder.
+std::optional<RobotFiles> shipped_robot(const std::string& name,
+                                        const std::filesystem::path& data_folder);
 
 /// The name of the robot whose files these are.
 std::string shipped_robot_name(const std::filesystem::path& urdf,

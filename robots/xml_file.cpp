@@ -1,3 +1,4 @@
+#include <locograph/common/control_characters.h>
 #include <locograph/common/input_file.h>
 #include <locograph/common/xml_text.h>
 #include <locograph/robots/xml_file.h>
@@ -42,7 +43,7 @@ std::vector<std::reference_wrapper<const XmlFile::Element>> XmlFile::children(
   return result;
 }
 
-std::string XmlFile::attribute(const Element& element, const char* name) const {
+const char* XmlFile::value_of(const Element& element, const char* name) const {
   const char* value = element.Attribute(name);
   if (value == nullptr || *value == '\0') {
     throw error(element, "<" + std::string(element.Name()) + "> without " + name,
@@ -51,8 +52,16 @@ std::string XmlFile::attribute(const Element& element, const char* name) const {
   return value;
 }
 
+std::string XmlFile::attribute(const Element& element, const char* name) const {
+  const std::string value = value_of(element, name);
+  if (has_control_character(value)) {
+    throw error(element, "a control character in " + std::string(name), "letters that can be seen");
+  }
+  return value;
+}
+
 std::vector<double> XmlFile::numbers(const Element& element, const char* name, int count) const {
-  std::istringstream words(attribute(element, name));
+  std::istringstream words(value_of(element, name));
   std::vector<double> values;
   std::string word;
   bool valid = true;

@@ -35,7 +35,7 @@ class XmlFile {
   /// The children called `name`, in order; all child elements if name is null.
   std::vector<std::reference_wrapper<const Element>> children(const Element& parent,
                                                               const char* name = nullptr) const;
-  /// The value of an attribute that must be there and not empty.
+  /// The value of an attribute that must be there, not empty, and without control characters.
   std::string attribute(const Element& element, const char* name) const;
   /// Exactly `count` finite numbers separated by blanks.
   std::vector<double> numbers(const Element& element, const char* name, int count) const;
@@ -49,6 +49,8 @@ class XmlFile {
   Error error(const Element& element, const std::string& what, const std::string& expected) const;
 
  private:
+  const char* value_of(const Element& element, const char* name) const;
+
   std::string file_, text_;
   tinyxml2::XMLDocument document_;
 };

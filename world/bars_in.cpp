@@ -96,6 +96,7 @@ class BarSearch {
     std::vector<Bar> bars;
     for (const int seed : seeds) {
       if (taken_[index(seed)] != 0) continue;
+      options_.deadline.require();
       Bar bar;
       if (bar_from(seed, bar)) bars.push_back(bar);
     }
@@ -106,6 +107,8 @@ class BarSearch {
   }
 
  private:
+  static constexpr int kOften = 1000;  ///< voxels, between looks at the clock
+
   static std::size_t index(int voxel) { return static_cast<std::size_t>(voxel); }
 
   /// Voxels whose surroundings are much longer than they are thick.
@@ -115,6 +118,7 @@ class BarSearch {
     const double least_length = options_.voxel_m * options_.voxel_m;
     const double most_width = std::pow(options_.most_radius_m, 2);
     for (int voxel = 0; voxel < grid_.size(); ++voxel) {
+      if (voxel % kOften == 0) options_.deadline.require();
       Moments around;
       grid_.around(voxel, 2, [&](int other) { around.add(grid_.moments(other)); });
       if (around.weight < 3.0) continue;

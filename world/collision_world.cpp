@@ -1,8 +1,10 @@
 #include <locograph/common/error.h>
+#include <locograph/world/box_tree.h>
 #include <locograph/world/collision_world.h>
 #include <locograph/world/convex_shape.h>
 #include <locograph/world/distance_view.h>
 #include <locograph/world/link_solid.h>
+#include <locograph/world/touchable_solids.h>
 #include <locograph/world/voxel_tree.h>
 
 #include <algorithm>
@@ -14,12 +16,10 @@
 namespace locograph {
 namespace {
 
-/// What links may touch at a place reaches no further out of its plane, and is no further away.
-constexpr double kTouchedHeight_m = 0.012, kTouchedReach_m = 0.3;
-/// Of surfaces and bars it matters whether links reach into them, not how far away they are.
-constexpr double kSurfaceCutoff_m = 0.15;
-constexpr double kPlate_m = 2e-4;      // thickness of a surface that ends
-constexpr double kEndless_m = 1000.0;  // a side without an end of a surface that ends elsewhere
+/// What links may touch at a place reaches no further out of its plane.
+constexpr double kTouchedHeight_m = 0.012;
+/// Surfaces and boxes below the plane come no further out of it.
+constexpr double kBelow_m = 1e-3;
 
 struct Body {
   int link;
@@ -37,78 +37,6 @@ ConvexShape obstacle_solid(const Obstacle& obstacle) {
       break;
   }
   return ConvexShape::box(obstacle.size);
-}
-
-/// A surface as a solid: everything below it, or a plate just below it.
-struct Plate {
-  std::string name;
-  Eigen::Vector3d point, normal;
-  bool endless = false;
-  std::optional<ConvexShape> shape;
-  Eigen::Isometry3d world_from_shape = Eigen::Isometry3d::Identity();
-  /// Normals and offsets of its sides, outwards: n . x <= d on the surface.
-  std::vector<std::pair<Eigen::Vector3d, double>> sides;
-
-  explicit Plate(const Surface& surface)
-      : name(surface.name.empty() ? "surface" : surface.name),
-        point(surface.world_from_surface.translation()),
-        normal(surface.world_from_surface.linear().col(2)),
-        endless(std::isinf(surface.half_x_m) && std::isinf(surface.half_y_m)) {
-    const double half[] = {std::min(surface.half_x_m, kEndless_m),
-                           std::min(surface.half_y_m, kEndless_m)};
-    if (!surface.world_from_surface.matrix().allFinite() || !(half[0] > 0.0) || !(half[1] > 0.0))
-      throw Error("surface " + name + " has a size that is not positive or a pose that is none",
-                  "finite numbers");
-    if (endless) return;
-    shape = ConvexShape::box({2.0 * half[0], 2.0 * half[1], kPlate_m});
-    world_from_shape = surface.world_from_surface * Eigen::Translation3d(0.0, 0.0, -0.5 * kPlate_m);
-    for (int axis = 0; axis < 2; ++axis) {
-      for (const double sign : {1.0, -1.0}) {
-        const Eigen::Vector3d out = sign * surface.world_from_surface.linear().col(axis);
-        sides.emplace_back(out, out.dot(point) + half[axis]);
-      }
-    }
-  }
-};
-
-/// A bar as a solid.
-struct Rod {
-  std::string name;
-  Eigen::Vector3d from, axis;  // axis: of length 1
-  double length_m;
-  ConvexShape shape;
-  Eigen::Isometry3d world_from_shape;
-
-  explicit Rod(const Bar& bar)
-      : name(bar.name.empty() ? "bar" : bar.name),
-        from(bar.from),
-        axis(bar.to - bar.from),
-        length_m(axis.norm()),
-        shape(solid(name, bar.radius_m, length_m)),
-        world_from_shape(Eigen::Translation3d(0.5 * (bar.from + bar.to))) {
-    axis /= length_m;
-    world_from_shape.rotate(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis));
-  }
-
-  static ConvexShape solid(const std::string& name, double radius_m, double length_m) {
-    const auto is_size = [](double size) { return size > 0.0 && std::isfinite(size); };
-    if (!is_size(radius_m) || !is_size(length_m))
-      throw Error("bar " + name + " has a length or a radius that is not positive",
-                  "finite numbers");
-    return ConvexShape::cylinder(radius_m, length_m);
-  }
-
-  double distance_from_axis(const Eigen::Vector3d& point) const {
-    const double along = std::clamp(axis.dot(point - from), 0.0, length_m);
-    return (point - from - along * axis).norm();
-  }
-};
-
-/// How far a shape reaches along a direction: the least n . x, and where.
-double least_along(const ConvexShape& shape, const Eigen::Isometry3d& world_from_shape,
-                   const Eigen::Vector3d& n, Eigen::Vector3d& where) {
-  where = world_from_shape * shape.support(-(world_from_shape.linear().transpose() * n));
-  return n.dot(where);
 }
 
 // Distance of the bounding spheres: a lower bound of the signed distance.
@@ -131,8 +59,9 @@ struct CollisionWorld::Parts {
   std::optional<VoxelTree> voxels;
   std::vector<Obstacle> obstacles;
   std::vector<ConvexShape> obstacle_shapes;
-  std::vector<Plate> plates;
-  std::vector<Rod> rods;
+  std::vector<PlateSolid> plates;
+  std::vector<BarSolid> rods;
+  std::vector<BoxSolid> blocks;
   double ground_z = -std::numeric_limits<double>::infinity();  // voxels up to here do not count
 
   struct Search;
@@ -190,7 +119,10 @@ CollisionWorld::CollisionWorld(const Robot& robot, std::shared_ptr<const octomap
 CollisionWorld::CollisionWorld(const Robot& robot, const World& world,
                                const CollisionWorldOptions& options)
     : CollisionWorld(robot, world.map, world.obstacles, options) {
+  for (const SolidBox& box : world.solids) parts_->blocks.emplace_back(box);
   for (const Surface& surface : world.surfaces) parts_->plates.emplace_back(surface);
+  const std::vector<int> solids = solids_of_surfaces(world);
+  for (std::size_t p = 0; p < solids.size(); ++p) parts_->plates[p].block = solids[p];
   for (const Bar& bar : world.bars) parts_->rods.emplace_back(bar);
   parts_->ground_z = ground_height(world);
 }
@@ -248,7 +180,7 @@ namespace {
 /// The parts of a query that what is touched depends on.
 struct Touching {
   using Bits = std::uint64_t;  // one for each touch
-  std::vector<Bits> of_link, of_obstacle, of_plate, of_rod;
+  std::vector<Bits> of_link, of_obstacle, of_plate, of_rod, of_block;
 
   static Bits bit(std::size_t touch) { return Bits{1} << touch; }
 };
@@ -269,20 +201,33 @@ struct CollisionWorld::Parts::Search {
   const Parts& parts;
   const Query& query;
   std::vector<Eigen::Isometry3d> world_from_body;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of a ball around the robot
+  double radius = 0.0;
   Touching touching;
   Surroundings found;
 
   Search(const Parts& parts, const Query& query)
       : parts(parts), query(query), world_from_body(parts.place(query.world_from_link)) {
     found.obstacle.distance_m = query.cutoff_m;
-    found.surface.distance_m = std::min(query.cutoff_m, kSurfaceCutoff_m);
+    found.surface.distance_m = std::min(query.cutoff_m, query.surface_cutoff_m);
     if (query.touches.size() > 64)
       throw Error(std::to_string(query.touches.size()) + " places to touch", "64 at most");
     touching.of_link.assign(parts.link_names.size(), 0);
     touching.of_obstacle.assign(parts.obstacles.size(), 0);
     touching.of_plate.assign(parts.plates.size(), 0);
     touching.of_rod.assign(parts.rods.size(), 0);
+    touching.of_block.assign(parts.blocks.size(), 0);
     for (std::size_t t = 0; t < query.touches.size(); ++t) add(query.touches[t], Touching::bit(t));
+    Eigen::AlignedBox3d box;
+    for (std::size_t b = 0; b < parts.bodies.size(); ++b) box.extend(body_centre(b));
+    if (!box.isEmpty()) centre = box.center();
+    for (std::size_t b = 0; b < parts.bodies.size(); ++b)
+      radius = std::max(radius,
+                        (body_centre(b) - centre).norm() + parts.bodies[b].shape.bounding_radius());
+  }
+
+  Eigen::Vector3d body_centre(std::size_t b) const {
+    return world_from_body[b] * parts.bodies[b].shape.center();
   }
 
   void add(const Touch& touch, Touching::Bits bit) {
@@ -295,22 +240,33 @@ struct CollisionWorld::Parts::Search {
     for (std::size_t o = 0; o < parts.obstacles.size(); ++o) {
       const Obstacle& obstacle = parts.obstacles[o];
       if (!obstacle.motion.empty()) continue;
-      if (obstacle.distance(touch.position, query.time_s) > kTouchedReach_m) continue;
+      if (obstacle.distance(touch.position, query.time_s) > touch.reach_m) continue;
       if (out_of_plane(parts.obstacle_shapes[o], obstacle.world_from_obstacle) <= kTouchedHeight_m)
         touching.of_obstacle[o] |= bit;
     }
-    for (const int surface : touch.surfaces)
+    for (const int surface : touch.surfaces) {
       touching.of_plate[static_cast<std::size_t>(surface)] |= bit;
+      const int block = parts.plates[static_cast<std::size_t>(surface)].block;
+      if (block >= 0) touching.of_block[static_cast<std::size_t>(block)] |= bit;
+    }
     for (const int bar : touch.bars) touching.of_rod[static_cast<std::size_t>(bar)] |= bit;
-    // Surfaces below the plane, as the sides of a box that a foot stands on.
+    // What lies below the plane: other surfaces, as the sides of a box that a foot stands on, and
+    // other boxes.
     for (std::size_t p = 0; p < parts.plates.size(); ++p) {
-      const Plate& plate = parts.plates[p];
-      if (plate.endless || out_of_plane(*plate.shape, plate.world_from_shape) > 1e-3) continue;
-      double away = 0.0;
-      for (const auto& [out, offset] : plate.sides)
-        away = std::max(away, out.dot(touch.position) - offset);
-      away = std::max(away, std::abs(plate.normal.dot(touch.position - plate.point)));
-      if (away <= kTouchedReach_m) touching.of_plate[p] |= bit;
+      const PlateSolid& plate = parts.plates[p];
+      if (plate.endless) continue;
+      double away = std::abs(plate.normal.dot(touch.position - plate.point));
+      for (const SolidSide& side : plate.sides)
+        away = std::max(away, side.out.dot(touch.position) - side.offset);
+      if (away > touch.reach_m) continue;
+      if (out_of_plane(*plate.shape, plate.world_from_shape) <= kBelow_m)
+        touching.of_plate[p] |= bit;
+    }
+    for (std::size_t s = 0; s < parts.blocks.size(); ++s) {
+      const BoxSolid& block = parts.blocks[s];
+      if (block.at_least(touch.position) > touch.reach_m) continue;
+      if (out_of_plane(block.shape, block.world_from_shape) <= kBelow_m)
+        touching.of_block[s] |= bit;
     }
   }
 
@@ -367,7 +323,7 @@ struct CollisionWorld::Parts::Search {
         if ((touching.of_link[static_cast<std::size_t>(body.link)] & Touching::bit(t)) == 0)
           continue;
         const Touch& touch = query.touches[t];
-        voxel.behind.push_back({touch.position, touch.normal, kTouchedHeight_m, kTouchedReach_m});
+        voxel.behind.push_back({touch.position, touch.normal, kTouchedHeight_m, touch.reach_m});
       }
       voxel.best.distance = found.obstacle.distance_m;
       if (parts.voxels->nearest(voxel)) found.obstacle = closest_to(voxel.best, body.link, "voxel");
@@ -380,10 +336,21 @@ struct CollisionWorld::Parts::Search {
 
   void surfaces() {
     for (std::size_t p = 0; p < parts.plates.size(); ++p) {
-      const Plate& plate = parts.plates[p];
+      const PlateSolid& plate = parts.plates[p];
+      if (touching.of_plate[p] == 0 && !plate.endless &&
+          (centre - plate.point).norm() - radius - plate.shape->bounding_radius() >=
+              found.surface.distance_m)
+        continue;
       for (std::size_t b = 0; b < parts.bodies.size(); ++b) {
-        const Touching::Bits touches =
-            touching.of_link[static_cast<std::size_t>(parts.bodies[b].link)] & touching.of_plate[p];
+        const Touching::Bits links =
+            touching.of_link[static_cast<std::size_t>(parts.bodies[b].link)];
+        const Touching::Bits touches = links & touching.of_plate[p];
+        // The box that it is a face of counts instead, except for a link that touches the box, and
+        // that elsewhere.
+        if (plate.block >= 0 &&
+            (touches != 0 ||
+             (links & touching.of_block[static_cast<std::size_t>(plate.block)]) == 0))
+          continue;
         surface(plate, b, touches);
       }
     }
@@ -391,7 +358,7 @@ struct CollisionWorld::Parts::Search {
 
   void bars() {
     for (std::size_t r = 0; r < parts.rods.size(); ++r) {
-      const Rod& rod = parts.rods[r];
+      const BarSolid& rod = parts.rods[r];
       for (std::size_t b = 0; b < parts.bodies.size(); ++b) {
         const Body& body = parts.bodies[b];
         const Touching::Bits touches =
@@ -412,7 +379,38 @@ struct CollisionWorld::Parts::Search {
     }
   }
 
-  void surface(const Plate& plate, std::size_t b, Touching::Bits touches) {
+  void blocks() {
+    for (std::size_t s = 0; s < parts.blocks.size(); ++s) {
+      const BoxSolid& block = parts.blocks[s];
+      if (block.at_least(centre) - radius >= std::max(0.0, found.surface.distance_m)) continue;
+      for (std::size_t b = 0; b < parts.bodies.size(); ++b) {
+        const Body& body = parts.bodies[b];
+        const Eigen::Isometry3d& pose = world_from_body[b];
+        const Touching::Bits touches =
+            touching.of_link[static_cast<std::size_t>(body.link)] & touching.of_block[s];
+        const double nearest = touches != 0 ? found.touched.distance_m : found.surface.distance_m;
+        if (block.at_least(pose * body.shape.center()) - body.shape.bounding_radius() >= nearest)
+          continue;
+        const ShapeDistance distance =
+            shape_distance(body.shape, pose, block.shape, block.world_from_shape);
+        if (distance.distance >= nearest) continue;
+        if (touches != 0)
+          touch(b, touches, distance, block.shape, block.world_from_shape, block.name);
+        else
+          found.surface = closest_to(distance, body.link, block.name);
+      }
+    }
+  }
+
+  /// `distance` becomes how far the shape is out of a side if that is more.
+  static void move_out(const SolidSide& side, const ConvexShape& shape,
+                       const Eigen::Isometry3d& pose, ShapeDistance& distance) {
+    Eigen::Vector3d where;
+    const double out = least_along(shape, pose, side.out, where) - side.offset;
+    if (out > distance.distance) distance = {out, where, {}};
+  }
+
+  void surface(const PlateSolid& plate, std::size_t b, Touching::Bits touches) {
     const Body& body = parts.bodies[b];
     const Eigen::Isometry3d& pose = world_from_body[b];
     const double nearest = touches != 0 ? found.touched.distance_m : found.surface.distance_m;
@@ -424,11 +422,7 @@ struct CollisionWorld::Parts::Search {
     if (plate.endless || touches != 0) {
       distance.distance = least_along(body.shape, pose, plate.normal, distance.on_first) -
                           plate.normal.dot(plate.point);
-      for (const auto& [out, offset] : plate.sides) {
-        Eigen::Vector3d where;
-        const double beside = least_along(body.shape, pose, out, where) - offset;
-        if (beside > distance.distance) distance = {beside, where, {}};
-      }
+      for (const SolidSide& side : plate.sides) move_out(side, body.shape, pose, distance);
     } else {
       distance = shape_distance(body.shape, pose, *plate.shape, plate.world_from_shape);
     }
@@ -449,6 +443,7 @@ CollisionWorld::Surroundings CollisionWorld::surroundings(const Query& query) co
   search.voxels();
   search.surfaces();
   search.bars();
+  search.blocks();
   return std::move(search.found);
 }
 

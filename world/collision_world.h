@@ -1,6 +1,6 @@
 #pragma once
 /// Exact distances between a robot's collision shapes, the voxels of a map, primitive obstacles,
-/// surfaces, bars and the robot itself, for checkers.
+/// surfaces, bars, solid boxes and the robot itself, for checkers.
 ///
 ///     CollisionWorld exact(robot, world);
 ///     CollisionWorld::Closest c = exact.environment_distance(world_from_link, time_s);
@@ -16,11 +16,12 @@
 /// others are certified to 1e-5 m, see convex_shape.h. A mesh (STL) counts as its convex hull, and
 /// a missing one is an error. A surface without an end is solid below; a rectangle is a plate of
 /// 0.2 mm, so that what is behind it is free; both count from the side of their normal where they
-/// are touched. A bar is a cylinder with flat ends. world_from_link has one pose per link of the
-/// robot, in the robot's order. Lengths in metres, world frame. The constructor copies what it
-/// needs of the robot, the map and the obstacles: later changes to them are not seen. Const members
-/// are thread-safe. Throws Error when the number of poses is not the number of links, and for
-/// surfaces and bars whose sizes are not positive.
+/// are touched. The faces of a solid box are its border, not plates: what is inside it is found. A
+/// bar is a cylinder with flat ends. world_from_link has one pose per link of the robot, in the
+/// robot's order. Lengths in metres, world frame. The constructor copies what it needs of the robot
+/// and the world: later changes to them are not seen. Const members are thread-safe. Throws Error
+/// when the number of poses is not the number of links, and for surfaces, bars and boxes whose
+/// sizes are not positive.
 
 #include <locograph/world/obstacles.h>
 #include <locograph/world/world.h>
@@ -61,24 +62,28 @@ class CollisionWorld {
   /// A place that links may touch, and which links. What they touch there is what lies behind the
   /// plane through `position` along `normal`: the surfaces named; obstacles at rest that come no
   /// further than 12 mm out of the plane, voxels whose centres do not, and surfaces that end and
-  /// lie below it, all within 0.3 m of the position. Of bars, those named, and no other: one may
-  /// hold what is in front of the next one.
+  /// boxes that lie below it, all within reach_m of the position. A solid box with a surface that
+  /// they touch is touched as a whole, but for its faces further away. Of bars, those named, and no
+  /// other: one may hold what is in front of the next one.
   struct Touch {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< of length 1
     std::vector<int> surfaces = {};                     ///< of World::surfaces
     std::vector<int> bars = {};                         ///< of World::bars
     std::vector<int> links = {};
+    double reach_m = 0.3;  ///< how far from the position; a sole reaches as far as its corners
   };
   struct Query {
     std::span<const Eigen::Isometry3d> world_from_link;
     double time_s = 0.0;
     std::span<const Touch> touches = {};
     double cutoff_m = 0.5;  ///< as in CollisionWorldOptions
+    /// The same of surfaces, bars and boxes: mostly it matters only whether links reach into them.
+    double surface_cutoff_m = 0.15;
   };
   struct Surroundings {
     Closest obstacle;  ///< of the voxels and obstacles that the link does not touch
-    Closest surface;   ///< of the surfaces and bars that it does not touch, up to 0.15 m
+    Closest surface;   ///< of the surfaces, bars and boxes that it does not touch
     /// Minus the largest depth of a link in what it touches; 0 and link -1 if there is none.
     Closest touched;
   };
@@ -86,14 +91,14 @@ class CollisionWorld {
   /// tree may be null: obstacles only.
   CollisionWorld(const Robot& robot, std::shared_ptr<const octomap::OcTree> tree,
                  std::vector<Obstacle> obstacles, const CollisionWorldOptions& options = {});
-  /// Map, obstacles, surfaces and bars. Voxels whose top is at or below the highest level surface
-  /// without an end are that surface, for all links.
+  /// All of the world. Voxels whose top is at or below the highest level surface without an end are
+  /// that surface, for all links.
   CollisionWorld(const Robot& robot, const World& world, const CollisionWorldOptions& options = {});
   ~CollisionWorld();
   CollisionWorld(CollisionWorld&&) noexcept;
   CollisionWorld& operator=(CollisionWorld&&) noexcept;
 
-  /// Map, obstacles, surfaces and bars, touched or not.
+  /// All of the world, touched or not.
   Surroundings surroundings(const Query& query) const;
 
   /// Map and obstacles. Returns early with the first distance below stop_below, if there is one.

@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -158,6 +160,73 @@ Eigen::Vector3d world_support(const ConvexShape& shape, const Eigen::Isometry3d&
   return world_from_shape * shape.support(world_from_shape.linear().transpose() * direction);
 }
 
+/// The least way out of one shape for another that has been found so far.
+class WayOut {
+ public:
+  WayOut(const ConvexShape& first, const Eigen::Isometry3d& world_from_first,
+         const ConvexShape& second, const Eigen::Isometry3d& world_from_second)
+      : first_(first),
+        second_(second),
+        world_from_first_(world_from_first),
+        world_from_second_(world_from_second) {}
+
+  /// How far the first has to be moved along a direction of length 1 to come free of the second.
+  double along(const Eigen::Vector3d& n) const {
+    return n.dot(world_support(second_, world_from_second_, n) -
+                 world_support(first_, world_from_first_, -n));
+  }
+  void consider(const Eigen::Vector3d& n) {
+    const double depth = along(n);
+    if (depth >= depth_) return;
+    depth_ = depth;
+    direction_ = n;
+  }
+  /// The directions that the shape's form suggests.
+  void consider(const ConvexShape& shape, const Eigen::Isometry3d& world_from_shape) {
+    const Eigen::Matrix3d axes = world_from_shape.linear();
+    const bool box = shape.type() == ConvexShape::Type::kBox;
+    if (!box && shape.type() != ConvexShape::Type::kCylinder) return;
+    for (int axis = box ? 0 : 2; axis < 3; ++axis) {
+      consider(axes.col(axis));
+      consider(-axes.col(axis));
+    }
+    if (!box) consider_across(axes);
+  }
+  ShapeDistance distance() const {
+    const Eigen::Vector3d on_first = world_support(first_, world_from_first_, -direction_);
+    return {-std::max(0.0, depth_), on_first, on_first + depth_ * direction_};
+  }
+
+ private:
+  /// Directions across z: the best of some, and between its neighbours.
+  void consider_across(const Eigen::Matrix3d& axes) {
+    constexpr int kDirections = 24;
+    constexpr double kApart = 2.0 * std::numbers::pi / kDirections;
+    const auto across = [&](double angle) -> Eigen::Vector3d {
+      return std::cos(angle) * axes.col(0) + std::sin(angle) * axes.col(1);
+    };
+    int best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < kDirections; ++i) {
+      const double depth = along(across(kApart * i));
+      if (depth >= least) continue;
+      least = depth;
+      best = i;
+    }
+    const double from = kApart * (best - 1), wide = 2.0 * kApart;
+    const double where = minimise_convex([&](double s) { return along(across(from + s * wide)); });
+    consider(across(kApart * best));
+    consider(across(from + where * wide));
+  }
+
+  const ConvexShape &first_, &second_;
+  const Eigen::Isometry3d &world_from_first_, &world_from_second_;
+  double depth_ = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d direction_ = Eigen::Vector3d::UnitZ();
+};
+
+/// Of FCL's answer only the direction counts: along a thin bar its depth is the length of the bar,
+/// and sometimes there is none.
 ShapeDistance penetration(const ConvexShape& first, const Eigen::Isometry3d& world_from_first,
                           const ConvexShape& second, const Eigen::Isometry3d& world_from_second) {
   fcl::CollisionRequestd request;
@@ -166,15 +235,20 @@ ShapeDistance penetration(const ConvexShape& first, const Eigen::Isometry3d& wor
   fcl::CollisionResultd result;
   fcl::collide(first.fcl().geometry.get(), world_from_first, second.fcl().geometry.get(),
                world_from_second, request, result);
-  ShapeDistance out;
-  out.on_first = world_from_first * first.center();
-  out.on_second = world_from_second * second.center();
+  WayOut way(first, world_from_first, second, world_from_second);
   for (std::size_t i = 0; i < result.numContacts(); ++i) {
-    const fcl::Contactd& contact = result.getContact(i);
-    if (-contact.penetration_depth > out.distance) continue;
-    out = {-contact.penetration_depth, contact.pos, contact.pos};
+    const Eigen::Vector3d& normal = result.getContact(i).normal;
+    if (!(normal.norm() > 0.5)) continue;
+    way.consider(-normal.normalized());
+    way.consider(normal.normalized());
   }
-  return out;
+  way.consider(first, world_from_first);
+  way.consider(second, world_from_second);
+  const Eigen::Vector3d between =
+      world_from_first * first.center() - world_from_second * second.center();
+  way.consider(between.norm() > 1e-9 ? Eigen::Vector3d(between.normalized())
+                                     : Eigen::Vector3d::UnitZ());
+  return way.distance();
 }
 
 ShapeDistance by_fcl(const ConvexShape& first, const Eigen::Isometry3d& world_from_first,

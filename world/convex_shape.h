@@ -65,7 +65,9 @@ class ConvexShape {
 
 struct ShapeDistance {
   /// Negative on penetration: a depth. For spheres and capsules against a box it is that of the
-  /// deepest sphere, otherwise FCL's.
+  /// deepest sphere, otherwise how far the shapes have to be moved apart: along the normals of a
+  /// box, along and across a cylinder, or along FCL's normals, whichever is least. Never less than
+  /// the least way apart.
   double distance = 0.0;
   Eigen::Vector3d on_first = Eigen::Vector3d::Zero(), on_second = Eigen::Vector3d::Zero();
 };

@@ -303,10 +303,26 @@ double DistanceField::distance(const Eigen::Vector3d& point) const {
   return sample(point).distance;
 }
 
+DistanceSample WorldDistance::sample_map(const Eigen::Vector3d& point) const {
+  if (map) return map->sample(point);
+  DistanceSample sample{max_distance(), Eigen::Vector3d::Zero()};
+  if (!leaves) return sample;
+  constexpr double kDot_m = 1e-9;
+  static const ConvexShape dot = ConvexShape::sphere(kDot_m);
+  const Eigen::Isometry3d at{Eigen::Translation3d(point)};
+  VoxelTree::Query query{dot, at};
+  query.floor_z = leaves_floor_z;
+  query.best.distance = sample.distance - kDot_m;
+  if (!leaves->nearest(query)) return sample;
+  sample.distance = query.best.distance + kDot_m;
+  const Eigen::Vector3d out =
+      sample.distance > 0.0 ? point - query.best.on_second : query.best.on_second - point;
+  if (out.norm() > 10.0 * kDot_m) sample.gradient = out.normalized();
+  return sample;
+}
+
 DistanceSample WorldDistance::sample(const Eigen::Vector3d& point, double time_s) const {
-  const double limit = max_distance();
-  DistanceSample nearest{limit, Eigen::Vector3d::Zero()};
-  if (map) nearest = map->sample(point);
+  DistanceSample nearest = sample_map(point);
   for (const Obstacle& obstacle : obstacles) {
     const DistanceSample sample = obstacle.sample(point, time_s);
     if (sample.distance < nearest.distance) nearest = sample;

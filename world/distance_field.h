@@ -26,6 +26,7 @@
 
 #include <locograph/world/distance_sample.h>
 #include <locograph/world/obstacles.h>
+#include <locograph/world/voxel_tree.h>
 #include <octomap/OcTree.h>
 
 #include <Eigen/Geometry>
@@ -87,13 +88,19 @@ class DistanceField {
 };
 
 /// Map and obstacles together: the smaller of the field's value and the exact distances to the
-/// obstacles at a time, at most max_distance().
+/// obstacles at a time, at most max_distance(). Of a map that is too large for a field there are
+/// its leaves, whatever their sizes: then its distance is exact, too, and takes longer.
 struct WorldDistance {
   std::shared_ptr<const DistanceField> map;  ///< may be null
+  std::shared_ptr<const VoxelTree> leaves;   ///< instead of map; may be null
+  double leaves_floor_z = -std::numeric_limits<double>::infinity();  ///< see VoxelTree::Query
   std::vector<Obstacle> obstacles;
   double max_distance_without_map_m = 1.0;
 
   double max_distance() const { return map ? map->max_distance() : max_distance_without_map_m; }
+  bool sees_map() const { return leaves || (map && !map->empty()); }
+  /// To the map alone.
+  DistanceSample sample_map(const Eigen::Vector3d& point) const;
   DistanceSample sample(const Eigen::Vector3d& point, double time_s) const;
   double distance(const Eigen::Vector3d& point, double time_s) const {
     return sample(point, time_s).distance;

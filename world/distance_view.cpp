@@ -1,9 +1,27 @@
 #include <locograph/world/distance_view.h>
+#include <locograph/world/octree.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace locograph {
+
+namespace {
+
+/// Whether a field around all that is occupied is made in a second or two, and within OctoMap's
+/// range.
+bool is_small(const octomap::OcTree& map, double max_distance_m) {
+  constexpr double kMostNodes = 4e6, kRange = 32000.0;
+  const Eigen::AlignedBox3d bounds = octree_info(map).occupied_bounds;
+  if (bounds.isEmpty()) return true;
+  const double beyond = max_distance_m / map.getResolution() + 4.0;
+  const Eigen::Vector3d lower = bounds.min() / map.getResolution(),
+                        upper = bounds.max() / map.getResolution();
+  return (upper - lower + Eigen::Vector3d::Constant(2.0 * beyond)).prod() <= kMostNodes &&
+         std::max(-lower.minCoeff(), upper.maxCoeff()) + beyond <= kRange;
+}
+
+}  // namespace
 
 double ground_height(const World& world) {
   constexpr double kLevel = 1e-9;
@@ -22,9 +40,14 @@ WorldDistance distance_view(const World& world, DistanceFieldOptions options) {
   WorldDistance view;
   view.obstacles = world.obstacles;
   view.max_distance_without_map_m = options.max_distance_m;
-  if (world.map)
+  if (!world.map) return view;
+  if (options.lower || is_small(*world.map, options.max_distance_m)) {
     view.map =
         std::make_shared<const DistanceField>(DistanceField::from_octree(*world.map, options));
+  } else {
+    view.leaves = std::make_shared<const VoxelTree>(*world.map);
+    view.leaves_floor_z = options.ground_z;
+  }
   return view;
 }
 

@@ -7,7 +7,8 @@
 ///     DistanceSample sample = field.sample(point, time_s);
 ///
 /// The ground, a level surface without an end, is left out of the map: edges know it by other
-/// means. Surfaces are not in the view.
+/// means. Surfaces are not in the view. Without a box of interest, a map that reaches so far that a
+/// field of all of it would have more than four million nodes is seen by its leaves.
 
 #include <locograph/world/distance_field.h>
 #include <locograph/world/world.h>

@@ -1,4 +1,5 @@
 #include <locograph/common/error.h>
+#include <locograph/world/box_tree.h>
 #include <locograph/world/leftover_map.h>
 #include <locograph/world/octree.h>
 #include <locograph/world/point_grid.h>
@@ -34,22 +35,37 @@ bool covered_or_moved(const Plate& plate, double voxel_m, Eigen::Vector3d& point
   return false;
 }
 
+/// Half of what a plate may have to do with, in its frame: a point moved for one plate may have
+/// come to the next.
+Eigen::Vector3d half_reach(const Plate& plate, double voxel_m) {
+  return Eigen::Vector3d(plate.half_x_m, plate.half_y_m, 0.0) +
+         Eigen::Vector3d::Constant(4.0 * voxel_m + plate.tolerance_m);
+}
+
+BoxTree tree_of(std::span<const Plate> plates, double voxel_m) {
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (const Plate& plate : plates) {
+    const Eigen::Isometry3d world_from_surface = plate.surface_from_world.inverse();
+    const Eigen::Vector3d centre = world_from_surface.translation();
+    const Eigen::Vector3d half =
+        world_from_surface.linear().cwiseAbs() * half_reach(plate, voxel_m);
+    boxes.emplace_back(centre - half, centre + half);
+  }
+  return BoxTree(boxes);
+}
+
 /// Plates that may have to do with points of a block.
 std::vector<int> plates_near(const Eigen::AlignedBox3d& block, std::span<const Plate> plates,
-                             double voxel_m) {
-  std::vector<int> near;
+                             const BoxTree& tree, double voxel_m) {
+  std::vector<int> near = tree.touching(block);
   const Eigen::Vector3d half = 0.5 * block.sizes();
-  for (std::size_t p = 0; p < plates.size(); ++p) {
-    const Plate& plate = plates[p];
+  std::erase_if(near, [&](int p) {
+    const Plate& plate = plates[static_cast<std::size_t>(p)];
     const Eigen::Vector3d centre = plate.surface_from_world * block.center();
-    // A point moved for one plate may have come to the next.
-    const Eigen::Vector3d reach = plate.surface_from_world.linear().cwiseAbs() * half +
-                                  Eigen::Vector3d::Constant(4.0 * voxel_m + plate.tolerance_m);
-    const Eigen::Vector3d size(plate.half_x_m, plate.half_y_m, 0.0);
-    if ((centre.cwiseAbs().array() <= (reach + size).array()).all()) {
-      near.push_back(static_cast<int>(p));
-    }
-  }
+    const Eigen::Vector3d reach =
+        plate.surface_from_world.linear().cwiseAbs() * half + half_reach(plate, voxel_m);
+    return !(centre.cwiseAbs().array() <= reach.array()).all();
+  });
   return near;
 }
 
@@ -58,17 +74,19 @@ std::vector<int> plates_near(const Eigen::AlignedBox3d& block, std::span<const P
 std::shared_ptr<const octomap::OcTree> with_leftovers(
     const std::shared_ptr<const octomap::OcTree>& map, std::span<const Eigen::Vector3d> points,
     std::span<const Plate> plates, std::span<const Bar> bars, double bar_tolerance_m,
-    double voxel_m) {
+    double voxel_m, const Deadline& deadline) {
   const auto tree = std::make_shared<octomap::OcTree>(voxel_m);
   const auto before = [](const octomap::OcTreeKey& a, const octomap::OcTreeKey& b) {
     return std::tie(a[0], a[1], a[2]) < std::tie(b[0], b[1], b[2]);
   };
   std::vector<octomap::OcTreeKey> keys;
   const PointGrid blocks(points, std::max(kBlock_m, 4.0 * voxel_m));
+  const BoxTree plate_tree = tree_of(plates, voxel_m);
   for (int block = 0; block < blocks.size(); ++block) {
+    deadline.require();
     Eigen::AlignedBox3d bounds;
     for (const std::uint32_t p : blocks.points_of(block)) bounds.extend(points[p]);
-    const std::vector<int> near = plates_near(bounds, plates, voxel_m);
+    const std::vector<int> near = plates_near(bounds, plates, plate_tree, voxel_m);
     for (const std::uint32_t p : blocks.points_of(block)) {
       Eigen::Vector3d point = points[p];
       const bool covered =

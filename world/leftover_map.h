@@ -4,6 +4,7 @@
 ///     std::vector<Plate> plates = {{surface, 0.02}};
 ///     world.map = with_leftovers(world.map, points, plates, bars, 0.03, 0.05);
 
+#include <locograph/common/deadline.h>
 #include <locograph/world/world.h>
 
 #include <Eigen/Geometry>
@@ -29,11 +30,11 @@ struct Plate {
 /// The map, null for none, joined with the voxels of the points that plates and bars (within
 /// bar_tolerance_m of their sides) do not cover; the map itself if they cover all. Voxels that
 /// would stand out of a plate, or of the strip of two voxels around it, because of points in or
-/// behind its plane are put behind. Throws Error for points out of reach.
+/// behind its plane are put behind. Throws Error for points out of reach, and OutOfTime.
 std::shared_ptr<const octomap::OcTree> with_leftovers(
     const std::shared_ptr<const octomap::OcTree>& map, std::span<const Eigen::Vector3d> points,
     std::span<const Plate> plates, std::span<const Bar> bars, double bar_tolerance_m,
-    double voxel_m);
+    double voxel_m, const Deadline& deadline = {});
 
 /// Names "NAME 1", "NAME 2", ... by area, the largest first.
 void append_surfaces(World& world, const std::string& name, double friction,

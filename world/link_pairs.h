@@ -27,7 +27,8 @@ struct LinkPair {
   /// In more than 9 of 10 samples: the shapes overlap by construction, as those of links that a
   /// short one joins, except where the joints between are bent furthest.
   bool always_meets(int samples) const { return meets > 0.9 * samples; }
-  bool may_be_off(int samples) const { return adjacent || meets == 0 || always_meets(samples); }
+  /// Also of adjacent links: one that its joint can bend into the other is to be kept from it.
+  bool may_be_off(int samples) const { return meets == 0 || always_meets(samples); }
 };
 
 struct LinkPairOptions {

@@ -202,9 +202,9 @@ std::vector<Surface> rectangles_on(const std::vector<Triangle>& triangles,
   std::set_difference(inside.begin(), inside.end(), crossed.begin(), crossed.end(),
                       std::back_inserter(whole), before);
   std::vector<Surface> surfaces;
-  for (const CellRectangle& r :
-       cell_rectangles(std::move(whole),
-                       {sizes.x(), sizes.y(), options.least_length_m, options.least_width_m})) {
+  for (const CellRectangle& r : cell_rectangles(
+           std::move(whole), {sizes.x(), sizes.y(), options.least_length_m, options.least_width_m},
+           options.deadline)) {
     Surface& surface = surfaces.emplace_back();
     surface.half_x_m = 0.5 * (r.to.x - r.from.x + 1) * sizes.x();
     surface.half_y_m = 0.5 * (r.to.y - r.from.y + 1) * sizes.y();
@@ -254,6 +254,7 @@ void add_mesh(World& world, const std::string& name, const std::filesystem::path
   std::vector<Surface> surfaces;
   std::vector<Plate> plates;
   for (const std::vector<int>& face : faces_of(triangles)) {
+    options.deadline.require();
     for (Surface& surface : rectangles_on(triangles, face, options)) {
       plates.emplace_back(surface, kSamePlane_m);
       surfaces.push_back(std::move(surface));
@@ -270,7 +271,7 @@ void add_mesh(World& world, const std::string& name, const std::filesystem::path
       {options.voxel_m, 2.0 * std::sqrt(area_m2 / kMostSamples), 2.0 * length_m / kMostSamples});
   std::vector<Eigen::Vector3d> samples;
   for (const Triangle& triangle : triangles) sample(triangle, 0.5 * voxel_m, samples);
-  world.map = with_leftovers(world.map, samples, plates, {}, 0.0, voxel_m);
+  world.map = with_leftovers(world.map, samples, plates, {}, 0.0, voxel_m, options.deadline);
   append_surfaces(world, name, friction, std::move(surfaces));
 }
 

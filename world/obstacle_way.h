@@ -10,10 +10,16 @@
 
 #include <locograph/world/obstacles.h>
 
+#include <vector>
+
 namespace locograph {
 
 /// At most, of any of its points on the way from one pose to the next [m].
 double way_m(const Obstacle& obstacle, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
+
+/// The obstacle at rest, at places all along its motion: no point of it travels further than
+/// apart_m from one to the next, or than a 500th part of its way. One at rest is itself.
+std::vector<Obstacle> all_along(const Obstacle& obstacle, double apart_m);
 
 /// Of its fastest point, anywhere along its motion and back to its first pose; 0 at rest.
 double fastest_m_s(const Obstacle& obstacle);

@@ -114,6 +114,30 @@ double fastest_m_s(const Obstacle& obstacle) {
   return fastest;
 }
 
+std::vector<Obstacle> all_along(const Obstacle& obstacle, double apart_m) {
+  constexpr double kMost = 500.0;
+  std::vector<Eigen::Isometry3d> corners = {obstacle.world_from_obstacle};
+  for (const KeyFrame& frame : obstacle.motion) corners.push_back(frame.pose);
+  if (obstacle.repeat_s > 0.0) corners.push_back(corners.front());
+  double way = 0.0;
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    way += way_m(obstacle, corners[i - 1], corners[i]);
+  }
+  apart_m = std::max(apart_m, way / kMost);
+  Obstacle still = obstacle;
+  still.motion.clear();
+  still.repeat_s = 0.0;
+  std::vector<Obstacle> all = {still};
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    const double steps = std::ceil(way_m(obstacle, corners[i - 1], corners[i]) / apart_m);
+    for (double k = 1.0; k <= steps; ++k) {
+      still.world_from_obstacle = interpolate(corners[i - 1], corners[i], k / steps);
+      all.push_back(still);
+    }
+  }
+  return all;
+}
+
 DistanceSample Obstacle::sample(const Eigen::Vector3d& point, double time_s) const {
   const Eigen::Isometry3d pose = pose_at(time_s);
   const Eigen::Vector3d local = pose.linear().transpose() * (point - pose.translation());

@@ -173,6 +173,15 @@ void require_positive(double value, const char* what) {
     throw Error(std::string(what) + " is " + std::to_string(value), "a positive number of metres");
 }
 
+/// At this resolution, which is not coarser than the tree's.
+double occupied_voxels(const octomap::OcTree& tree, double resolution_m) {
+  double volume_m3 = 0.0;
+  for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf) {
+    if (tree.isNodeOccupied(*leaf)) volume_m3 += std::pow(leaf.getSize(), 3);
+  }
+  return volume_m3 / std::pow(resolution_m, 3);
+}
+
 }  // namespace
 
 std::shared_ptr<octomap::OcTree> load_octree(const std::filesystem::path& path) {
@@ -212,6 +221,13 @@ void save_octree(const octomap::OcTree& tree, const std::filesystem::path& path)
 std::shared_ptr<octomap::OcTree> joined(const octomap::OcTree& a, const octomap::OcTree& b) {
   const double resolution = std::min(a.getResolution(), b.getResolution());
   const auto tree = std::make_shared<octomap::OcTree>(resolution);
+  constexpr double kMostVoxels = 1e7;
+  if (const double voxels = occupied_voxels(a, resolution) + occupied_voxels(b, resolution);
+      voxels > kMostVoxels) {
+    throw Error("two maps with " + std::to_string(static_cast<long>(voxels)) +
+                    " occupied voxels of the finer resolution are not joined",
+                "at most ten million; a map with larger voxels, or a part of it");
+  }
   for (const octomap::OcTree* one : {&a, &b}) {
     for (auto leaf = one->begin_leafs(), end = one->end_leafs(); leaf != end; ++leaf) {
       if (!one->isNodeOccupied(*leaf)) continue;

@@ -44,7 +44,8 @@ void save_octree(const octomap::OcTree& tree, const std::filesystem::path& path)
 std::shared_ptr<octomap::OcTree> octree_from_boxes(std::span<const Box> boxes, double resolution_m);
 
 /// Occupied is what either occupies, at the finer of their resolutions; voxels of the coarser one
-/// grow to whole ones of the finer. Throws Error where that does not reach so far.
+/// grow to whole ones of the finer. Throws Error where that does not reach so far, and for more
+/// than ten million such voxels.
 std::shared_ptr<octomap::OcTree> joined(const octomap::OcTree& a, const octomap::OcTree& b);
 
 struct OctreeInfo {

@@ -44,7 +44,9 @@ class RegionGrowing {
                      [&](int a, int b) { return flatness_[index(a)] < flatness_[index(b)]; });
     region_of_.assign(index(grid_.size()), -1);
     for (const int seed : seeds) {
-      if (region_of_[index(seed)] < 0) grow(seed);
+      if (region_of_[index(seed)] >= 0) continue;
+      options_.deadline.require();
+      grow(seed);
     }
     collect_points();
     for (Region& region : regions_) settle(region.points, region.plane);
@@ -57,6 +59,7 @@ class RegionGrowing {
   static constexpr double kNotFlat = 1.0;
   /// Of the variance that a flat neighbourhood has across it.
   static constexpr double kMostThickness = 0.06;
+  static constexpr int kOften = 1000;  ///< voxels, between looks at the clock
 
   static std::size_t index(int voxel) { return static_cast<std::size_t>(voxel); }
 
@@ -66,6 +69,7 @@ class RegionGrowing {
     // Two rows of voxels have a variance of v^2 / 3 across them.
     const double least_width = 0.22 * options_.voxel_m * options_.voxel_m;
     for (int voxel = 0; voxel < grid_.size(); ++voxel) {
+      if (voxel % kOften == 0) options_.deadline.require();
       Moments around;
       grid_.around(voxel, 1, [&](int other) { around.add(grid_.moments(other)); });
       if (around.weight < 3.0) continue;
@@ -284,7 +288,7 @@ class CellsOfPoints {
   std::vector<Extent> rectangles(const PatchOptions& options) const {
     std::vector<Extent> found;
     const CellSizes sizes{size_x_, size_y_, options.least_length_m, options.least_width_m};
-    for (const CellRectangle& cells : cell_rectangles(cells_, sizes)) {
+    for (const CellRectangle& cells : cell_rectangles(cells_, sizes, options.deadline)) {
       const Extent extent = covered(cells);
       const double x = extent.upper_x - extent.lower_x, y = extent.upper_y - extent.lower_y;
       if (std::max(x, y) >= options.least_length_m && std::min(x, y) >= options.least_width_m) {
@@ -366,6 +370,7 @@ std::vector<PlanarRegion> planar_regions(std::span<const Eigen::Vector3d> points
   RegionGrowing growing(points, options);
   std::vector<PlanarRegion> found;
   for (Region& region : without_repetitions(growing.regions(), points.size(), options)) {
+    options.deadline.require();
     const Eigen::Vector3d normal = outward(region, growing.grid(), options);
     std::vector<Surface> surfaces = surfaces_of(region, normal, points, options);
     if (surfaces.empty()) continue;

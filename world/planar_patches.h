@@ -14,6 +14,7 @@
 /// Deterministic, without random samples. About n log n in the number of points. Lengths in metres.
 /// Throws Error for coordinates and voxels outside ranges.h.
 
+#include <locograph/common/deadline.h>
 #include <locograph/world/world.h>
 
 #include <Eigen/Geometry>
@@ -34,6 +35,7 @@ struct PatchOptions {
   /// floor in front of them; if there are none, away from those beside their upper half, the top of
   /// a box; else to the side with more points.
   std::optional<Eigen::Vector3d> viewpoint;
+  Deadline deadline = {};  ///< when it has passed, OutOfTime is thrown
 };
 
 /// Without names and friction, the largest first.
@@ -55,6 +57,7 @@ struct BarOptions {
   double least_radius_m = 0.004, most_radius_m = 0.06;
   double least_length_m = 0.15;
   double distance_m = 0.015;  ///< of a bar's points from its side; twice that counts as on it
+  Deadline deadline = {};     ///< as of PatchOptions
 };
 
 /// Rows of voxels with points around a line; cylinders by least squares in the points' distances.

@@ -86,20 +86,48 @@ bool largest_rectangle(const Mask& mask, const CellSizes& sizes, CellRectangle& 
   return best_area > 0.0;
 }
 
-bool all_in(const Mask& mask, const CellRectangle& cells) {
-  for (int y = cells.from.y; y <= cells.to.y; ++y)
-    for (int x = cells.from.x; x <= cells.to.x; ++x)
-      if (!mask.has({x, y})) return false;
-  return true;
-}
+/// How many cells of a mask are below and left of each: a rectangle is counted with four of them,
+/// however large it is.
+class CellCounts {
+ public:
+  explicit CellCounts(const Mask& mask)
+      : from_(mask.from()), width_(mask.width()), height_(mask.height()) {
+    counts_.assign(static_cast<std::size_t>(width_ + 1) * static_cast<std::size_t>(height_ + 1), 0);
+    for (int y = 0; y < height_; ++y)
+      for (int x = 0; x < width_; ++x) {
+        const int here = mask.has({from_.x + x, from_.y + y}) ? 1 : 0;
+        counts_[index(x + 1, y + 1)] =
+            here + counts_[index(x, y + 1)] + counts_[index(x + 1, y)] - counts_[index(x, y)];
+      }
+  }
 
-void grow(const Mask& mask, CellRectangle& r) {
+  bool all_in(const CellRectangle& cells) const {
+    const int left = cells.from.x - from_.x, right = cells.to.x - from_.x + 1;
+    const int low = cells.from.y - from_.y, high = cells.to.y - from_.y + 1;
+    if (left < 0 || low < 0 || right > width_ || high > height_) return false;
+    const int count = counts_[index(right, high)] - counts_[index(left, high)] -
+                      counts_[index(right, low)] + counts_[index(left, low)];
+    return count == (right - left) * (high - low);
+  }
+
+ private:
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_ + 1) +
+           static_cast<std::size_t>(x);
+  }
+
+  Cell from_;
+  int width_, height_;
+  std::vector<int> counts_;
+};
+
+void grow(const CellCounts& whole, CellRectangle& r) {
   for (bool grown = true; grown;) {
     grown = false;
-    if (all_in(mask, {{r.from.x - 1, r.from.y}, {r.from.x - 1, r.to.y}})) --r.from.x, grown = true;
-    if (all_in(mask, {{r.to.x + 1, r.from.y}, {r.to.x + 1, r.to.y}})) ++r.to.x, grown = true;
-    if (all_in(mask, {{r.from.x, r.from.y - 1}, {r.to.x, r.from.y - 1}})) --r.from.y, grown = true;
-    if (all_in(mask, {{r.from.x, r.to.y + 1}, {r.to.x, r.to.y + 1}})) ++r.to.y, grown = true;
+    if (whole.all_in({{r.from.x - 1, r.from.y}, {r.from.x - 1, r.to.y}})) --r.from.x, grown = true;
+    if (whole.all_in({{r.to.x + 1, r.from.y}, {r.to.x + 1, r.to.y}})) ++r.to.x, grown = true;
+    if (whole.all_in({{r.from.x, r.from.y - 1}, {r.to.x, r.from.y - 1}})) --r.from.y, grown = true;
+    if (whole.all_in({{r.from.x, r.to.y + 1}, {r.to.x, r.to.y + 1}})) ++r.to.y, grown = true;
   }
 }
 
@@ -128,12 +156,13 @@ std::vector<std::vector<Cell>> take_apart(Mask& mask) {
   return parts;
 }
 
-void rectangles_of(const std::vector<Cell>& cells, const CellSizes& sizes,
+void rectangles_of(const std::vector<Cell>& cells, const CellSizes& sizes, const Deadline& deadline,
                    std::vector<CellRectangle>& out) {
-  const Mask whole(cells);
-  Mask rest = whole;
+  Mask rest(cells);
+  const CellCounts whole(rest);
   std::vector<std::vector<Cell>> parts = take_apart(rest);
   while (!parts.empty()) {
+    deadline.require();
     Mask part(parts.back());
     parts.pop_back();
     CellRectangle found;
@@ -149,7 +178,8 @@ void rectangles_of(const std::vector<Cell>& cells, const CellSizes& sizes,
 
 }  // namespace
 
-std::vector<CellRectangle> cell_rectangles(std::vector<Cell> cells, const CellSizes& sizes) {
+std::vector<CellRectangle> cell_rectangles(std::vector<Cell> cells, const CellSizes& sizes,
+                                           const Deadline& deadline) {
   Cell lowest;
   if (!cells.empty()) lowest = cells.front();
   for (const Cell& cell : cells) lowest = {std::min(lowest.x, cell.x), std::min(lowest.y, cell.y)};
@@ -166,7 +196,7 @@ std::vector<CellRectangle> cell_rectangles(std::vector<Cell> cells, const CellSi
     while (last < cells.size() && tile(cells[last]) == tile(cells[first])) ++last;
     rectangles_of({cells.begin() + static_cast<std::ptrdiff_t>(first),
                    cells.begin() + static_cast<std::ptrdiff_t>(last)},
-                  sizes, rectangles);
+                  sizes, deadline, rectangles);
     first = last;
   }
   const auto area = [](const CellRectangle& r) {

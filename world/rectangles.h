@@ -9,6 +9,8 @@
 /// ones as far as it can. Every rectangle is full of the given cells, and no side of it can move
 /// out. None is longer than 2048 cells: larger sets are cut there.
 
+#include <locograph/common/deadline.h>
+
 #include <vector>
 
 namespace locograph {
@@ -29,8 +31,9 @@ struct CellSizes {
   double least_length = 0.0, least_width = 0.0;
 };
 
-/// Cells in any order, also several times.
-std::vector<CellRectangle> cell_rectangles(std::vector<Cell> cells, const CellSizes& sizes);
+/// Cells in any order, also several times. Throws OutOfTime.
+std::vector<CellRectangle> cell_rectangles(std::vector<Cell> cells, const CellSizes& sizes,
+                                           const Deadline& deadline = {});
 
 struct PlaneFrame {
   double angle_rad = 0.0;                                             ///< of its x axis

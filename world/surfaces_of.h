@@ -14,7 +14,8 @@
 /// or over a strip of two voxels around it, from points in or behind its plane are put behind that
 /// plane. Rectangles are thin plates; behind them the world is as free as the map says.
 ///
-/// Lengths in metres. friction as of Surface. On an Error the world is as it was.
+/// Lengths in metres. friction as of Surface. On an Error, and on OutOfTime, the world is as it
+/// was.
 
 #include <locograph/world/planar_patches.h>
 #include <locograph/world/world.h>
@@ -36,7 +37,9 @@ void add_cloud(World& world, const std::string& name, std::span<const Eigen::Vec
 
 /// The tree joined with the world's map, all of it, and rectangles on its occupied voxels' faces:
 /// towards free space; in a tree that knows no free space, towards unknown. Normals are the axes'
-/// directions; sides are those of voxels. Throws Error without a tree.
+/// directions; sides are those of voxels. Throws Error without a tree, and for one whose occupied
+/// voxels have more than ten million faces in planes that need them one by one: where all leaves
+/// are large, few large cells do.
 void add_octomap(World& world, const std::string& name,
                  const std::shared_ptr<const octomap::OcTree>& tree, double friction,
                  const PatchOptions& options = {});
@@ -45,6 +48,7 @@ struct MeshOptions {
   double cell_m = 0.02;                               ///< of the rectangles, about
   double voxel_m = 0.02;                              ///< of the map
   double least_length_m = 0.15, least_width_m = 0.1;  ///< of a rectangle
+  Deadline deadline = {};                             ///< as of PatchOptions
 };
 
 /// An STL file's surface, corners scaled and then moved. Triangles that share edges and a plane (to

@@ -8,7 +8,8 @@
 ///
 /// A snapshot: a world does not change; a newer one replaces it. Map and obstacles are only in the
 /// way. Surfaces are in the way, too, and may be touched from the side of their normal; so are
-/// bars, from all sides.
+/// bars, from all sides. Solids are in the way through and through, and are touched where surfaces
+/// are their faces.
 
 #include <locograph/world/obstacles.h>
 #include <octomap/OcTree.h>
@@ -40,12 +41,23 @@ struct Bar {
   double friction = 0.0;  ///< as of surfaces
 };
 
+/// A box that is solid inside.
+struct SolidBox {
+  std::string name;
+  Eigen::Isometry3d world_from_box = Eigen::Isometry3d::Identity();  ///< of its middle
+  Eigen::Vector3d size_m = Eigen::Vector3d::Ones();
+};
+
 struct World {
   std::shared_ptr<const octomap::OcTree> map;  ///< null: none
   std::vector<Obstacle> obstacles;
   std::vector<Surface> surfaces;
   std::vector<Bar> bars;
+  std::vector<SolidBox> solids = {};
 };
+
+/// Whether all of a surface lies in a box or on its border, as its faces do.
+bool is_part_of(const SolidBox& box, const Surface& surface);
 
 /// The plane z = 0 without an end.
 Surface ground();

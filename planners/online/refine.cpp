@@ -138,6 +138,9 @@ class Walk {
     measure_goal(last);
     if (report_.goal_distance_m <= options_.goal_tolerance_m &&
         report_.goal_angle_rad <= options_.goal_tolerance_rad) {
+      if (report_.goal_distance_m > limits::kGoal_m || report_.goal_angle_rad > limits::kGoal_rad) {
+        mark_incomplete(graph_);
+      }
       return;
     }
     report_.success = false;

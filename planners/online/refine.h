@@ -11,6 +11,7 @@
 /// that is feasible but does not end at its goal, whether short of it or beside it, is no success.
 
 #include <locograph/check/check_report.h>
+#include <locograph/check/limits.h>
 #include <locograph/check/motion.h>
 #include <locograph/planners/online/local_planner.h>
 
@@ -22,8 +23,9 @@ namespace locograph {
 struct RefineOptions {
   LocalPlannerOptions planner;
   /// How far from where it was planned the last configuration's base may end, in any direction.
-  double goal_tolerance_m = 0.25;
-  double goal_tolerance_rad = 0.25;
+  /// A plan that ends further away than the judge takes for a goal (limits.h) is marked incomplete.
+  double goal_tolerance_m = limits::kGoal_m;
+  double goal_tolerance_rad = limits::kGoal_rad;
   /// When it is set, as by Ctrl-C (stop_signals.h), the walk ends where it is; may be null.
   const std::atomic<bool>* stop = nullptr;
   /// Called after each cycle, e.g. to show progress; may be empty.

@@ -42,8 +42,8 @@ class AsPlanned {
 /// What of the world is nearest to a point.
 std::string nearest_thing(const WorldDistance& world, const Eigen::Vector3d& point, double time_s) {
   std::string name = "the map";
-  double nearest = world.map && !world.map->empty() ? world.map->distance(point)
-                                                    : std::numeric_limits<double>::infinity();
+  double nearest =
+      world.sees_map() ? world.sample_map(point).distance : std::numeric_limits<double>::infinity();
   for (const Obstacle& obstacle : world.obstacles) {
     const double distance = obstacle.distance(point, time_s);
     if (distance >= nearest) continue;

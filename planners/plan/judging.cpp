@@ -3,8 +3,14 @@
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/posture/contacts_file.h>
 #include <locograph/planners/scenario/scenario.h>
+#include <locograph/planners/scenario/task_stances.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
+#include <locograph/world/distance_view.h>
 #include <locograph/world/octree.h>
+
+#include <cmath>
+#include <cstdio>
+#include <utility>
 
 namespace locograph {
 namespace {
@@ -62,6 +68,62 @@ void take_word_of(const Scenario& scenario, CheckOptions& options) {
   options.effort_scale = scenario.effort_scale;
 }
 
+/// Worked out anew: nothing is shared with what plans drives.
+PlannedTask task_of(const DriveTask& drive) {
+  const double turned = drive.curvature_1_m * drive.distance_m;
+  Eigen::Vector3d end(drive.distance_m, 0.5 * turned * drive.distance_m, turned);
+  if (std::abs(turned) > 1e-9) {
+    end.head<2>() << std::sin(turned) / drive.curvature_1_m,
+        (1.0 - std::cos(turned)) / drive.curvature_1_m;
+  }
+  return {.start = {},
+          .goals = {{.base = end, .within_m = limits::kGoal_m, .within_rad = limits::kGoal_rad}}};
+}
+
+PlannedTask task_of(const Scenario& scenario, const World& world, const ContactMoves& moves) {
+  if (scenario.drive) return task_of(*scenario.drive);
+  TaskStances stances = task_stances(scenario, world, moves);
+  PlannedTask task;
+  task.start.stance = std::move(stances.start);
+  for (Stance& goal : stances.goals) task.goals.push_back({.stance = std::move(goal)});
+  return task;
+}
+
+/// Says of the report where the motion begins and what it gets to.
+void judge_ends(const Motion& motion, const Judging& judging, CheckReport& report) {
+  std::string why_not;
+  if (judging.incomplete) why_not = "the plan says that it is incomplete";
+  if (!judging.task) why_not = "the plan names no scenario";
+  if (judging.task) report.ends = plan_ends(motion, *judging.task);
+  for (Violation& violation : end_violations(motion, report.ends.value_or(PlanEnds()), why_not)) {
+    if (violation.violated) report.feasible = false;
+    report.violations.push_back(std::move(violation));
+  }
+  if (!judging.task || !(judging.moves.most_m > 0.0)) return;
+  char moved[96];
+  std::snprintf(moved, sizeof moved, "start and goals: that contacts are moved by up to %.4g m",
+                judging.moves.most_m);
+  report.trusted.push_back(moved);
+}
+
+/// How high the ground is does not come from the plan: one that says otherwise was planned for
+/// another world.
+void require_same_ground(const Graph& graph, const World& world) {
+  for (const auto& [number, parameter] : graph.parameters().all()) {
+    const auto seen = std::dynamic_pointer_cast<const WorldParameter>(parameter);
+    if (!seen || !seen->ground_z_m) continue;
+    const double ground = ground_height(world);
+    constexpr double kSame_m = 1e-9;
+    if (std::abs(*seen->ground_z_m - ground) <= kSame_m) continue;
+    const auto text = [](double height) {
+      return std::isfinite(height) ? "a ground at " + std::to_string(height) + " m"
+                                   : "no ground without end";
+    };
+    throw Error("", graph.parameters().line(number), "PARAMS_WORLD with " + text(*seen->ground_z_m),
+                "that of the world in which the plan is judged, " + text(ground));
+  }
+}
+
 /// What PARAMS_WORLD names and the scenario does not.
 void add_plan_world(const WorldParameter& seen, const Scenario* scenario, World& world) {
   const bool same_map = scenario != nullptr && same_file(seen.map, scenario->map);
@@ -82,24 +144,30 @@ Judging judging_of(const Graph& graph, const Plan& plan, const JudgingRequest& r
   }
   Judging judging;
   judging.robot = plan.robot->robot;
+  judging.incomplete = plan.incomplete;
+  judging.moves = plan.moves;
   std::optional<Scenario> scenario;
   const bool other = !request.scenario.empty();
   if (other || origin) {
     scenario = load_scenario(other ? request.scenario : origin->scenario, request.data_folder);
     judging.robot = robot_of(*scenario, plan.robot->robot);
+    require_camera_links(*scenario, *judging.robot);
     take_word_of(*scenario, judging.options);
     judging.options.compare_claims = !other;
-    judging.world = world_of(*scenario);
+    judging.world = world_of(*scenario, request.deadline);
+    judging.scenario = scenario->source;
   } else {
     judging.world.surfaces.push_back(ground());
     judging.options.surfaces_known = false;
   }
+  if (scenario && origin) judging.task = task_of(*scenario, judging.world, plan.moves);
   if (contacts && !other) {
     Stance stance = load_contacts(contacts->file, *plan.robot->robot);
     for (const Contact& contact : stance.contacts)
       judging.options.known.push_back(contact.effector);
     judging.options.places = std::move(stance.contacts);
   }
+  if (!other) require_same_ground(graph, judging.world);
   if (!request.map.empty() || !request.obstacles.empty()) {
     World instead = load_world(request.map, request.obstacles);
     judging.world.map = std::move(instead.map);
@@ -117,9 +185,13 @@ CheckReport judged(const Graph& graph, const Plan& plan, const Judging& judging)
 std::optional<CheckReport> judged(const Motion& motion, const Judging& judging,
                                   const JobControl& job) {
   const Judge judge(judging.robot, judging.world);
-  const bool posture = motion.configurations.size() == 1 && motion.stance_from.front() >= 0;
-  if (!posture) return judge.check(motion, judging.options, job);
-  return judge.check(motion.configurations.front(), motion.stances.front(), judging.options);
+  const bool posture =
+      motion.configurations.size() == 1 && motion.stance_from.front() >= 0 && !motion.stances_only;
+  std::optional<CheckReport> report =
+      posture ? judge.check(motion.configurations.front(), motion.stances.front(), judging.options)
+              : judge.check(motion, judging.options, job);
+  if (report) judge_ends(motion, judging, *report);
+  return report;
 }
 
 }  // namespace locograph

@@ -11,10 +11,17 @@
 /// own environment, and what its PARAMS_WORLD adds; what end effectors can bear is the word of the
 /// scenario or of the contacts file. A plan that names neither stands on the plane z = 0 among what
 /// its PARAMS_WORLD names, and what it says of its contacts is taken on trust, which the report
-/// tells. A contacts file says where contacts are but nothing of surfaces: the ground is z = 0, and
-/// that there is something to touch at the other places is taken on trust.
+/// tells. How high the ground is is the scenario's word, too, else z = 0: a plan whose PARAMS_WORLD
+/// says otherwise is refused with its line. A contacts file says where contacts are but nothing of
+/// surfaces: the ground is z = 0, and that there is something to touch at the other places is taken
+/// on trust.
+///
+/// A plan that names a scenario begins at the start and gets to the goals of the scenario that it
+/// is judged by. One that says that its contacts are moved (PARAMS_PLAN) is held against the start
+/// and the goals moved in the same way, which the report tells.
 
 #include <locograph/check/check_report.h>
+#include <locograph/check/plan_ends.h>
 #include <locograph/common/job_control.h>
 #include <locograph/planners/plan/plan.h>
 #include <locograph/robots/robot.h>
@@ -28,11 +35,13 @@
 namespace locograph {
 
 struct JudgingRequest {
-  /// A scenario to judge in instead of the plan's own: its world, its friction, its limits. Claims
+  /// A scenario to judge in instead of the plan's own: its world, its friction, its limits, its
+  /// start and goals. Claims
   /// of the plan are then not compared with it.
   std::string scenario = {};
   /// Instead of what is in the way, surfaces aside; both empty: as it is.
   std::filesystem::path map = {}, obstacles = {};
+  Deadline deadline = {};  ///< see world_of()
   /// See load_scenario().
   std::filesystem::path data_folder;
 };
@@ -41,13 +50,18 @@ struct Judging {
   std::shared_ptr<const Robot> robot;  ///< the scenario's, whatever the plan says of its own
   World world;
   CheckOptions options;
+  std::string scenario;             ///< by whose word, see Scenario::source; empty: no one's
+  std::optional<PlannedTask> task;  ///< of a plan that names a scenario: that of `scenario`
+  ContactMoves moves;               ///< by the plan's word, of the contacts of the task
+  bool incomplete = false;          ///< the plan says so: its ends are told, and not judged
 };
 
 /// Throws Error for files that cannot be used, for a plan that names both a scenario and a contacts
 /// file, and for a plan of another robot than the scenario's, or one that moves other joints.
 Judging judging_of(const Graph& graph, const Plan& plan, const JudgingRequest& request);
 
-/// A posture, one configuration that stands, is judged as PostureSolver does; others as motions.
+/// A posture, one configuration that stands, is judged as PostureSolver does; others as motions. To
+/// what the judge says are added `scenario_start` and `scenario_goals`, see check/plan_ends.h.
 CheckReport judged(const Graph& graph, const Plan& plan, const Judging& judging);
 /// The same of motion_of(graph, plan); nothing when the job ends before the check does.
 std::optional<CheckReport> judged(const Motion& motion, const Judging& judging,

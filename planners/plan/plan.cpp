@@ -90,6 +90,7 @@ Plan plan_of(const Graph& graph) {
   only<ContactsParameter>(parameters);
   plan.stances_only = format->stances_only;
   plan.incomplete = format->incomplete;
+  plan.moves = format->moves;
   plan.world = only<WorldParameter>(parameters);
   only<RobotParameter>(parameters);
   if (!plan.stances_only) {

@@ -8,6 +8,7 @@
 
 #include <locograph/check/motion.h>
 #include <locograph/core/graph.h>
+#include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
 #include <locograph/plugins/contact/stance_parameter.h>
 
@@ -26,6 +27,7 @@ struct Plan {
   std::vector<std::shared_ptr<const StanceParameter>> stance_from;
   bool stances_only = false;
   bool incomplete = false;  ///< it ends before its goal
+  ContactMoves moves;       ///< how its start and goals differ from its scenario's
 };
 
 /// Throws Error, with the line if the graph was read from a file, when it holds no configuration,

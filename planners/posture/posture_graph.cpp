@@ -141,7 +141,7 @@ PostureGraph::PostureGraph(std::shared_ptr<const RobotParameter> robot,
 void PostureGraph::add_parameters(std::shared_ptr<const WorldParameter> seen,
                                   const PostureProblem& problem, const PostureOptions& options) {
   graph.parameters().set(kRobotNumber, robot_);
-  seen_ = seen->now.map || !seen->now.obstacles.empty();
+  seen_ = seen->now.map || seen->now.leaves || !seen->now.obstacles.empty();
   ground_z_m_ = seen->ground_z_m;
   graph.parameters().set(kWorldNumber, std::move(seen));
   Stance stance = problem.stance;

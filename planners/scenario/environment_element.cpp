@@ -94,6 +94,7 @@ class EnvironmentReader {
     world_from_box.linear() = read_rotation(xml_, box);
     const std::vector<double> size = read_sizes(xml_, box, "size", 3);
     const Eigen::Vector3d half(0.5 * size[0], 0.5 * size[1], 0.5 * size[2]);
+    environment_.solids.push_back({name, world_from_box, 2.0 * half});
     const auto add_face = [&](const char* side, const Eigen::Vector3d& normal) {
       Surface face;
       face.name = name + " " + side;

@@ -6,8 +6,8 @@
 ///     const Environment environment = read_environment(xml, *element);
 ///     const std::optional<double> friction = effector_friction(xml, environment);
 ///
-/// A box becomes its six faces, with normals that point out of it: NAME top, NAME bottom, NAME
-/// front (its +x), NAME back, NAME left (its +y), NAME right.
+/// A box becomes a solid and its six faces, with normals that point out of it: NAME top, NAME
+/// bottom, NAME front (its +x), NAME back, NAME left (its +y), NAME right.
 
 #include <locograph/planners/scenario/scenario.h>
 #include <locograph/robots/xml_file.h>
@@ -25,6 +25,7 @@ struct Environment {
   /// Their friction is what they say themselves, else 0.
   std::vector<Surface> surfaces;
   std::vector<Bar> bars;
+  std::vector<SolidBox> solids;
   std::vector<ScannedSurface> scanned;  ///< their files as they are written
   /// The first of all these without friction of its own; null: all have it.
   const XmlFile::Element* without_friction = nullptr;

@@ -3,6 +3,7 @@
 #include <locograph/planners/scenario/effector_element.h>
 #include <locograph/planners/scenario/environment_element.h>
 #include <locograph/planners/scenario/scenario.h>
+#include <locograph/robots/shipped_robot.h>
 #include <locograph/robots/xml_file.h>
 #include <locograph/world/octree.h>
 #include <locograph/world/point_cloud.h>
@@ -92,15 +93,14 @@ class ScenarioReader {
     }
     if (by_model) {
       const std::string model = xml_.attribute(*robot, "model");
-      const std::filesystem::path folder = data_folder_ / "robots/models" / model;
-      std::error_code too_long;
-      if (!std::filesystem::exists(folder / (model + ".urdf"), too_long)) {
+      const std::optional<RobotFiles> files = shipped_robot(model, data_folder_);
+      if (!files) {
         throw xml_.error(*robot, "unknown robot model '" + model + "'",
                          "one that `locograph list robots` names" +
                              did_you_mean(model, robot_names(data_folder_)));
       }
-      scenario_.urdf = std::filesystem::canonical(folder) / (model + ".urdf");
-      scenario_.srdf = std::filesystem::canonical(folder) / (model + ".srdf");
+      scenario_.urdf = files->urdf;
+      scenario_.srdf = files->srdf;
     } else {
       scenario_.urdf = beside_file(xml_.attribute(*robot, "urdf"));
       if (robot->Attribute("srdf")) scenario_.srdf = beside_file(xml_.attribute(*robot, "srdf"));
@@ -111,11 +111,10 @@ class ScenarioReader {
     if (robot->Attribute("state")) scenario_.start_state = xml_.attribute(*robot, "state");
     scenario_.robot.frozen_state = scenario_.start_state;
     scenario_.effort_scale = positive_or(*robot, "effort_scale", 1.0, kMostEffortScale);
-    check_cameras(*robot);
+    read_cameras(*robot);
   }
 
-  /// Cameras are well-formed; nothing here has a use for them.
-  void check_cameras(const Element& robot) const {
+  void read_cameras(const Element& robot) {
     std::set<std::string> names;
     for (const Element& camera : xml_.children(robot, "camera")) {
       xml_.allow(
@@ -126,7 +125,7 @@ class ScenarioReader {
       if (!names.insert(name).second) {
         throw xml_.error(camera, "a second camera '" + name + "'", "each name once");
       }
-      xml_.attribute(camera, "link");
+      scenario_.cameras.push_back({name, xml_.attribute(camera, "link"), camera.GetLineNum()});
       for (const char* place : {"position", "rpy"}) {
         if (camera.Attribute(place) != nullptr) read_vector(xml_, camera, place);
       }
@@ -239,6 +238,7 @@ class ScenarioReader {
     if (!environment_.obstacles.empty()) scenario_.obstacles = beside_file(environment_.obstacles);
     scenario_.surfaces = environment_.surfaces;
     scenario_.bars = environment_.bars;
+    scenario_.solids = environment_.solids;
     scenario_.scanned = environment_.scanned;
     for (ScannedSurface& scanned : scenario_.scanned) {
       scanned.file = beside_file(scanned.file.string());
@@ -274,20 +274,33 @@ class ScenarioReader {
   Environment environment_;
 };
 
-PatchOptions patch_options(const ScannedSurface& scanned) {
+PatchOptions patch_options(const ScannedSurface& scanned, const Deadline& deadline) {
   PatchOptions options;
+  options.deadline = deadline;
   options.voxel_m = scanned.voxel_m;
   options.least_length_m = 0.2;
   options.least_width_m = 0.1;
   return options;
 }
 
+/// Public clouds may have coordinates of a whole country; a scenario is no place for them.
+std::vector<Eigen::Vector3d> points_near(const std::filesystem::path& file) {
+  std::vector<Eigen::Vector3d> points = load_point_cloud(file);
+  for (const Eigen::Vector3d& point : points) {
+    if (point.cwiseAbs().maxCoeff() <= ranges::kCoordinate_m) continue;
+    throw Error(file.string(), 0, "a point is further away than 1000000 m",
+                "coordinates near the robot");
+  }
+  return points;
+}
+
 /// The voxels behind rectangles that are left out stay in the map.
-void add_octomap_without_ceilings(World& world, const ScannedSurface& scanned) {
+void add_octomap_without_ceilings(World& world, const ScannedSurface& scanned,
+                                  const Deadline& deadline) {
   constexpr double kDown = -0.5;
   const auto before = static_cast<std::ptrdiff_t>(world.surfaces.size());
   add_octomap(world, scanned.name, load_octree(scanned.file), scanned.friction,
-              patch_options(scanned));
+              patch_options(scanned, deadline));
   const auto looks_down = [](const Surface& surface) {
     return surface.world_from_surface.linear()(2, 2) < kDown;
   };
@@ -296,23 +309,27 @@ void add_octomap_without_ceilings(World& world, const ScannedSurface& scanned) {
       world.surfaces.end());
 }
 
-void add_scanned(World& world, const ScannedSurface& scanned) {
+void add_scanned(World& world, const ScannedSurface& scanned, const Deadline& deadline) {
   switch (scanned.kind) {
     case ScannedSurface::Kind::kMesh:
       return add_mesh(world, scanned.name, scanned.file, scanned.world_from_mesh, scanned.scale,
-                      scanned.friction);
+                      scanned.friction, {.deadline = deadline});
     case ScannedSurface::Kind::kCloud:
       // Of what is not steep, clouds have no rectangles that look down.
-      return add_cloud(world, scanned.name, load_point_cloud(scanned.file), scanned.friction,
-                       patch_options(scanned));
+      return add_cloud(world, scanned.name, points_near(scanned.file), scanned.friction,
+                       patch_options(scanned, deadline), {.deadline = deadline});
     case ScannedSurface::Kind::kOctomap:
-      return add_octomap_without_ceilings(world, scanned);
+      return add_octomap_without_ceilings(world, scanned, deadline);
   }
 }
 
 }  // namespace
 
 Scenario load_scenario(const std::string& name_or_file, const std::filesystem::path& data_folder) {
+  if (name_or_file == "-") {
+    throw Error("standard input", 0, "is no scenario: a plan names the file of its own",
+                "a scenario's file or name");
+  }
   const std::filesystem::path own = data_folder / "scenarios" / (name_or_file + ".xml");
   std::error_code too_long;
   const bool by_name =
@@ -328,16 +345,19 @@ Scenario load_scenario(const std::string& name_or_file, const std::filesystem::p
   return scenario;
 }
 
-World world_of(const Scenario& scenario) {
+World world_of(const Scenario& scenario, const Deadline& deadline) {
   World world = load_world(scenario.map, scenario.obstacles);
   world.surfaces = scenario.surfaces;
   world.bars = scenario.bars;
+  world.solids = scenario.solids;
   for (const ScannedSurface& scanned : scenario.scanned) {
     try {
-      add_scanned(world, scanned);
+      deadline.require();
+      add_scanned(world, scanned, deadline);
     } catch (const Error& error) {
       if (!error.file().empty()) throw;
-      throw Error(scanned.file.string(), 0, error.what(), "");
+      // Of its options, as the voxel, or of the place where the scenario puts it.
+      throw Error(scenario.source, scanned.line, scanned.file.string() + ": " + error.what(), "");
     }
   }
   if (!scenario.scanned.empty() && world.surfaces.empty() && world.bars.empty()) {
@@ -349,6 +369,26 @@ World world_of(const Scenario& scenario) {
     world.surfaces.push_back(ground());
   }
   return world;
+}
+
+void require_camera_links(const Scenario& scenario, const Robot& robot) {
+  for (const GivenCamera& camera : scenario.cameras) {
+    try {
+      robot.link_index(camera.link);
+    } catch (const Error& error) {
+      throw Error(scenario.source, camera.line, error.what(), "");
+    }
+  }
+}
+
+std::vector<std::filesystem::path> files_of(const Scenario& scenario) {
+  std::vector<std::filesystem::path> files = {scenario.urdf, scenario.srdf, scenario.map,
+                                              scenario.obstacles};
+  for (const ScannedSurface& scanned : scenario.scanned) files.push_back(scanned.file);
+  const std::filesystem::path own = scenario.source;
+  if (own.is_absolute()) files.push_back(own);
+  std::erase(files, std::filesystem::path());
+  return files;
 }
 
 std::vector<std::string> scenario_names(const std::filesystem::path& data_folder) {

@@ -7,6 +7,7 @@
 ///
 /// The format is described in doc/scenarios.md. Every mistake is an Error with file and line.
 
+#include <locograph/common/deadline.h>
 #include <locograph/robots/contact.h>
 #include <locograph/robots/robot.h>
 #include <locograph/world/world.h>
@@ -60,6 +61,12 @@ struct ScannedSurface {
   int line = 0;
 };
 
+/// A camera of the scenario, as far as somebody has use for it.
+struct GivenCamera {
+  std::string name, link;
+  int line = 0;
+};
+
 /// Of the whole motion; 0: none.
 struct MotionLimits {
   double base_linear_m_s = 0.0;
@@ -80,10 +87,12 @@ struct Scenario {
   std::vector<EndEffector> end_effectors;  ///< each with its friction; the links are not looked for
   std::vector<int> end_effector_lines;     ///< of the file
   MotionLimits limits;
-  std::filesystem::path map;        ///< empty: none
-  std::filesystem::path obstacles;  ///< empty: none
-  std::vector<Surface> surfaces;    ///< that may be touched, in the order of the file
+  std::vector<GivenCamera> cameras;  ///< the links are not looked for
+  std::filesystem::path map;         ///< empty: none
+  std::filesystem::path obstacles;   ///< empty: none
+  std::vector<Surface> surfaces;     ///< that may be touched, in the order of the file
   std::vector<Bar> bars;
+  std::vector<SolidBox> solids;         ///< whose faces are among the surfaces
   std::vector<ScannedSurface> scanned;  ///< where more of both are found
   bool enforce_torque_limits = true;
   /// One of the two.
@@ -95,12 +104,19 @@ struct Scenario {
 /// scenarios/NAME.xml, and robots/models/NAME/NAME.urdf and .srdf for `<robot model="NAME">`.
 Scenario load_scenario(const std::string& name_or_file, const std::filesystem::path& data_folder);
 
-/// Its map and obstacles, and what may be touched: surfaces and bars, then those that are found in
-/// meshes, clouds and octrees (world/surfaces_of.h), called NAME 1 … and NAME bar 1 …; for a drive
-/// without any of these the ground, the plane z = 0 without an end. Of clouds and octrees
-/// rectangles of 0.2 m x 0.1 m or more, of octrees none that look down. Throws Error for files that
-/// cannot be used and, with the line of the scenario, if there is nothing in them to stand on.
-World world_of(const Scenario& scenario);
+/// Its map, obstacles and solids, and what may be touched: surfaces and bars, then those that
+/// are found in meshes, clouds and octrees (world/surfaces_of.h), called NAME 1 … and NAME bar
+/// 1 …; for a drive without any of these the ground, the plane z = 0 without an end. Of clouds
+/// and octrees rectangles of 0.2 m x 0.1 m or more, of octrees none that look down. Throws
+/// Error for files that cannot be used and, with the line of the scenario, if there is nothing
+/// in them to stand on. Throws OutOfTime when the deadline passes first.
+World world_of(const Scenario& scenario, const Deadline& deadline = {});
+
+/// Throws Error with the line of the first camera that is on no link of the scenario's robot.
+void require_camera_links(const Scenario& scenario, const Robot& robot);
+
+/// The files that it is made of: its own, unless it comes with locograph, and those it names.
+std::vector<std::filesystem::path> files_of(const Scenario& scenario);
 
 /// Names of the scenarios that come with locograph, sorted.
 std::vector<std::string> scenario_names(const std::filesystem::path& data_folder);

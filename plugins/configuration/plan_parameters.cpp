@@ -1,7 +1,31 @@
 #include <locograph/plugins/configuration/path_field.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 
+#include <charconv>
+
 namespace locograph {
+namespace {
+
+ContactMoves read_moves(FieldReader& in) {
+  ContactMoves moves;
+  moves.most_m = in.number();
+  if (!(moves.most_m > 0.0)) {
+    in.fail("contacts moved by up to " + std::to_string(moves.most_m), "more than 0 m");
+  }
+  const std::string seed = in.word();
+  const char* const end = seed.data() + seed.size();
+  const std::from_chars_result parsed = std::from_chars(seed.data(), end, moves.seed);
+  if (parsed.ec != std::errc() || parsed.ptr != end) {
+    in.fail("the seed '" + seed + "'", "a whole number");
+  }
+  moves.draws = in.integer();
+  if (moves.draws < 1 || moves.draws > kMostDraws) {
+    in.fail("draw " + std::to_string(moves.draws), "1 to " + std::to_string(kMostDraws));
+  }
+  return moves;
+}
+
+}  // namespace
 
 void refuse_older_plan(const FieldReader& in, std::string_view tag) {
   in.fail(std::string(tag) + " of a plan of format version 1",
@@ -16,12 +40,19 @@ void PlanParameter::read(FieldReader& in) {
   }
   while (!in.at_end()) {
     const std::string word = in.word();
+    if ((word == "stances_only" && stances_only) || (word == "incomplete" && incomplete) ||
+        (word == "moved_contacts" && moves.most_m > 0.0)) {
+      in.fail("a second '" + word + "'", "it once");
+    }
     if (word == "stances_only") {
       stances_only = true;
     } else if (word == "incomplete") {
       incomplete = true;
+    } else if (word == "moved_contacts") {
+      moves = read_moves(in);
     } else {
-      in.fail("'" + word + "'", "'stances_only', 'incomplete' or the end of the line");
+      in.fail("'" + word + "'",
+              "'stances_only', 'incomplete', 'moved_contacts' or the end of the line");
     }
   }
 }
@@ -30,6 +61,11 @@ void PlanParameter::write(FieldWriter& out) const {
   out.integer(kPlanFormat);
   if (stances_only) out.word("stances_only");
   if (incomplete) out.word("incomplete");
+  if (!(moves.most_m > 0.0)) return;
+  out.word("moved_contacts");
+  out.number(moves.most_m);
+  out.word(std::to_string(moves.seed));
+  out.integer(moves.draws);
 }
 
 void ScenarioParameter::read(FieldReader& in) {

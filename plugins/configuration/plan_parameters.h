@@ -4,6 +4,7 @@
 ///     PARAMS_PLAN 1 2                          (format version 2)
 ///     PARAMS_PLAN 1 2 stances_only             (transitions: nothing moves between configurations)
 ///     PARAMS_PLAN 1 2 incomplete               (the first part of a plan: the rest was not found)
+///     PARAMS_PLAN 1 2 moved_contacts 0.05 3 1  (of the scenario's start and goals: ContactMoves)
 ///     PARAMS_SCENARIO 3 centauro_drive         (made for this scenario: a name, or a file)
 ///     PARAMS_CONTACTS 4 ../standing.xml        (a posture for this contacts file)
 ///
@@ -12,6 +13,7 @@
 
 #include <locograph/core/parameters.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -19,11 +21,23 @@ namespace locograph {
 
 inline constexpr int kPlanFormat = 2;
 
+inline constexpr int kMostDraws = 20;
+
+/// The contacts of a scenario's start and goals moved at random, see
+/// planners/scenario/task_stances.h.
+struct ContactMoves {
+  double most_m = 0.0;  ///< 0: they stay
+  std::uint64_t seed = 0;
+  int draws = 1;  ///< of the start's contacts, up to kMostDraws; the last one counts
+};
+
 struct PlanParameter final : Parameter {
   /// The configurations are transitions of a plan of stances, in order; their times mean nothing.
   bool stances_only = false;
   /// It ends before its goal.
   bool incomplete = false;
+  /// It was made for a start and goals that are those of its scenario so moved.
+  ContactMoves moves;
 
   std::string_view tag() const override { return "PARAMS_PLAN"; }
   void read(FieldReader& in) override;

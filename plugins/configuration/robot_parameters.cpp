@@ -3,7 +3,7 @@
 #include <locograph/plugins/configuration/robot_parameters.h>
 #include <locograph/plugins/configuration/sphere_overshoot.h>
 #include <locograph/robots/shipped_robot.h>
-#include <locograph/world/octree.h>
+#include <locograph/world/distance_view.h>
 
 #include <algorithm>
 
@@ -111,14 +111,9 @@ WorldParameter::WorldParameter(std::filesystem::path map_file, std::filesystem::
 }
 
 void WorldParameter::load() {
-  now = {};
-  if (!map.empty()) {
-    DistanceFieldOptions options;
-    if (ground_z_m) options.ground_z = *ground_z_m;
-    now.map = std::make_shared<const DistanceField>(
-        DistanceField::from_octree(*load_octree(map), options));
-  }
-  if (!obstacles.empty()) now.obstacles = load_obstacles(obstacles);
+  DistanceFieldOptions options;
+  if (ground_z_m) options.ground_z = *ground_z_m;
+  now = distance_view(load_world(map, obstacles), options);
 }
 
 void WorldParameter::read(FieldReader& in) {

@@ -54,7 +54,8 @@ struct RobotParameter final : Parameter {
 
 /// PARAMS_WORLD: what is in the way: OctoMap file and obstacle file, and, where the robot stands on
 /// level ground, `ground` and its height [m]: voxels whose top is no higher are that ground as a
-/// sensor saw it, no obstacles. `now` is what the distance edges read: whoever plans online
+/// sensor saw it, no obstacles. The ground is that of the plan's scenario; whoever judges a plan
+/// refuses another one. `now` is what the distance edges read: whoever plans online
 /// replaces it when the world shows something new, and with set_files() what the plan will be saved
 /// with; the files are not read again.
 struct WorldParameter final : Parameter {

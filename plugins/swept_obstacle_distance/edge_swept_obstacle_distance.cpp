@@ -116,11 +116,11 @@ class Step {
     const Eigen::Vector3d& from = a_.sphere_centres[sphere];
     const Eigen::Vector3d way = b_.sphere_centres[sphere] - from;
     const Padding at_rest(rho, way, 0.0, samples_);
-    if (world_.map && !world_.map->empty()) {
+    if (world_.sees_map()) {
       const auto sample = [&](const Eigen::Vector3d& point, double) {
-        return world_.map->sample(point);
+        return world_.sample_map(point);
       };
-      if (!keeps_away(world_.map->distance(from + 0.5 * way), at_rest)) {
+      if (!keeps_away(world_.sample_map(from + 0.5 * way).distance, at_rest)) {
         try_samples(from, way, at_rest, worst, sample);
       }
     }

@@ -1,11 +1,14 @@
 // Files that are broken on purpose, or by a slip of the finger: a clear answer within a second of
 // one processor and 200 MB, however absurd the numbers in them.
 #include <apps/command_runner.h>
+#include <apps/shipped_scenario.h>
 #include <fcntl.h>
+#include <locograph/common/uniform.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <functional>
+#include <random>
 
 #include "plugins/small_robot.h"
 
@@ -229,6 +232,59 @@ TEST(LargeInput, APlanOfAMillionConfigurationsEndsInItsTime) {
   EXPECT_FALSE(outcome.json()["success"]);
   EXPECT_FALSE(runner.exists("p.g2o"));
   EXPECT_LT(outcome.kilobytes, kMostKilobytes);
+}
+
+/// standing_up, with this in its environment as well.
+std::string standing_up_among(const std::string& element) {
+  return test::with(test::shipped("standing_up"), "</environment>", element + "\n</environment>");
+}
+
+TEST(LargeInput, AMapOfOneLeafIsOneBox) {
+  const CommandRunner runner;
+  runner.write("leaf.bt", map_header("2", "0.05") + std::string("\2\0", 2));
+  runner.write("s.xml", standing_up_among("<octomap name=\"hall\" file=\"leaf.bt\"/>"));
+  const MeasuredOutcome touched =
+      run_limited(runner, "plan s.xml --stances-only -o p.g2o --timeout 2 --quiet");
+  EXPECT_LE(touched.exit_code, 1);
+  EXPECT_EQ(touched.err, "");
+  EXPECT_LT(touched.kilobytes, kMostKilobytes);
+  runner.write("t.xml", test::with(test::shipped("standing_up"), "<environment ",
+                                   "<environment map=\"leaf.bt\" "));
+  const MeasuredOutcome avoided =
+      run_limited(runner, "plan t.xml --stances-only -o p.g2o --timeout 2 --quiet");
+  EXPECT_LE(avoided.exit_code, 1);
+  EXPECT_EQ(avoided.err, "");
+  EXPECT_LT(avoided.kilobytes, kMostKilobytes);
+}
+
+TEST(LargeInput, ACloudOfPointsAtRandomEndsInItsTime) {
+  const CommandRunner runner;
+  const int count = 200000;
+  std::mt19937_64 random(1);
+  const auto coordinate = [&] { return std::to_string(uniform(random, -10.0, 10.0)); };
+  runner.write("scan.pcd",
+               "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " +
+                   std::to_string(count) + "\nHEIGHT 1\nDATA ascii\n" + repeated(count, [&](int) {
+                     return coordinate() + ' ' + coordinate() + ' ' + coordinate() + '\n';
+                   }));
+  runner.write("s.xml", standing_up_among("<cloud name=\"scan\" file=\"scan.pcd\"/>"));
+  const MeasuredOutcome outcome =
+      run_limited(runner, "plan s.xml --stances-only -o p.g2o --timeout 0.2 --json");
+  ASSERT_EQ(outcome.exit_code, 1) << outcome.err;
+  const std::string reason = outcome.json()["reason"];
+  EXPECT_NE(reason.find("the time allowed is used up"), std::string::npos) << reason;
+  EXPECT_EQ(outcome.json()["stances"], 0);
+  EXPECT_FALSE(runner.exists("p.g2o")) << "there is no part of a plan";
+}
+
+TEST(LargeInput, ATimeoutBeyondAllClocksIsNone) {
+  const CommandRunner runner;
+  for (const char* seconds : {"1e10", "1e19", "1e300"}) {
+    const MeasuredOutcome outcome = run_limited(
+        runner,
+        std::string("plan standing_up --stances-only -o p.g2o --json --timeout ") + seconds);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  }
 }
 
 TEST(LargeInput, AnEdgeOnAHundredThousandVerticesIsReadInTimeThatGrowsWithTheLine) {

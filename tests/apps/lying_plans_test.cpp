@@ -120,6 +120,21 @@ TEST(LyingPlan, ASecondWorldHidesTheBox) {
   EXPECT_NE(outcome.err.find("a second PARAMS_WORLD"), std::string::npos) << outcome.err;
 }
 
+TEST(LyingPlan, ItsGroundIsHigherThanTheScenariosOne) {
+  const Drive runner;
+  PlanText plan = runner.plan();
+  int line = 0;
+  for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
+    if (plan.parameters[i].rfind("PARAMS_WORLD", 0) != 0) continue;
+    plan.parameters[i] = "PARAMS_WORLD 2 - - ground 0.5";
+    line = static_cast<int>(i) + 1;
+  }
+  runner.write("lie.g2o", plan.text());
+  expect_refusal(runner.run("check lie.g2o"), "lie.g2o:" + std::to_string(line),
+                 "a ground at 0.500000 m, expected that of the world in which the plan is judged, "
+                 "a ground at 0.000000 m");
+}
+
 TEST(LyingPlan, AVertexThatIsFixedIsBeyondItsLimit) {
   const Drive runner;
   const std::string stem = LOCOGRAPH_SOURCE_DIR "/robots/models/centauro/centauro";
@@ -175,6 +190,118 @@ TEST(LyingPlan, ASecondScenarioIsKinder) {
   const Outcome outcome = runner.run("check lie.g2o");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_NE(outcome.err.find("a second PARAMS_SCENARIO"), std::string::npos) << outcome.err;
+}
+
+TEST(LyingPlan, AWheelTouchesTwice) {
+  const Drive runner;
+  PlanText plan = runner.plan();
+  // Without a name it is called as its link: the wheel that touches already.
+  const std::string wheel = "PARAMS_CONTACT 10 0 wheel_1 ";
+  std::string again;
+  for (std::string& line : plan.parameters) {
+    if (line.starts_with(wheel)) {
+      again = "PARAMS_CONTACT 90 0 \"\" " + line.substr(wheel.size());
+    }
+    if (line == "PARAMS_STANCE 14 4 10 11 12 13") line = "PARAMS_STANCE 14 5 10 11 12 13 90";
+  }
+  ASSERT_NE(again.find(" at 0 0 0 "), std::string::npos) << again;
+  plan.parameters.insert(plan.parameters.end() - 1, again);
+  runner.write("same.g2o", plan.text());
+  const Outcome same = runner.run("check same.g2o");
+  EXPECT_EQ(same.exit_code, 2) << same.out;
+  EXPECT_NE(same.err.find("are the same, of wheel_1"), std::string::npos) << same.err;
+  // A rolling wheel touches anywhere in its plane: at another place it is another contact.
+  std::string& second = *(plan.parameters.end() - 2);
+  second.replace(second.find(" at 0 0 0 "), 10, " at 1 0 0 ");
+  EXPECT_TRUE(refused(runner, plan.text(), "contact_claims"));
+  EXPECT_NE(runner.run("check lie.g2o").out.find("wheel_1 touches twice"), std::string::npos);
+}
+
+TEST(LyingPlan, ADriveBeginsLaterOrEndsEarlier) {
+  const Drive runner;
+  PlanText late = runner.plan(), early = late;
+  late.configurations.erase(late.configurations.begin(), late.configurations.begin() + 5);
+  EXPECT_TRUE(refused(runner, late.text(), "scenario_start"));
+  early.configurations.resize(40);
+  EXPECT_TRUE(refused(runner, early.text(), "scenario_goals"));
+  const nlohmann::json json = runner.run("check lie.g2o --json").json();
+  EXPECT_EQ(json["start"], true);
+  EXPECT_EQ(json["goals_reached"], 0);
+  EXPECT_EQ(json["goals"], 1);
+}
+
+/// standing_up, planned with these options.
+class StandingUp : public CommandRunner {
+ public:
+  explicit StandingUp(const std::string& options = "") {
+    const Outcome outcome = run("plan standing_up --stances-only --seed 3 -o plan.g2o " + options);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  }
+  PlanText plan() const { return PlanText(read("plan.g2o")); }
+  /// The plan with another PARAMS_PLAN.
+  PlanText plan_that_says(const std::string& words) const {
+    PlanText text = plan();
+    for (std::string& line : text.parameters) {
+      if (line.starts_with("PARAMS_PLAN ")) line = "PARAMS_PLAN 1 2 stances_only " + words;
+    }
+    return text;
+  }
+};
+
+TEST(LyingPlan, APlanOfStancesBeginsElsewhereOrDoesNotArrive) {
+  const StandingUp runner;
+  PlanText late = runner.plan(), early = late;
+  late.configurations.erase(late.configurations.begin());
+  EXPECT_TRUE(refused(runner, late.text(), "scenario_start"));
+  early.configurations.pop_back();
+  EXPECT_TRUE(refused(runner, early.text(), "scenario_goals"));
+  // What says that it is a part is told of, and no more.
+  early = runner.plan_that_says("incomplete");
+  early.configurations.pop_back();
+  runner.write("part.g2o", early.text());
+  const Outcome part = runner.run("check part.g2o --json");
+  EXPECT_EQ(part.exit_code, 0) << part.out;
+  EXPECT_EQ(part.json()["start"], true);
+  EXPECT_EQ(part.json()["goals_reached"], 0);
+  EXPECT_EQ(part.json()["incomplete"], true);
+  const std::string words = runner.run("check part.g2o").out;
+  EXPECT_NE(words.find("begins at the start, and reaches 0 of 1 goal"), std::string::npos) << words;
+  EXPECT_NE(words.find("not judged: scenario_start, scenario_goals"), std::string::npos) << words;
+}
+
+TEST(LyingPlan, AnotherScenarioHasOtherGoals) {
+  const StandingUp runner;
+  std::ifstream in(LOCOGRAPH_SOURCE_DIR "/planners/scenarios/standing_up.xml");
+  std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  const std::string goal = "position=\"1.4 0.1 0\"";
+  ASSERT_NE(text.find(goal), std::string::npos);
+  text.replace(text.find(goal), goal.size(), "position=\"1.4 0.15 0\"");
+  runner.write("other.xml", text);
+  const Outcome outcome = runner.run("check plan.g2o --scenario other.xml --json");
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  const nlohmann::json json = outcome.json();
+  EXPECT_TRUE(json["scenario"].get<std::string>().ends_with("/other.xml"));
+  EXPECT_EQ(json["start"], true);
+  EXPECT_EQ(json["goals_reached"], 0);
+}
+
+TEST(LyingPlan, ContactsAreMovedAsThePlanSaysAndNotOtherwise) {
+  const StandingUp runner("--move-contacts 0.02");
+  const Outcome honest = runner.run("check plan.g2o --json");
+  EXPECT_EQ(honest.exit_code, 0) << honest.out;
+  EXPECT_EQ(honest.json()["start"], true);
+  EXPECT_EQ(honest.json()["goals_reached"], 1);
+  EXPECT_EQ(honest.json()["moved_contacts"]["up_to_m"], 0.02);
+  EXPECT_EQ(honest.json()["moved_contacts"]["seed"], 3);
+  const std::string words = runner.run("check plan.g2o").out;
+  EXPECT_NE(words.find("start and goals: that contacts are moved by up to 0.02 m"),
+            std::string::npos)
+      << words;
+  EXPECT_TRUE(refused(runner, runner.plan_that_says("").text(), "scenario_goals"));
+  EXPECT_TRUE(
+      refused(runner, runner.plan_that_says("moved_contacts 0.02 4 1").text(), "scenario_goals"));
+  EXPECT_TRUE(
+      refused(runner, runner.plan_that_says("moved_contacts 0.5 3 1").text(), "scenario_start"));
 }
 
 TEST(LyingPlan, ARobotIsStrongerThanTheScenariosOne) {

@@ -41,6 +41,72 @@ TEST(Manners, ANumberOutOfRangeIsAnsweredWithTheRange) {
             "(see: locograph check --help)\n");
 }
 
+TEST(Manners, AWholeNumberThatIsNoneIsAnsweredWithTheRange) {
+  const CommandRunner runner;
+  const auto refused = [&runner](const std::string& arguments, const std::string& words) {
+    expect_refusal(runner.run(arguments), "", words);
+  };
+  const std::string plan = "plan centauro_drive -o p.g2o ";
+  refused(plan + "--seed -1", "--seed: '-1', expected a whole number from 0 to 4294967295");
+  refused(plan + "--seed 4294967296", "expected a whole number from 0 to 4294967295");
+  refused(plan + "--seed 1e30", "--seed: '1e30', expected a whole number (see");
+  refused("posture go2 --contacts c.xml --seed 99999999999999999999",
+          "expected a whole number from 0 to 18446744073709551615");
+  refused("check p.g2o --until nan", "--until: 'nan', expected a number (see");
+  refused("check p.g2o --until inf", "--until: 'inf', expected a number (see");
+}
+
+TEST(Manners, ANameThatIsEmptyIsNone) {
+  const CommandRunner runner;
+  runner.write("a.g2o", "VERTEX_XY 0 0 0\nVERTEX_XY 1 0 0\nEDGE_POINTXY 0 1 1 0 1 0 1\n");
+  expect_refusal(runner.run("plan centauro_drive -o ''"), "", "--output: '', expected a name");
+  expect_refusal(runner.run("optimize a.g2o -o ''"), "", "--output: '', expected a name");
+  expect_refusal(runner.run("check ''"), "", "PLAN: '', expected a name");
+}
+
+TEST(Manners, ADashIsStandardInputWhereAGraphIsRead) {
+  const CommandRunner runner;
+  ASSERT_EQ(runner.run("plan centauro_drive -o p.g2o").exit_code, 0);
+  const Outcome checked = runner.run("check - < p.g2o");
+  EXPECT_EQ(checked.exit_code, 0) << checked.err;
+  EXPECT_EQ(checked.out.rfind("stdin: feasible", 0), 0u) << checked.out;
+  EXPECT_EQ(runner.run("info - < p.g2o").exit_code, 0);
+  runner.write("r.json", "{}\n");
+  expect_refusal(runner.run("plot - -o r.svg < r.json"), "-", "holds nothing to plot");
+  expect_refusal(runner.run("check - < /dev/null"), "stdin", "holds no graph");
+  // A plan names the file of its scenario, so that has to have one.
+  expect_refusal(runner.run("plan - -o q.g2o < p.g2o"), "standard input", "is no scenario");
+  expect_refusal(runner.run("check p.g2o --scenario -"), "standard input", "is no scenario");
+  EXPECT_FALSE(runner.exists("q.g2o"));
+}
+
+TEST(Manners, NothingInAFileReachesTheTerminalAsAControlCharacter) {
+  const CommandRunner runner;
+  const std::string drive =
+      "<scenario version=\"1\" name=\"NAME\">\n<robot model=\"centauro\" "
+      "active=\"lower_body\"/>\n</scenario>\n";
+  const auto named = [&](const std::string& name) {
+    std::string text = drive;
+    runner.write("s.xml", text.replace(text.find("NAME"), 4, name));
+    return runner.run("plan s.xml -o p.g2o");
+  };
+  for (const char* name : {"a&#27;[2J", "a\x1b[2J", "a&#10;b", "a\x7f", "a\xc2\x9b"}) {
+    expect_refusal(named(name), "s.xml:1", "a control character in name");
+  }
+  EXPECT_EQ(named("gr\xc3\xb6\xc3\x9f"
+                  "er")
+                .err.find("control"),
+            std::string::npos);
+  runner.write("a.g2o", "VERTEX_\x1b[31mRED 0 0 0\n");
+  expect_refusal(runner.run("optimize a.g2o"), "a.g2o:1", "VERTEX_\\x1b[31mRED");
+  const Outcome info = runner.run("info a.g2o; true");
+  EXPECT_EQ((info.out + info.err).find('\x1b'), std::string::npos);
+  const std::string robot = "<robot name=\"r\x7fr\"><link name=\"base\"/></robot>\n";
+  runner.write("r.urdf", robot);
+  const Outcome described = runner.run("info r.urdf --json; true");
+  EXPECT_EQ((described.out + described.err).find('\x7f'), std::string::npos);
+}
+
 TEST(Manners, AMistypedNameIsAnsweredWithTheOneThatIsMeant) {
   const CommandRunner runner;
   runner.write("a.g2o", "VERTEX_XY 0 0 0\nVERTEX_XY 1 0 0\nEDGE_POINTXY 0 1 1 0 1 0 1\n");

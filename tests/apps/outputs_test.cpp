@@ -37,6 +37,46 @@ TEST_F(Outputs, PassThroughPipes) {
   EXPECT_EQ(outcome.out, optimised);
 }
 
+TEST_F(Outputs, AreNotWrittenOverWhatWasGiven) {
+  runner.write("c.xml", "<contacts version=\"1\"/>\n");
+  runner.write("s.xml",
+               "<scenario version=\"1\" name=\"s\">\n<robot model=\"centauro\" "
+               "active=\"lower_body\"/>\n<wheels><wheel link=\"wheel_1\" radius=\"0.078\"/>"
+               "</wheels>\n<environment obstacles=\"o.xml\"/>\n<drive distance=\"4\" "
+               "speed=\"0.1\" configurations=\"50\"/>\n</scenario>\n");
+  runner.write("o.xml", "<obstacles version=\"1\"/>\n");
+  std::filesystem::create_symlink("in.g2o", path("link.g2o"));
+  std::filesystem::create_hard_link(path("in.g2o"), path("twin.g2o"));
+  const auto refused = [&](const std::string& command, const std::string& output,
+                           const std::string& input) {
+    const std::string before = runner.read(input);
+    expect_refusal(runner.run(command + " -o " + output), output, "is an input");
+    EXPECT_EQ(runner.read(input), before) << command;
+  };
+  for (const char* output : {"in.g2o", "./in.g2o", "link.g2o", "twin.g2o"}) {
+    refused("optimize in.g2o", output, "in.g2o");
+  }
+  refused("view in.g2o", "in.g2o", "in.g2o");
+  refused("view in.g2o --obstacles o.xml", "o.xml", "o.xml");
+  refused("plot in.g2o", "in.g2o", "in.g2o");
+  refused("refine in.g2o", "in.g2o", "in.g2o");
+  refused("plan s.xml", "s.xml", "s.xml");
+  refused("plan s.xml", "o.xml", "o.xml");
+  refused("posture centauro --contacts c.xml", "c.xml", "c.xml");
+  const std::string scenario = runner.read("s.xml");
+  expect_refusal(runner.run("campaign s.xml --runs 1 --csv s.xml"), "s.xml", "is an input");
+  EXPECT_EQ(runner.read("s.xml"), scenario);
+}
+
+TEST_F(Outputs, AreNotWrittenIntoOneFile) {
+  expect_refusal(runner.run("view in.g2o -o x.html --png ./x.html"), "./x.html",
+                 "two results in one file");
+  expect_refusal(runner.run("plan standing_up --stances-only -o x --tree x"), "x",
+                 "two results in one file");
+  EXPECT_EQ(runner.run("optimize in.g2o -o x.g2o").exit_code, 0);
+  EXPECT_EQ(runner.run("optimize in.g2o -o x.g2o").exit_code, 0) << "an older result is replaced";
+}
+
 TEST_F(Outputs, AreNotMixedWithJson) {
   for (const char* command : {"optimize in.g2o", "plan centauro_drive", "view in.g2o",
                               "posture coman_plus --contacts none.xml"}) {

@@ -131,7 +131,13 @@ TEST(PlanCommands, CheckJudgesBalanceAndTorquesOnTheStanceOfAPlan) {
   EXPECT_EQ((*constraint(both, "static_balance"))["violated"], false);
   EXPECT_EQ((*constraint(both, "torque_limits"))["violated"], false);
   EXPECT_FALSE(both["trusted"].empty()) << "nobody but the plan says what the soles can bear";
+  EXPECT_TRUE(both["scenario"].is_null());
+  for (const char* unknown : {"start", "goals_reached", "goals"}) {
+    EXPECT_TRUE(both[unknown].is_null()) << unknown;
+  }
+  EXPECT_EQ((*constraint(both, "scenario_goals"))["judged"], false);
   const std::string words = runner.run("check both.g2o").out;
+  EXPECT_NE(words.find("\nscenario: none\n"), std::string::npos) << words;
   EXPECT_NE(words.find("balanced with a margin of "), std::string::npos) << words;
   EXPECT_NE(words.find("on trust: l_sole: what it can bear"), std::string::npos) << words;
 

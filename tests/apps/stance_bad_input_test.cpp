@@ -82,6 +82,11 @@ std::vector<BadTask> bad_tasks() {
        "environment"},
       {"AnUnknownLink", standing_up("link=\"LBall\"", "link=\"LBal\""), "\"LBal\"",
        urdf + "no link 'LBal', expected one like 'LBall', 'RBall', 'Head'"},
+      {"ACameraOnAnUnknownLink",
+       standing_up("<robot model=\"coman_plus\"/>",
+                   "<robot model=\"coman_plus\">\n<camera name=\"eye\" link=\"Hed\" width=\"4\" "
+                   "height=\"3\" fov_x=\"1\" range_min=\"0\" range_max=\"5\"/>\n</robot>"),
+       "\"Hed\"", urdf + "no link 'Hed', expected one like *"},
       {"AnUnknownJoint", standing_up("\"LHipSag\"", "\"LHipSgg\""), "\"LHipSgg\"",
        urdf + "no joint 'LHipSgg', expected one like 'LHipSag', 'RHipSag', 'LHipLat'"},
       {"NegativeFrictionOfTheEnvironment", standing_up("friction=\"0.5\"", "friction=\"-0.5\""),

@@ -44,6 +44,15 @@ TEST(StancePlanCommand, WritesAPlanThatCheckAccepts) {
   EXPECT_EQ(report["stances_only"], true);
   EXPECT_EQ(report["incomplete"], false);
   EXPECT_EQ(report["configurations"], json["configurations"]);
+  EXPECT_EQ(report["scenario"], "standing_up");
+  EXPECT_EQ(report["start"], true);
+  EXPECT_EQ(report["goals_reached"], 1);
+  EXPECT_EQ(report["goals"], 1);
+  EXPECT_FALSE(report.contains("moved_contacts"));
+  for (const char* name : {"scenario_start", "scenario_goals"}) {
+    ASSERT_NE(constraint(report, name), nullptr) << name;
+    EXPECT_EQ((*constraint(report, name))["judged"], true);
+  }
   const nlohmann::json* velocity = constraint(report, "velocity_limits");
   ASSERT_NE(velocity, nullptr);
   EXPECT_EQ((*velocity)["judged"], false) << "it has no motion";
@@ -54,14 +63,19 @@ TEST(StancePlanCommand, WritesAPlanThatCheckAccepts) {
   const std::string words = runner.run("check plan.g2o").out;
   EXPECT_NE(words.find("of a plan of stances"), std::string::npos) << words;
   EXPECT_EQ(words.find("incomplete"), std::string::npos) << words;
+  const std::string task =
+      "\nscenario: standing_up; it begins at the start, and reaches 1 of 1 goal\n";
+  EXPECT_NE(words.find(task), std::string::npos) << words;
 }
 
 TEST(StancePlanCommand, TheSameSeedGivesTheSameFile) {
   const CommandRunner runner;
   const std::string call = "plan standing_up --stances-only --seed 4 -o ";
   ASSERT_EQ(runner.run(call + "a.g2o").exit_code, 0);
-  ASSERT_EQ(runner.run(call + "b.g2o --threads 2").exit_code, 0);
-  EXPECT_EQ(runner.read("a.g2o"), runner.read("b.g2o"));
+  for (const std::string threads : {"1", "2", "4"}) {
+    ASSERT_EQ(runner.run(call + "b.g2o --threads " + threads).exit_code, 0);
+    EXPECT_EQ(runner.read("a.g2o"), runner.read("b.g2o")) << threads << " threads";
+  }
 }
 
 TEST(StancePlanCommand, APlanWithMovedContactsHasItsOwnAndCheckAcceptsIt) {
@@ -82,6 +96,23 @@ TEST(StancePlanCommand, APlanWithMovedContactsHasItsOwnAndCheckAcceptsIt) {
     return part(runner.read(file), "PARAMS_CONTACT ", "\n");
   };
   EXPECT_NE(first_contact("moved.g2o"), first_contact("unmoved.g2o"));
+}
+
+TEST(StancePlanCommand, WhatMovesIsInTheWayWhereverItGetsTo) {
+  const CommandRunner runner;
+  ASSERT_EQ(runner.run("plan standing_up --stances-only --seed 3 -o plan.g2o").exit_code, 0);
+  // It comes through the robot long after the number of the last stance.
+  runner.write("ball.xml",
+               "<obstacles version=\"1\"><sphere center=\"1.4 9 0.7\" radius=\"0.1\">"
+               "<keyframe time=\"100\" position=\"1.4 9 0.7\"/>"
+               "<keyframe time=\"110\" position=\"1.4 -9 0.7\"/></sphere></obstacles>");
+  const Outcome outcome = runner.run("check plan.g2o --obstacles ball.xml --json");
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  const nlohmann::json report = outcome.json();
+  const nlohmann::json* distance = constraint(report, "obstacle_distance");
+  ASSERT_NE(distance, nullptr);
+  EXPECT_EQ((*distance)["violated"], true);
+  EXPECT_GT((*distance)["time"], 100.0);
 }
 
 TEST(StancePlanCommand, WritesTheTreeThatTheSearchTried) {

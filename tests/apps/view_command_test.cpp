@@ -250,6 +250,15 @@ TEST(View, RefusesATreeThatIsNone) {
     const Outcome outcome = runner.run("view p.g2o --tree t.json -o x.html");
     expect_refusal(outcome, text[0] == '[' ? "t.json:1" : "t.json", words);
   }
+  // Found or not.
+  const std::string plan = " --stances-only --timeout 0.1 -o other.g2o";
+  ASSERT_LE(runner.run("plan ladder_climbing --tree other.json" + plan).exit_code, 1);
+  expect_refusal(runner.run("view p.g2o --tree other.json -o x.html"), "other.json",
+                 "is a tree of the scenario \"ladder_climbing\", expected one of the plan's");
+  ASSERT_LE(runner.run("plan standing_up --move-contacts 0.05 --tree moved.json" + plan).exit_code,
+            1);
+  expect_refusal(runner.run("view p.g2o --tree moved.json -o x.html"), "moved.json",
+                 "is the tree of another plan");
   runner.write("pose.g2o", "VERTEX_SE2 0 0 0 0\n");
   expect_refusal(runner.run("view pose.g2o --tree t.json -o x.html"), "pose.g2o", "--tree");
   EXPECT_FALSE(runner.exists("x.html"));

@@ -286,6 +286,42 @@ TEST_F(OnBars, ALinkThroughABarIsFound) {
   EXPECT_NEAR(report.constraint("touching_depth").worst, 0.02, 1e-4);
 }
 
+TEST_F(OnBars, AHandThatOverlapsItsBarMayBeginAndEndToHoldIt) {
+  // The ball on the pole is 11.5 mm deep in the bar whose axis is `above` its middle.
+  const auto grasp_above = [](double above) {
+    Contact contact = grasp();
+    contact.effector.link = "pole";
+    contact.effector.point = {0.0, 0.0, above};
+    contact.position.z() = 1.5 + above;
+    return contact;
+  };
+  const auto check_plan = [&](double above, std::vector<int> stance_from, bool stances_only) {
+    Bar high = rung();
+    high.name = "high";
+    high.from.z() = high.to.z() = 1.5 + above;
+    Motion motion;
+    motion.stances_only = stances_only;
+    motion.stances = {{{sole()}}, {{sole(), grasp_above(above)}}};
+    motion.stance_from = std::move(stance_from);
+    for (std::size_t i = 0; i < motion.stance_from.size(); ++i) {
+      motion.time_s.push_back(static_cast<double>(i));
+      motion.configurations.push_back(q_);
+    }
+    return Judge(robot_, with({rung(), high})).check(motion);
+  };
+  constexpr double kOverlaps_m = 0.05 + 0.02 - 0.0115, kTooDeep_m = 0.05 + 0.02 - 0.013;
+  EXPECT_EQ(violated(check_plan(kOverlaps_m, {1}, true)), Names{});
+  const CheckReport ends = check_plan(kOverlaps_m, {1, 0}, true);
+  EXPECT_EQ(violated(ends), Names{});
+  EXPECT_NEAR(ends.constraint("touching_depth").worst, 0.0115, 1e-4) << "it is told";
+  EXPECT_TRUE(violated(check_plan(kTooDeep_m, {1, 0}, true)).contains("touching_depth"));
+  // Where it holds nothing before and after it is in the way.
+  EXPECT_EQ(violated(check_plan(kOverlaps_m, {1, 0, 0}, true)), Names{"ground_penetration"});
+  EXPECT_EQ(violated(check_plan(kOverlaps_m, {0, 1}, true)), Names{"ground_penetration"});
+  // A motion goes on with its hand in the bar.
+  EXPECT_EQ(violated(check_plan(kOverlaps_m, {1, 0}, false)), Names{"ground_penetration"});
+}
+
 TEST(BarContact, WheelsAreOnNoBar) {
   Contact wheel;
   wheel.effector.kind = ContactKind::kWheel;

@@ -178,6 +178,50 @@ TEST_P(SearchAgainstDenseSampling, FindsTheSameMinimumAndTheSameViolatedSteps) {
 
 INSTANTIATE_TEST_SUITE_P(ClearanceSearch, SearchAgainstDenseSampling, ::testing::Range(0, 24));
 
+// It runs past between the times 2 and 10 s; of a plan of stances nobody knows when that is.
+TEST(ClearanceSearch, LooksAllAlongTheWayOfObstaclesInAPlanOfStances) {
+  const Robot robot = load_centauro();
+  const Eigen::VectorXd home = robot.named_configuration("home");
+  Motion motion{{0.0, 1.0}, {home, home}, {}, {}};
+  const auto ball_at = [](double x, double y) {
+    return Eigen::Isometry3d(Eigen::Translation3d(x, y, 0.1));
+  };
+  for (const double y : {0.0, 0.7}) {
+    Obstacle ball;
+    ball.shape = Obstacle::Shape::kSphere;
+    ball.world_from_obstacle = ball_at(-5.0, y);
+    ball.size = {0.1, 0.0, 0.0};
+    ball.motion = {{2.0, ball_at(-5.0, y)}, {10.0, ball_at(5.0, y)}};
+    for (const bool stances_only : {false, true}) {
+      motion.stances_only = stances_only;
+      Searched searched(robot, {ball}, motion);
+      searched.context.usable.vertices = {true, true};
+      searched.context.usable.steps = {!stances_only, false};
+      ViolationTally tally("distance", "m", 0.0, Worse::kLower, 2);
+      search(searched, Kind::kObstacles, tally);
+      if (!stances_only) {
+        EXPECT_EQ(tally.worst(), 0.5) << "it has not come yet";
+        continue;
+      }
+      MotionSampler sampler(robot, motion);
+      Poses poses;
+      sampler.link_poses(0, 0.0, poses);
+      double dense = 1.0;
+      for (double time_s = 0.0; time_s <= 12.0; time_s += 2e-3) {
+        dense = std::min(dense, searched.exact.environment_distance(poses, time_s).distance_m);
+      }
+      EXPECT_EQ(dense < 0.0, y == 0.0);
+      EXPECT_EQ(tally.violated_at(0) && tally.violated_at(1), dense < 0.0);
+      EXPECT_GT(tally.result().time_s, 2.0);
+      EXPECT_LT(tally.result().time_s, 10.0);
+      if (dense > 0.0) {
+        EXPECT_LT(dense, 0.4);
+        EXPECT_NEAR(tally.worst(), dense, searched.options.clearance_resolution_m);
+      }
+    }
+  }
+}
+
 TEST(ClearanceSearch, LooksAtFewSamplesWhereNothingIsNear) {
   const Robot robot = load_centauro();
   Random random(1);

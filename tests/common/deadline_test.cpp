@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <locograph/common/deadline.h>
 
+#include <limits>
+
 namespace locograph {
 namespace {
 
@@ -12,6 +14,13 @@ TEST(Deadline, OfNoTimeOrInThePastHasPassed) {
 }
 
 TEST(Deadline, FarAwayHasNotPassed) { EXPECT_FALSE(Deadline::after(3600.0).passed()); }
+
+TEST(Deadline, FurtherAwayThanTheClockCountsNeverPasses) {
+  for (const double seconds : {2e9, 1e10, 1e19, 1e300, std::numeric_limits<double>::infinity()}) {
+    EXPECT_FALSE(Deadline::after(seconds).passed()) << seconds;
+  }
+  EXPECT_TRUE(Deadline::after(-1e300).passed());
+}
 
 TEST(Stopwatch, NeverRunsBackwards) {
   Stopwatch watch;

@@ -58,6 +58,9 @@ extern const std::shared_ptr<const Robot> robot;
 namespace moving_shapes_h {
 extern const std::vector<Eigen::Isometry3d> poses_at_0_25, poses_at_0_50;
 }
+namespace plan_ends_h {
+extern const Stance on_the_floor, on_top;
+}
 namespace violation_tally_h {
 extern const double tilt;
 extern const std::string wheel_name;

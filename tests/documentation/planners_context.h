@@ -3,6 +3,8 @@
 
 #include <locograph/check/judge.h>
 #include <locograph/core/graph_file.h>
+#include <locograph/planners/offline/stance/experience.h>
+#include <locograph/planners/offline/stance/guided_tree.h>
 #include <locograph/planners/offline/stance/improve_stances.h>
 #include <locograph/planners/offline/stance/plan_stances.h>
 #include <locograph/planners/offline/stance/stance_graph.h>
@@ -50,6 +52,21 @@ namespace offline_stance_balance_region_h {
 extern const std::vector<BearingContact> bearing;
 extern const RobotState state;
 }  // namespace offline_stance_balance_region_h
+namespace offline_stance_experience_h {
+extern const StanceSpace space;
+extern const Footing footing;
+extern const int effector, place, other_place;
+extern const bool found;
+extern double cost;
+}  // namespace offline_stance_experience_h
+namespace offline_stance_footing_h {
+extern const Footing footing;
+extern const int place;
+}  // namespace offline_stance_footing_h
+namespace offline_stance_guided_tree_h {
+extern const GuidedTree::Move move;
+void prepare(const GuidedTree::Move& likely);
+}  // namespace offline_stance_guided_tree_h
 namespace offline_stance_plan_stances_h {
 extern const StanceProblem problem;
 extern const StancePlannerOptions options;
@@ -87,6 +104,25 @@ extern const std::vector<BearingContact> bearing;
 extern const RobotState state;
 extern Eigen::VectorXd gradient;
 }  // namespace offline_stance_torque_programme_h
+namespace offline_stance_transition_ahead_h {
+extern TaskSolver solver;
+extern const TransitionTask task, likeliest, lift, put;
+}  // namespace offline_stance_transition_ahead_h
+namespace offline_stance_transition_task_h {
+extern const StanceProblem problem;
+extern const TransitionTask task;
+extern const double mass_kg;
+}  // namespace offline_stance_transition_task_h
+namespace offline_stance_transition_places_h {
+extern const std::shared_ptr<const RobotParameter> robot;
+extern const World world;
+extern const TransitionProblem problem;
+extern const Eigen::AlignedBox3d around_the_robot;
+extern double least_m;
+extern const std::size_t bound;
+extern const Eigen::Vector3d centre;
+extern const double radius;
+}  // namespace offline_stance_transition_places_h
 namespace offline_stance_transition_rows_h {
 extern const std::shared_ptr<const RobotParameter> robot;
 extern const TransitionProblem problem;
@@ -166,6 +202,9 @@ namespace scenario_snap_to_places_h {
 extern const Scenario scenario;
 extern ContactTask task;
 }  // namespace scenario_snap_to_places_h
+namespace scenario_task_stances_h {
+extern const Scenario scenario;
+}
 namespace scenario_effector_element_h {
 extern const XmlFile xml;
 extern const XmlFile::Element element;

@@ -37,6 +37,13 @@ namespace collision_world_h {
 extern const World world;
 extern const int sole;
 }  // namespace collision_world_h
+namespace box_tree_h {
+extern const World world;
+void use(const Surface& surface);
+}  // namespace box_tree_h
+namespace touchable_solids_h {
+extern const World world;
+}
 namespace distance_view_h {
 extern const World world;
 }

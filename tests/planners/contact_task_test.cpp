@@ -99,6 +99,8 @@ TEST(ContactTask, TheFacesOfATurnedBoxEncloseItAndLookOutwards) {
     double sign;
   } faces[] = {{"stone top", 2, 1.0},   {"stone bottom", 2, -1.0}, {"stone front", 0, 1.0},
                {"stone back", 0, -1.0}, {"stone left", 1, 1.0},    {"stone right", 1, -1.0}};
+  ASSERT_EQ(world.solids.size(), 1u);
+  EXPECT_EQ(world.solids[0].name, "stone");
   for (std::size_t i = 0; i < 6; ++i) {
     const Surface& face = world.surfaces[1 + i];
     EXPECT_EQ(face.name, faces[i].name);
@@ -115,6 +117,7 @@ TEST(ContactTask, TheFacesOfATurnedBoxEncloseItAndLookOutwards) {
         EXPECT_LT((corner.cwiseAbs() - half).norm(), 1e-12) << face.name;
       }
     }
+    EXPECT_TRUE(is_part_of(world.solids.at(0), face)) << face.name;
   }
 }
 

@@ -74,6 +74,9 @@ TEST(PostureSolver, AHumanoidStandsOnItsSoles) {
   EXPECT_LT(std::abs(state.center_of_mass().x()), 0.08);
 }
 
+/// `scenario_start` and `scenario_goals`, which only plans have.
+constexpr std::size_t kOfWholePlans = 2;
+
 /// `check` of the saved posture says to the last bit what the solver said.
 void expect_saved_is_judged_alike(const PostureSolver& solver, const PostureProblem& problem,
                                   const PostureResult& result) {
@@ -86,8 +89,8 @@ void expect_saved_is_judged_alike(const PostureSolver& solver, const PostureProb
   const Judging judging = judging_of(read, plan, {.data_folder = folder.path()});
   const CheckReport report = judged(read, plan, judging);
   EXPECT_EQ(report.feasible, result.success) << violation_text(report.worst());
-  ASSERT_EQ(report.violations.size(), result.report.violations.size());
-  for (std::size_t i = 0; i < report.violations.size(); ++i) {
+  ASSERT_EQ(report.violations.size(), result.report.violations.size() + kOfWholePlans);
+  for (std::size_t i = 0; i < result.report.violations.size(); ++i) {
     if (!result.report.violations[i].judged) continue;
     EXPECT_EQ(report.violations[i].worst, result.report.violations[i].worst)
         << report.violations[i].constraint;
@@ -269,8 +272,8 @@ TEST(PostureSolver, SavesAPlanThatIsJudgedAsThePostureWas) {
   EXPECT_EQ(judging.options.known.size(), 2u);
   const CheckReport report = judged(read, plan, judging);
   EXPECT_TRUE(report.feasible) << violation_text(report.worst());
-  ASSERT_EQ(report.violations.size(), result.report.violations.size());
-  for (std::size_t i = 0; i < report.violations.size(); ++i) {
+  ASSERT_EQ(report.violations.size(), result.report.violations.size() + kOfWholePlans);
+  for (std::size_t i = 0; i < result.report.violations.size(); ++i) {
     EXPECT_EQ(report.violations[i].worst, result.report.violations[i].worst)
         << report.violations[i].constraint;
   }

@@ -192,6 +192,18 @@ TEST(ScenarioScans, AFileThatCannotBeUsedIsNamed) {
             (data.path() / "o.bt").string());
 }
 
+TEST(ScenarioScans, VoxelsThatDoNotSuitTheScanAreTheFaultOfTheScenariosLine) {
+  const DataFolder data;
+  data.write("scan.pcd", pcd({{0.0, 0.0, 0.0}, {900.0, 0.0, 0.0}}));
+  const Error error =
+      refusal(data, only("<cloud name=\"scan\" file=\"scan.pcd\" voxel=\"0.0001\"/>"));
+  EXPECT_EQ(error.file(), (data.path() / "s.xml").string());
+  EXPECT_EQ(error.line(), 7);
+  const std::string what = error.what();
+  EXPECT_NE(what.find((data.path() / "scan.pcd").string()), std::string::npos) << what;
+  EXPECT_NE(what.find("expected larger voxels"), std::string::npos) << what;
+}
+
 TEST(ScenarioScans, OneWithNothingToStandOnIsTheFaultOfTheScenariosLine) {
   const DataFolder data;
   data.write("scan.pcd", pcd({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}));

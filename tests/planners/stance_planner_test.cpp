@@ -322,6 +322,7 @@ TEST(StancePlanner, RefusesNamesGoalsAndOptionsThatMakeNoSense) {
   refused([](auto& o) { o.reach = -0.5; }, "reach");
   refused([&](auto& o) { o.reach = nan; }, "reach");
   refused([](auto& o) { o.max_transitions = -1; }, "max_transitions");
+  refused([](auto& o) { o.threads = 0; }, "threads");
 }
 
 }  // namespace

@@ -56,6 +56,7 @@ class RoundTrip : public testing::TestWithParam<std::string> {
     graph.parameters().set(3, scenario);
     const auto plan = std::make_shared<PlanParameter>();
     plan->stances_only = true;
+    plan->moves = {.most_m = 0.1 / 3.0, .seed = 1ULL << 63, .draws = 7};
     graph.parameters().set(kPlan, plan);
     const auto contacts = std::make_shared<ContactsParameter>();
     contacts->file = root / "maps/obstacles.xml";
@@ -182,6 +183,10 @@ class RoundTrip : public testing::TestWithParam<std::string> {
               b.parameters().get<ScenarioParameter>(3)->scenario);
     EXPECT_TRUE(b.parameters().get<WorldParameter>(7)->map.empty());
     EXPECT_TRUE(b.parameters().get<PlanParameter>(kPlan)->stances_only);
+    const ContactMoves& moves = b.parameters().get<PlanParameter>(kPlan)->moves;
+    EXPECT_EQ(moves.most_m, 0.1 / 3.0);
+    EXPECT_EQ(moves.seed, 1ULL << 63);
+    EXPECT_EQ(moves.draws, 7);
     // Relative to folders that may have moved meanwhile.
     EXPECT_EQ(a.parameters().get<ContactsParameter>(8)->file.filename(),
               b.parameters().get<ContactsParameter>(8)->file.filename());

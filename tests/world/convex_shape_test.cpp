@@ -147,6 +147,40 @@ TEST(ConvexShape, PenetrationDepthsOfSimplePairsAreTheKnownOnes) {
   EXPECT_NEAR(shape_distance(can, at(0.01, 0.02, 0.38), box, origin).distance, -0.02, 1e-3);
 }
 
+TEST(ConvexShape, TheDepthInALongThinBarIsTheWayOutAcrossIt) {
+  constexpr double kBar_m = 0.02, kBall_m = 0.03;
+  const ConvexShape bar = ConvexShape::cylinder(kBar_m, 2.0);
+  const ConvexShape ball = ConvexShape::sphere(kBall_m);
+  const ConvexShape arm = ConvexShape::capsule(kBall_m, 0.4);
+  const ConvexShape can = ConvexShape::cylinder(kBall_m, 0.4);
+  const ConvexShape block = ConvexShape::box({0.06, 0.1, 0.2});
+  Random random(8);
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Isometry3d world_from_bar = random.pose(1.0);
+    const double off = random(0.0, 0.045), angle = random(0.0, 6.28), along = random(-0.7, 0.7);
+    Eigen::Isometry3d bar_from_shape = Eigen::Isometry3d::Identity();
+    bar_from_shape.translation() << off * std::cos(angle), off * std::sin(angle), along;
+    const auto distance = [&](const ConvexShape& shape, const Eigen::Isometry3d& bar_from) {
+      const double forth =
+          shape_distance(shape, world_from_bar * bar_from, bar, world_from_bar).distance;
+      EXPECT_NEAR(shape_distance(bar, world_from_bar, shape, world_from_bar * bar_from).distance,
+                  forth, 1e-6);
+      return forth;
+    };
+    const double expected = off - kBar_m - kBall_m;
+    EXPECT_NEAR(distance(ball, bar_from_shape), expected, 1e-6);
+    // Across the bar, along what is tangential to it there.
+    const Eigen::Vector3d out(std::cos(angle), std::sin(angle), 0.0);
+    const Eigen::Vector3d tangent = Eigen::Vector3d::UnitZ().cross(out);
+    bar_from_shape.linear() << out, out.cross(-tangent), tangent;
+    bar_from_shape.linear().col(1) = tangent.cross(out);
+    EXPECT_NEAR(distance(arm, bar_from_shape), expected, 1e-6);
+    EXPECT_NEAR(distance(can, bar_from_shape), expected, 1e-6);
+    // A block of 0.06 m towards the bar.
+    EXPECT_NEAR(distance(block, bar_from_shape), off - kBar_m - 0.03, 1e-6);
+  }
+}
+
 TEST(ConvexShape, ContainedShapesAreInCollision) {
   const Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
   const ConvexShape big = ConvexShape::box(Eigen::Vector3d(2, 2, 2));

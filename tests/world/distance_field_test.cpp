@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <locograph/common/error.h>
 #include <locograph/world/distance_field.h>
+#include <locograph/world/distance_view.h>
 #include <locograph/world/octree.h>
 
 #include <cmath>
@@ -320,6 +321,32 @@ TEST(DistanceField, CoversPartOfThePublicBuildingMap) {
       truth = std::min(truth, leaf.exteriorDistance(p));
     EXPECT_LE(field.distance(p), truth + 1e-6);
   }
+}
+
+TEST(WorldDistance, OfAMapTooLargeForAFieldIsThatToItsLeaves) {
+  World world;
+  const auto tree = std::make_shared<octomap::OcTree>(0.1);
+  tree->updateNode(octomap::point3d(0.05f, 0.05f, 0.05f), true);
+  world.map = tree;
+  DistanceFieldOptions options;
+  options.max_distance_m = 0.3;
+  EXPECT_FALSE(distance_view(world, options).leaves);
+  tree->updateNode(octomap::point3d(1000.05f, 1000.05f, 0.05f), true);
+  const WorldDistance view = distance_view(world, options);
+  EXPECT_FALSE(view.map);
+  ASSERT_TRUE(view.leaves);
+  EXPECT_TRUE(view.sees_map());
+  const DistanceSample beside = view.sample({0.3, 0.05, 0.06}, 0.0);
+  EXPECT_NEAR(beside.distance, 0.2, 1e-8);
+  EXPECT_TRUE(beside.gradient.isApprox(Eigen::Vector3d::UnitX(), 1e-6));
+  const DistanceSample inside = view.sample({0.06, 0.05, 0.01}, 0.0);
+  EXPECT_NEAR(inside.distance, -0.01, 1e-8);
+  EXPECT_TRUE(inside.gradient.isApprox(-Eigen::Vector3d::UnitZ(), 1e-6));
+  const DistanceSample away = view.sample({0.5, 0.05, 0.06}, 0.0);
+  EXPECT_EQ(away.distance, 0.3);
+  EXPECT_EQ(away.gradient, Eigen::Vector3d::Zero());
+  options.ground_z = 0.1;
+  EXPECT_EQ(distance_view(world, options).distance({0.05, 0.05, 0.15}, 0.0), 0.3) << "the floor";
 }
 
 TEST(WorldDistance, IsTheSmallerOfMapAndObstacles) {

@@ -64,7 +64,7 @@ TEST_F(SwingingBall, MeetsTheSecondOneAsOftenAsItsAngleSays) {
   EXPECT_FALSE(met.may_be_off(kPostures));
 }
 
-TEST_F(SwingingBall, MayIgnoreWhatItNeverMeetsAlwaysMeetsOrHangsOn) {
+TEST_F(SwingingBall, MayIgnoreWhatItNeverOrAlwaysMeets) {
   const LinkPairs found = sample_link_pairs(*robot, {.samples = kPostures, .seed = 3});
   const LinkPair never = pair(found, "base", "shell"), always = pair(found, "swing", "shell");
   EXPECT_EQ(never.meets, 0);
@@ -75,6 +75,25 @@ TEST_F(SwingingBall, MayIgnoreWhatItNeverMeetsAlwaysMeetsOrHangsOn) {
   EXPECT_TRUE(always.always_meets(kPostures));
   EXPECT_TRUE(pair(found, "base", "swing").adjacent);
   EXPECT_TRUE(pair(found, "base", "post").adjacent);
+}
+
+TEST(LinkPairs, OfAJointThatBendsThemIntoEachOtherMayNotBeOff) {
+  const TemporaryFolder folder;
+  const std::string ball =
+      "<collision><origin xyz='0.5 0 0'/><geometry><sphere radius='0.1'/></geometry></collision>";
+  const std::filesystem::path urdf = folder.write(
+      "hinge.urdf",
+      "<robot name='hinge'><link name='base'>" + ball + "</link><link name='arm'>" + ball +
+          "</link><joint name='bend' type='continuous'><parent link='base'/><child link='arm'/>"
+          "<axis xyz='0 0 1'/></joint></robot>");
+  const std::filesystem::path srdf = folder.write(
+      "hinge.srdf", "<robot name='hinge'><disable_collisions link1='base' link2='arm'/></robot>");
+  const LinkPairs found = sample_link_pairs(Robot::load(urdf, srdf), {.samples = kPostures});
+  ASSERT_EQ(found.pairs.size(), 1u);
+  EXPECT_TRUE(found.pairs[0].adjacent);
+  EXPECT_FALSE(found.pairs[0].on);
+  EXPECT_GT(found.pairs[0].meets, 0);
+  EXPECT_FALSE(found.pairs[0].may_be_off(kPostures));
 }
 
 TEST_F(SwingingBall, IsSeenTheSameByAnyNumberOfThreads) {

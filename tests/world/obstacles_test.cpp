@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <locograph/common/error.h>
+#include <locograph/world/obstacle_way.h>
 #include <locograph/world/obstacles.h>
 
 #include <cmath>
@@ -267,6 +268,29 @@ TEST(Obstacles, DistanceIsExactAndItsGradientIsItsDerivative) {
       EXPECT_NEAR(sample.gradient[axis], numeric, 1e-6);
     }
   }
+}
+
+TEST(ObstacleWay, AllAlongIsNowhereFarFromWhereItIsAtAnyTime) {
+  Obstacle cart;
+  cart.size = {0.6, 0.4, 0.8};
+  ASSERT_EQ(all_along(cart, 0.02).size(), 1u) << "at rest";
+  KeyFrame there{3.0, Eigen::Isometry3d(Eigen::Translation3d(1.0, 0.5, 0.0))};
+  there.pose.rotate(Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ()));
+  cart.motion = {there};
+  for (const double repeat_s : {0.0, 4.0}) {
+    cart.repeat_s = repeat_s;
+    const std::vector<Obstacle> all = all_along(cart, 0.02);
+    for (const Obstacle& one : all) EXPECT_TRUE(one.motion.empty() && one.repeat_s == 0.0);
+    for (double time_s = 0.0; time_s <= 5.0; time_s += 0.037) {
+      double nearest = 1.0;
+      for (const Obstacle& one : all) {
+        nearest = std::min(nearest, way_m(cart, one.world_from_obstacle, cart.pose_at(time_s)));
+      }
+      EXPECT_LE(nearest, 0.0101) << time_s;
+    }
+  }
+  cart.motion.front().pose.translation().x() = 1e5;
+  EXPECT_LE(all_along(cart, 0.02).size(), 503u);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ std::shared_ptr<octomap::OcTree> two_boxes() {
   return octree_from_boxes(boxes, 0.05);
 }
 
-std::string error_text(const std::filesystem::path& path) {
+std::string octree_error(const std::filesystem::path& path) {
   try {
     load_octree(path);
   } catch (const Error& error) {
@@ -141,20 +141,20 @@ TEST(Octree, EveryTruncationOfAFileIsAnError) {
       ASSERT_TRUE(tree->write(folder.file(name).string()));
     const std::string content = read_file(folder.file(name));
     for (std::size_t size = 1; size < content.size(); size += 1 + size / 16)
-      error_text(folder.write("cut", content.substr(0, size)));
+      octree_error(folder.write("cut", content.substr(0, size)));
     EXPECT_NE(
-        error_text(folder.write("cut", content.substr(0, content.size() - 1))).find("truncated"),
+        octree_error(folder.write("cut", content.substr(0, content.size() - 1))).find("truncated"),
         std::string::npos);
   }
 }
 
 TEST(Octree, MissingEmptyAndForeignFilesAreErrors) {
   const TemporaryFolder folder;
-  EXPECT_NE(error_text(folder.file("none.bt")).find("cannot be opened"), std::string::npos);
-  EXPECT_NE(error_text(folder.write("empty.bt", "")).find("is empty"), std::string::npos);
-  EXPECT_NE(error_text(folder.write("text.bt", "hello\nworld\n")).find("not an OctoMap file"),
+  EXPECT_NE(octree_error(folder.file("none.bt")).find("cannot be opened"), std::string::npos);
+  EXPECT_NE(octree_error(folder.write("empty.bt", "")).find("is empty"), std::string::npos);
+  EXPECT_NE(octree_error(folder.write("text.bt", "hello\nworld\n")).find("not an OctoMap file"),
             std::string::npos);
-  EXPECT_NE(error_text(folder.file("")).find("is a folder"), std::string::npos);
+  EXPECT_NE(octree_error(folder.file("")).find("is a folder"), std::string::npos);
 }
 
 TEST(Octree, ATreeOfAnotherTypeIsNamed) {
@@ -162,11 +162,11 @@ TEST(Octree, ATreeOfAnotherTypeIsNamed) {
   octomap::ColorOcTree tree(0.1);
   tree.updateNode(octomap::point3d(0.1f, 0.2f, 0.3f), true);
   ASSERT_TRUE(tree.write(folder.file("color.ot").string()));
-  const std::string full = error_text(folder.file("color.ot"));
+  const std::string full = octree_error(folder.file("color.ot"));
   EXPECT_NE(full.find("'ColorOcTree', expected type 'OcTree'"), std::string::npos) << full;
   EXPECT_NE(full.find(":4:"), std::string::npos) << full;
   ASSERT_TRUE(tree.writeBinary(folder.file("color.bt").string()));
-  EXPECT_NE(error_text(folder.file("color.bt")).find("'ColorOcTree'"), std::string::npos);
+  EXPECT_NE(octree_error(folder.file("color.bt")).find("'ColorOcTree'"), std::string::npos);
 }
 
 TEST(Octree, HeadersThatContradictTheDataAreErrors) {
@@ -178,17 +178,25 @@ TEST(Octree, HeadersThatContradictTheDataAreErrors) {
     const std::size_t end = content.find('\n', at + 1);
     return folder.write("changed.bt", content.substr(0, at + 1) + by + content.substr(end));
   };
-  EXPECT_NE(error_text(replaced("size", "size 3")).find("of its header"), std::string::npos);
-  EXPECT_NE(error_text(replaced("res", "res -1")).find("resolution"), std::string::npos);
-  EXPECT_NE(error_text(replaced("res", "res nan")).find("resolution"), std::string::npos);
-  EXPECT_NE(error_text(replaced("res", "scale 2")).find("unknown header entry"), std::string::npos);
-  EXPECT_NE(error_text(replaced("id", "#")).find("no 'id' line"), std::string::npos);
+  EXPECT_NE(octree_error(replaced("size", "size 3")).find("of its header"), std::string::npos);
+  EXPECT_NE(octree_error(replaced("res", "res -1")).find("resolution"), std::string::npos);
+  EXPECT_NE(octree_error(replaced("res", "res nan")).find("resolution"), std::string::npos);
+  EXPECT_NE(octree_error(replaced("res", "scale 2")).find("unknown header entry"),
+            std::string::npos);
+  EXPECT_NE(octree_error(replaced("id", "#")).find("no 'id' line"), std::string::npos);
+}
+
+TEST(Octree, OneLeafOfABillionVoxelsIsNotJoinedVoxelByVoxel) {
+  const TemporaryFolder folder;
+  const std::string header = "# Octomap OcTree binary file\nid OcTree\nsize 2\nres 0.1\ndata\n";
+  const auto leaf = load_octree(folder.write("leaf.bt", header + std::string("\2\0", 2)));
+  EXPECT_THROW(joined(*leaf, octomap::OcTree(0.1)), Error);
 }
 
 TEST(Octree, NodesNestedTooDeepAreAnErrorAndNotARecursionWithoutEnd) {
   const TemporaryFolder folder;
   const std::string header = "# Octomap OcTree binary file\nid OcTree\nsize 100\nres 0.1\ndata\n";
-  EXPECT_NE(error_text(folder.write("deep.bt", header + std::string(4000, '\xff')))
+  EXPECT_NE(octree_error(folder.write("deep.bt", header + std::string(4000, '\xff')))
                 .find("deeper than 16"),
             std::string::npos);
 }

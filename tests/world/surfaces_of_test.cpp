@@ -16,6 +16,12 @@ namespace {
 using test::SyntheticCloud;
 using test::TemporaryFolder;
 
+/// A tree of one leaf: all voxels of 0.1 m with x, y and z below 0, as far as keys go.
+std::shared_ptr<octomap::OcTree> one_leaf(const TemporaryFolder& folder) {
+  const std::string header = "# Octomap OcTree binary file\nid OcTree\nsize 2\nres 0.1\ndata\n";
+  return load_octree(folder.write("leaf.bt", header + std::string("\2\0", 2)));
+}
+
 /// The highest point of occupied voxels over a place; -1 if there are none.
 double height_over(const World& world, double x, double y) {
   double height = -1.0;
@@ -48,6 +54,94 @@ TEST(SurfacesOf, ACloudIsRectanglesAndBarsAndAMapOfTheRest) {
   EXPECT_NEAR(height_over(world, -0.52, 0.52), 0.35, 1e-6);
   const Eigen::AlignedBox3d bounds = octree_info(*world.map).occupied_bounds;
   EXPECT_NEAR(bounds.max().z(), 0.35, 1e-6) << "the bar is no voxel";
+}
+
+TEST(SurfacesOf, ALeafAsLargeAsAMapIsOneBox) {
+  const TemporaryFolder folder;
+  World world;
+  add_octomap(world, "rock", one_leaf(folder), 0.6);
+  ASSERT_EQ(world.surfaces.size(), 6u);
+  int up = 0;
+  for (const Surface& surface : world.surfaces) {
+    EXPECT_NEAR(surface.half_x_m, 1638.4, 1e-6);
+    EXPECT_NEAR(surface.half_y_m, 1638.4, 1e-6);
+    if (surface.world_from_surface.linear()(2, 2) < 0.5) continue;
+    ++up;
+    EXPECT_TRUE(surface.world_from_surface.translation().isApprox(
+        Eigen::Vector3d(-1638.4, -1638.4, 0.0), 1e-9));
+  }
+  EXPECT_EQ(up, 1);
+}
+
+TEST(SurfacesOf, ALeafThatIsHalfHiddenBySmallOnesShowsTheRest) {
+  octomap::OcTree tree(0.1);
+  // Four by four by four voxels, pruned to one leaf, and one voxel on top.
+  for (int x = 0; x < 4; ++x)
+    for (int y = 0; y < 4; ++y)
+      for (int z = 0; z < 4; ++z) {
+        tree.updateNode(octomap::OcTreeKey(static_cast<octomap::key_type>(32768 + x),
+                                           static_cast<octomap::key_type>(32768 + y),
+                                           static_cast<octomap::key_type>(32768 + z)),
+                        true);
+      }
+  tree.updateNode(octomap::OcTreeKey(32768, 32768, 32772), true);
+  tree.prune();
+  World world;
+  PatchOptions options;
+  options.least_length_m = options.least_width_m = 0.09;
+  add_octomap(world, "steps", std::make_shared<octomap::OcTree>(tree), 0.6, options);
+  double top_m2 = 0.0;
+  for (const Surface& surface : world.surfaces) {
+    const Eigen::Isometry3d& pose = surface.world_from_surface;
+    if (pose.linear()(2, 2) < 0.5 || pose.translation().z() > 0.45) continue;
+    EXPECT_NEAR(pose.translation().z(), 0.4, 1e-9);
+    const Eigen::Vector3d corner = pose.inverse() * Eigen::Vector3d(0.05, 0.05, 0.4);
+    EXPECT_TRUE(std::abs(corner.x()) > surface.half_x_m || std::abs(corner.y()) > surface.half_y_m)
+        << "the voxel is on it";
+    top_m2 = std::max(top_m2, 4.0 * surface.half_x_m * surface.half_y_m);
+  }
+  EXPECT_NEAR(top_m2, 0.12, 1e-9);
+}
+
+TEST(SurfacesOf, MoreFacesOfVoxelsThanMemoryShouldHoldAreRefused) {
+  const TemporaryFolder folder;
+  const std::shared_ptr<octomap::OcTree> tree = one_leaf(folder);
+  tree->updateNode(octomap::OcTreeKey(100, 100, 32768), true);  // a voxel on top of it
+  World world;
+  try {
+    add_octomap(world, "rock", tree, 0.6);
+    ADD_FAILURE() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("expected at most ten million"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_TRUE(world.surfaces.empty());
+  EXPECT_EQ(world.map, nullptr);
+}
+
+TEST(SurfacesOf, EndsWithTheTimeAllowed) {
+  SyntheticCloud cloud(0.003);
+  cloud.rectangle({-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
+  const Deadline passed = Deadline::after(0.0);
+  PatchOptions options;
+  options.deadline = passed;
+  World world;
+  EXPECT_THROW(add_cloud(world, "scan", cloud.points, 0.6, options), OutOfTime);
+  EXPECT_THROW(bars_in(cloud.points, {.deadline = passed}), OutOfTime);
+  octomap::OcTree tree(0.1);
+  tree.updateNode(octomap::point3d(0.05f, 0.05f, 0.05f), true);
+  EXPECT_THROW(add_octomap(world, "map", std::make_shared<octomap::OcTree>(tree), 0.6, options),
+               OutOfTime);
+  const TemporaryFolder folder;
+  const std::filesystem::path mesh = folder.write(
+      "a.stl",
+      "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+      "endloop\nendfacet\nendsolid a\n");
+  EXPECT_THROW(
+      add_mesh(world, "mesh", mesh, Eigen::Isometry3d::Identity(), 1.0, 0.6, {.deadline = passed}),
+      OutOfTime);
+  EXPECT_TRUE(world.surfaces.empty());
+  EXPECT_EQ(world.map, nullptr);
 }
 
 TEST(SurfacesOf, NoVoxelStandsOutOfThePlacesThatMayBeTouched) {

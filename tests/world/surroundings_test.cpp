@@ -176,6 +176,103 @@ TEST_F(BallAround, RefusesBarsThatAreNone) {
   EXPECT_THROW(CollisionWorld(robot_, world), Error);
 }
 
+/// A cube of 1 m whose top is z = 0, with that face alone as a surface.
+World on_cube() {
+  World world;
+  world.surfaces = {ground()};
+  world.surfaces[0].half_x_m = world.surfaces[0].half_y_m = 0.5;
+  world.solids = {{.name = "cube"}};
+  world.solids[0].world_from_box.translation().z() = -0.5;
+  return world;
+}
+
+TEST_F(BallAround, IsFoundInsideASolid) {
+  EXPECT_NEAR(at(on_cube(), 0.0, 0.05, false).surface.distance_m, 0.05, 1e-9);
+  EXPECT_NEAR(at(on_cube(), 0.0, -0.01, false).surface.distance_m, -0.01, 1e-9);
+  EXPECT_EQ(at(on_cube(), 0.0, -0.01, false).surface.what, "cube");
+  // In its middle, where it touches no face.
+  EXPECT_NEAR(at(on_cube(), 0.0, -0.6, false).surface.distance_m, -0.6, 1e-9);
+  EXPECT_NEAR(at(on_cube(), 0.3, -0.6, false).surface.distance_m, -0.3, 1e-9);
+  // Beside it and below it.
+  EXPECT_NEAR(at(on_cube(), 0.62, -0.6, false).surface.distance_m, 0.02, 1e-9);
+  EXPECT_NEAR(at(on_cube(), 0.0, -1.25, false).surface.distance_m, 0.05, 1e-9);
+  // Among thousands that are far away.
+  World world = on_cube();
+  for (int i = 1; i < 2000; ++i) {
+    world.solids.push_back(world.solids[0]);
+    world.solids.back().world_from_box.translation().x() += 3.0 * i;
+  }
+  EXPECT_NEAR(at(world, 0.3, -0.6, false).surface.distance_m, -0.3, 1e-9);
+  EXPECT_NEAR(at(world, 3000.3, -0.6, false).surface.distance_m, -0.3, 1e-9);
+}
+
+TEST_F(BallAround, TouchesTheSolidThatItStandsOnAndNoOther) {
+  const CollisionWorld::Surroundings above = at(on_cube(), 0.0, 0.0, true);
+  EXPECT_EQ(above.touched.link, -1);
+  EXPECT_GT(above.surface.distance_m, 0.1);
+  const CollisionWorld::Surroundings sunk = at(on_cube(), 0.0, -0.01, true);
+  EXPECT_NEAR(sunk.touched.distance_m, -0.01, 1e-9);
+  EXPECT_EQ(sunk.touched.what, "cube");
+  EXPECT_GT(sunk.surface.distance_m, 0.1);
+  // What is exempted is no hole: the whole ball in the cube.
+  EXPECT_NEAR(at(on_cube(), 0.0, -0.5, true).touched.distance_m, -0.5, 1e-9);
+  // Beside the cube that it touches it is free.
+  EXPECT_EQ(at(on_cube(), 0.65, -0.3, true).touched.link, -1);
+  // A neighbour that comes up beside the contact is in the way, one that lies below it may be
+  // touched like the cube itself.
+  World world = on_cube();
+  world.solids.push_back({.name = "next"});
+  world.solids[1].world_from_box.translation() << 1.0, 0.0, -0.45;
+  EXPECT_NEAR(at(world, 0.45, 0.0, true).surface.distance_m, std::hypot(0.05, 0.05) - 0.1, 1e-9);
+  world.solids[1].world_from_box.translation().z() = -0.55;
+  EXPECT_GT(at(world, 0.45, 0.0, true).surface.distance_m, 0.1);
+  EXPECT_NEAR(at(world, 0.6, -0.06, true).touched.distance_m, -0.01, 1e-9);
+}
+
+TEST_F(BallAround, FarFacesOfTheSolidThatItTouchesAreStillInTheWay) {
+  World world = on_cube();
+  world.surfaces.push_back(world.surfaces[0]);
+  Surface& front = world.surfaces[1];
+  front.name = "cube front";
+  front.world_from_surface.linear() << 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0;
+  front.world_from_surface.translation() << 0.5, 0.0, -0.5;
+  std::vector<Eigen::Isometry3d> poses(1, Eigen::Isometry3d::Identity());
+  poses[0].translation() << 0.59, 0.0, -0.5;
+  const auto around = [&](double x) {
+    const CollisionWorld::Touch touch{.position = {x, 0.0, 0.0}, .surfaces = {0}, .links = {0}};
+    return CollisionWorld(robot_, world)
+        .surroundings({.world_from_link = poses, .touches = {&touch, 1}});
+  };
+  // 0.4 m from the contact, and 0.7 m.
+  EXPECT_GT(around(0.4).surface.distance_m, 0.0);
+  EXPECT_NEAR(around(0.4).touched.distance_m, -0.01, 1e-9);
+  EXPECT_LT(around(-0.2).surface.distance_m, 0.0);
+  EXPECT_EQ(around(-0.2).surface.what, "cube front");
+}
+
+TEST_F(BallAround, RefusesSolidsThatAreNone) {
+  World world = on_cube();
+  EXPECT_NO_THROW(CollisionWorld(robot_, world));
+  world.solids[0].size_m.y() = 0.0;
+  EXPECT_THROW(CollisionWorld(robot_, world), Error);
+  world = on_cube();
+  world.solids[0].world_from_box.translation().x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(CollisionWorld(robot_, world), Error);
+}
+
+TEST(SolidBox, KnowsItsFaces) {
+  const World world = on_cube();
+  Surface surface = world.surfaces[0];
+  EXPECT_TRUE(is_part_of(world.solids[0], surface));
+  surface.half_x_m = 0.51;
+  EXPECT_FALSE(is_part_of(world.solids[0], surface));
+  surface.half_x_m = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(is_part_of(world.solids[0], surface));
+  surface = world.surfaces[0];
+  surface.world_from_surface.translation().z() = 1e-6;
+  EXPECT_FALSE(is_part_of(world.solids[0], surface));
+}
+
 TEST(DistanceView, TakesMapAndObstaclesAndLeavesOutTheGround) {
   std::vector<Box> boxes(2);
   boxes[0].world_from_box.translation().z() = -0.025;

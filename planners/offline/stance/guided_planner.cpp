@@ -1,117 +1,38 @@
 #include <locograph/common/uniform.h>
+#include <locograph/planners/offline/stance/experience.h>
 #include <locograph/planners/offline/stance/guided_planner.h>
+#include <locograph/planners/offline/stance/guided_tree.h>
 #include <locograph/planners/offline/stance/plan_stances.h>
 #include <locograph/planners/offline/stance/stance_tree.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <optional>
-#include <queue>
 #include <random>
-#include <unordered_map>
 
 namespace locograph {
 namespace {
 
 constexpr double kGreed = 3.0, kNoise = 4.0, kUnlikely = 4.0, kFailedHere = 1.0, kCrowded = 2.0,
                  kLater = 6.0;
+/// What an unlikely lift counts, by promise and by newness, where torques are limited.
+constexpr double kTooHeavy = 8.0, kTooHeavyAround = 2.0;
 constexpr int kFirstTree = 75, kMostMoves = 40, kMostDeadEnds = 20, kLiftRestarts = 4,
               kLaterRestarts = 2, kStandAttempts = 4;
 /// Trees that look around: some moves more of each end effector, more transitions; how little the
 /// length of the way counts.
 constexpr int kMoreAround = 10;
-constexpr double kLookAroundLonger = 16.0, kLengthAround = 0.2;
+constexpr double kLookAroundLonger = 7.0, kLengthAround = 0.2;
 constexpr double kTreeGrowth = 1.25;
+/// Of trees of all other manners, for each of those that look around.
+constexpr int kRounds = 3;
+/// Moves that are looked at for other threads, and how many of them for each thread are expected.
+constexpr int kLookedAt = 32, kExpected = 3;
 /// Of its reach, what an end effector gets ahead in a move on average.
 constexpr double kUsualShare = 0.7;
 /// Of its reach: how far apart contacts of an end effector are that count as roughly the same.
 constexpr double kRoughShare = 0.3;
-
-/// How often moves like one were found: of the same length; to the same side of the same other
-/// contact.
-class Experience {
- public:
-  explicit Experience(const StanceSpace& space) : space_(space) {}
-
-  void learn(const Footing& footing, int effector, int place, double share, bool found) {
-    each_likeness(footing, effector, place, share, [&](std::uint64_t likeness) {
-      Count& count = counts_[likeness];
-      count.tried += 1.0;
-      if (found) count.found += 1.0;
-    });
-  }
-  /// Minus the logarithm of the share found of moves like this, where that is least.
-  double unlikelihood(const Footing& footing, int effector, int place, double share) const {
-    double least = 1.0;
-    each_likeness(footing, effector, place, share, [&](std::uint64_t likeness) {
-      const auto known = counts_.find(likeness);
-      if (known == counts_.end()) return;
-      least = std::min(least, known->second.found / known->second.tried);
-    });
-    return -std::log(least);
-  }
-
- private:
-  struct Count {
-    double tried = 2.0, found = 1.8;  ///< before anything is known
-  };
-
-  template <class F>
-  void each_likeness(const Footing& footing, int effector, int place, double share, F&& f) const {
-    constexpr double kLength = 0.125, kSide_m = 0.15;
-    f(static_cast<std::uint64_t>(effector) << 32 |
-      static_cast<std::uint64_t>(std::floor(share / kLength)));
-    const Eigen::Vector3d& at = space_.place(place).bearing.contact.position;
-    for (std::size_t o = 0; o < footing.size(); ++o) {
-      if (static_cast<int>(o) == effector || footing[o] == kFree) continue;
-      const Eigen::Vector3d off = at - space_.place(footing[o]).bearing.contact.position;
-      std::uint64_t key = 1 + static_cast<std::uint64_t>(effector) * footing.size() + o;
-      for (int i = 0; i < 3; ++i) {
-        key = key << 16 | (static_cast<std::uint64_t>(std::floor(off[i] / kSide_m)) & 0xffff);
-      }
-      f(key);
-    }
-  }
-
-  const StanceSpace& space_;
-  std::unordered_map<std::uint64_t, Count> counts_;
-};
-
-struct Node {
-  Footing footing;
-  Eigen::VectorXd configuration;
-  int parent;  ///< -1: the root
-  int stances;
-  Footing aim;              ///< where its moves lead to
-  std::vector<int> failed;  ///< of each end effector: moves from here
-  /// Of each end effector in contact: the configuration with it lifted, once it was tried.
-  std::vector<Eigen::VectorXd> lifted;
-  std::vector<signed char> lift_tried;
-};
-
-struct Move {
-  double f;                   ///< the least first
-  double plain;               ///< without what has failed
-  double share;               ///< of the end effector's reach
-  long number;                ///< breaks ties
-  int node, effector, place;  ///< place kFree: lifted for good
-  int restarts;
-  bool operator<(const Move& other) const {
-    return f != other.f ? f > other.f : number > other.number;
-  }
-};
-
-/// Grown from the start or, since a transition serves both ways, backwards from the goal.
-struct Tree {
-  bool backwards = false;
-  std::vector<Node> nodes;
-  std::priority_queue<Move> ahead;   ///< moves by how near they come to where they lead
-  std::priority_queue<Move> around;  ///< the same moves by how new what they come to is
-  std::unordered_map<Footing, int, FootingHash> known;            ///< the node of each footing
-  std::unordered_map<std::vector<int>, int, FootingHash> crowds;  ///< nodes of each rough footing
-};
 
 class GuidedSearch {
  public:
@@ -146,6 +67,12 @@ class GuidedSearch {
   }
 
  private:
+  using Tree = GuidedTree;
+  using Node = GuidedTree::Node;
+  using Move = GuidedTree::Move;
+  using Transition = StanceSpace::Expected;
+  using Chain = std::vector<Transition>;
+
   double moves_to_go(int effector, int place, const Eigen::Vector3d& at) const {
     const int wanted = (*aim_)[static_cast<std::size_t>(effector)];
     if (wanted == place) return 0.0;
@@ -286,14 +213,25 @@ class GuidedSearch {
   }
 
   /// Trees differ: in how long moves are and how evenly end effectors move, and whether they are
-  /// grown from both ends.
+  /// grown from both ends. What was learned of moves is forgotten now and then: by bad luck it
+  /// keeps a search from moves that it needs.
   void choose_manner(int tree, const Eigen::VectorXd& q) {
-    constexpr struct {
+    struct Manner {
       double reach_share, uneven;
       bool from_both_ends, look_around;
-    } kManners[] = {{0.5, 8.0, false, false}, {1.0, 0.0, true, false},  {0.7, 4.0, false, false},
-                    {0.5, 0.0, true, false},  {0.4, 4.0, false, false}, {1.0, 0.0, true, true}};
-    const auto& manner = kManners[tree % 6];
+    };
+    constexpr Manner kManners[] = {{0.5, 8.0, false, false},
+                                   {1.0, 0.0, true, false},
+                                   {0.7, 4.0, false, false},
+                                   {0.5, 0.0, true, false},
+                                   {0.4, 4.0, false, false}};
+    constexpr Manner kAround = {1.0, 0.0, true, true};
+    constexpr int kCount = static_cast<int>(std::size(kManners)), kLast = kRounds * kCount;
+    const int turn = tree % (kLast + 1);
+    if (tree > 0 && turn % kCount == 0 && turn < kLast) experience_.forget_moves();
+    // Where lifts are too heavy, ways lead round about.
+    const bool around = turn == kLast || (too_heavy_ && turn > kCount && turn % 2 == 0);
+    const Manner& manner = around ? kAround : kManners[turn % kCount];
     reach_share_ = manner.reach_share;
     uneven_ = manner.uneven;
     from_both_ends_ = manner.from_both_ends && stand_at_goal(q);
@@ -331,7 +269,7 @@ class GuidedSearch {
   /// What has been learned since makes a move worth less.
   double promise(const Move& move) const {
     const Node& node = own_->nodes[static_cast<std::size_t>(move.node)];
-    return move.plain + kUnlikely * unlikelihood(move) +
+    return move.plain + kUnlikely * unlikelihood(move) + kTooHeavy * lifts_unlikely(move) +
            kFailedHere * node.failed[static_cast<std::size_t>(move.effector)] +
            kCrowded * crowd(with(node.footing, move.effector, move.place));
   }
@@ -347,6 +285,7 @@ class GuidedSearch {
   double newness(const Move& move) const {
     const Node& node = own_->nodes[static_cast<std::size_t>(move.node)];
     return kLengthAround * node.stances + (move.restarts > 0 ? kLater : 0.0) + unlikelihood(move) +
+           kTooHeavyAround * lifts_unlikely(move) +
            kFailedHere * node.failed[static_cast<std::size_t>(move.effector)] +
            kCrowded * crowd(with(node.footing, move.effector, move.place));
   }
@@ -370,6 +309,21 @@ class GuidedSearch {
     return experience_.unlikelihood(node.footing, move.effector, move.place, move.share);
   }
 
+  /// Of this lift, and then of those that are still to come where the move leads to.
+  double lifts_unlikely(const Move& move) const {
+    if (!too_heavy_) return 0.0;
+    const Node& node = own_->nodes[static_cast<std::size_t>(move.node)];
+    const Footing after = with(node.footing, move.effector, move.place);
+    double sum =
+        own_->to_be_lifted(move) ? experience_.lift_unlikelihood(node.footing, move.effector) : 0.0;
+    for (std::size_t e = 0; e < after.size(); ++e) {
+      const int effector = static_cast<int>(e);
+      if (effector == move.effector || after[e] == kFree || after[e] == node.aim[e]) continue;
+      sum += experience_.lift_unlikelihood(after, effector);
+    }
+    return sum;
+  }
+
   StanceTree& kept() { return kept_[own_->backwards ? 1 : 0]; }
 
   void take_turn(bool backwards) {
@@ -382,6 +336,7 @@ class GuidedSearch {
     trees_[0] = {};
     trees_[1] = {};
     trees_[1].backwards = true;
+    space_.expect_nothing();
     followed_.clear();
     exhausted_ = false;
     start_ = met_ = start;
@@ -390,11 +345,10 @@ class GuidedSearch {
     take_turn(false);
     add(start, q, -1, 0);
     if (start == goal_) return true;
-    for (int turn = 0; !trees_[0].ahead.empty() || !trees_[1].ahead.empty(); ++turn) {
+    for (turn_ = 0; !trees_[0].ahead.empty() || !trees_[1].ahead.empty(); ++turn_) {
       if (space_.ended() || space_.transitions >= grow_until_) return false;
-      take_turn(from_both_ends_ && turn % 2 == 1);
-      const bool around = look_around_ && turn / 2 % 2 == 1;
-      const int reached = follow_best(around);
+      take_turn(backwards_at(turn_));
+      const int reached = follow_best(around_at(turn_));
       if (reached < 0) continue;
       met_ = own_->nodes[static_cast<std::size_t>(reached)].footing;
       if (other_->known.contains(met_)) return true;
@@ -403,9 +357,12 @@ class GuidedSearch {
     return false;
   }
 
+  bool backwards_at(int turn) const { return from_both_ends_ && turn % 2 == 1; }
+  bool around_at(int turn) const { return look_around_ && turn / 2 % 2 == 1; }
+
   /// The node that the best move leads to; -1: none.
   int follow_best(bool around) {
-    std::priority_queue<Move>& queue = around ? own_->around : own_->ahead;
+    OpenQueue<Move>& queue = around ? own_->around : own_->ahead;
     while (!queue.empty()) {
       Move move = queue.top();
       queue.pop();
@@ -423,9 +380,80 @@ class GuidedSearch {
 
   /// The path goes from the start to the goal, whichever way the tree grows.
   StanceSpace::Attempt try_transition(const Footing& from, const Footing& to,
-                                      const Eigen::VectorXd& q, int restarts) {
+                                      const Eigen::VectorXd& q, int restarts, const Move& move) {
+    look_ahead(move);
     return own_->backwards ? space_.try_transition(to, from, q, restarts)
                            : space_.try_transition(from, to, q, restarts);
+  }
+
+  /// While a transition of this move is worked out, other threads begin with those of the moves
+  /// that come next if it fails.
+  void look_ahead(const Move& now) {
+    if (space_.threads() < 2) return;
+    const bool backwards = own_->backwards;
+    const std::vector<Chain> next = likely_at(turn_ + 1, now);
+    const std::vector<Chain> later =
+        from_both_ends_ ? likely_at(turn_ + 2, now) : std::vector<Chain>();
+    take_turn(backwards);
+    std::vector<Chain> expected;
+    for (std::size_t i = 0; i < std::max(next.size(), later.size()); ++i) {
+      if (i < next.size()) expected.push_back(next[i]);
+      if (i < later.size()) expected.push_back(later[i]);
+    }
+    space_.expect(expected);
+  }
+
+  /// Takes that turn.
+  std::vector<Chain> likely_at(int turn, const Move& now) {
+    const Tree& growing = trees_[backwards_at(turn_) ? 1 : 0];
+    take_turn(backwards_at(turn));
+    const bool around = around_at(turn);
+    moves_.clear();
+    (around ? own_->around : own_->ahead).look(kLookedAt, [&](Move move) {
+      if (followed_[static_cast<std::size_t>(move.number)]) return;
+      move.f = around ? newness(move) : promise(move);
+      if (own_ == &growing && move.node == now.node && move.effector == now.effector) {
+        if (own_->to_be_lifted(move)) return;  // that is being tried
+        move.f += kFailedHere;
+      }
+      moves_.push_back(move);
+    });
+    std::sort(moves_.begin(), moves_.end(), [](const Move& a, const Move& b) { return b < a; });
+    std::vector<Chain> chains;
+    for (const Move& move : moves_) {
+      Chain chain = transitions_of(move);
+      if (!chain.empty()) chains.push_back(std::move(chain));
+      if (chains.size() >= static_cast<std::size_t>(kExpected * space_.threads())) break;
+    }
+    return chains;
+  }
+
+  /// Those that follow() would ask for.
+  Chain transitions_of(const Move& move) const {
+    const std::size_t effector = static_cast<std::size_t>(move.effector);
+    const Node& node = own_->nodes[static_cast<std::size_t>(move.node)];
+    const Footing between = without(node.footing, move.effector);
+    const Footing after = with(node.footing, move.effector, move.place);
+    if (own_->known.contains(after)) return {};
+    Chain chain;
+    if (own_->to_be_lifted(move)) {
+      const signed char tried = node.lift_tried[effector];
+      if (tried > move.restarts) return {};
+      chain.push_back({node.footing, between, node.configuration, lift_restarts(move, tried)});
+    }
+    if (move.place != kFree) {
+      const bool in_contact = node.footing[effector] != kFree;
+      const Eigen::VectorXd& start = in_contact ? node.lifted[effector] : node.configuration;
+      chain.push_back({between, after, start, move.restarts});
+    }
+    if (own_->backwards) {
+      for (Transition& one : chain) std::swap(one.from, one.to);
+    }
+    return chain;
+  }
+
+  static int lift_restarts(const Move& move, signed char tried) {
+    return tried == 0 ? kLiftRestarts : 5 * move.restarts;
   }
 
   int follow(const Move& move) {
@@ -441,8 +469,13 @@ class GuidedSearch {
       signed char& tried = node.lift_tried[effector];
       if (tried <= move.restarts && lifted.size() == 0) {
         StanceSpace::Attempt lift = try_transition(node.footing, between, node.configuration,
-                                                   tried == 0 ? kLiftRestarts : 5 * move.restarts);
+                                                   lift_restarts(move, tried), move);
         tried = static_cast<signed char>(move.restarts + 1);
+        const bool too_heavy = lift.failure == TransitionFailure::kTorque;
+        too_heavy_ = too_heavy_ || too_heavy;
+        if (lift.found || too_heavy) {
+          experience_.learn_lift(node.footing, move.effector, lift.found);
+        }
         if (lift.found) {
           lifted = std::move(lift.configuration);
         } else {
@@ -456,7 +489,7 @@ class GuidedSearch {
     }
     const Eigen::VectorXd& start = in_contact ? node.lifted[effector] : node.configuration;
     if (move.place == kFree) return add(after, start, move.node, node.stances + 1);
-    StanceSpace::Attempt put = try_transition(between, after, start, move.restarts);
+    StanceSpace::Attempt put = try_transition(between, after, start, move.restarts, move);
     experience_.learn(node.footing, move.effector, move.place, move.share, put.found);
     if (!put.found) {
       kept().add_failed(after, move.node);
@@ -477,43 +510,16 @@ class GuidedSearch {
     push(move);
   }
 
-  /// The numbers of the nodes from where the trees met to the root.
-  std::vector<int> way_to_root(const Tree& tree) const {
-    std::vector<int> way;
-    for (int n = tree.known.at(met_); n >= 0; n = tree.nodes[static_cast<std::size_t>(n)].parent) {
-      way.push_back(n);
-    }
-    return way;
-  }
-
   /// From the start to where the trees met, and from there to the goal.
   void trace(StancePath& path) {
-    std::vector<int> way = way_to_root(trees_[0]);
-    std::reverse(way.begin(), way.end());
-    append(0, way, path);
-    append(1, way_to_root(trees_[1]), path);
-  }
-
-  /// What comes behind the first node of a way through a tree. The parent has the configuration in
-  /// which its end effector is lifted, the child the one in which it is put down; from the goal the
-  /// way leads from child to parent.
-  void append(std::size_t tree, const std::vector<int>& way, StancePath& path) {
-    if (tree == 0 || from_both_ends_) {
-      for (const int n : way) kept_[tree].mark(n);
-    }
-    for (std::size_t i = 1; i < way.size(); ++i) {
-      const Node& before = trees_[tree].nodes[static_cast<std::size_t>(way[i - 1])];
-      const Node& after = trees_[tree].nodes[static_cast<std::size_t>(way[i])];
-      const Node &parent = tree == 0 ? before : after, &child = tree == 0 ? after : before;
-      const int moved = changed_effector(before.footing, after.footing);
-      const std::size_t e = static_cast<std::size_t>(moved);
-      if (before.footing[e] == kFree || after.footing[e] == kFree) {
-        path.append(after.footing, child.configuration);
-        continue;
+    std::vector<int> there = trees_[0].way_to_root(met_);
+    std::reverse(there.begin(), there.end());
+    const std::vector<int> ways[] = {std::move(there), trees_[1].way_to_root(met_)};
+    for (const std::size_t t : {0, 1}) {
+      if (t == 0 || from_both_ends_) {
+        for (const int n : ways[t]) kept_[t].mark(n);
       }
-      const Eigen::VectorXd &lifted = parent.lifted[e], &put = child.configuration;
-      path.append(without(before.footing, moved), tree == 0 ? lifted : put);
-      path.append(after.footing, tree == 0 ? put : lifted);
+      trees_[t].append(ways[t], path);
     }
   }
 
@@ -534,7 +540,8 @@ class GuidedSearch {
   std::vector<double> to_go_, first_to_go_;
   double uneven_ = 0.0, reach_share_ = 0.0;  ///< choose_manner() sets them for each tree
   bool from_both_ends_ = false, look_around_ = false;
-  int grow_until_ = 0;
+  bool too_heavy_ = false;  ///< torques have refused a lift
+  int grow_until_ = 0, turn_ = 0;
   bool exhausted_ = false;
 };
 

@@ -44,6 +44,7 @@ int improve_stances(const StancePlanner& planner, const StanceProblem& problem,
        tried += static_cast<std::uint64_t>(threads)) {
     pool.run(threads, [&](int i) {
       StancePlannerOptions other = options;
+      other.threads = 1;
       other.seed += 0x9e3779b97f4a7c15ULL * (tried + static_cast<std::uint64_t>(i));
       others[static_cast<std::size_t>(i)] = planner.plan(problem, other);
     });

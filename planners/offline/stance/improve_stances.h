@@ -9,11 +9,11 @@
 
 namespace locograph {
 
-/// Until the deadline or `stop`, each seed on one of `threads`. The best plan has the fewest
-/// stances; of as many, the one whose joints move least from configuration to configuration (sum of
-/// the angles). Counts and times are those of all plans together. Returns how often a better one
-/// was found. Throws Error where neither deadline nor stop is given. A plan without success is left
-/// alone.
+/// Until the deadline or `stop`, each seed on one of `threads`, whatever the options say. The best
+/// plan has the fewest stances; of as many, the one whose joints move least from configuration to
+/// configuration (sum of the angles). Counts and times are those of all plans together. Returns how
+/// often a better one was found. Throws Error where neither deadline nor stop is given. A plan
+/// without success is left alone.
 int improve_stances(const StancePlanner& planner, const StanceProblem& problem,
                     const StancePlannerOptions& options, int threads, StancePlan& plan);
 

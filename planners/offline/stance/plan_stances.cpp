@@ -79,6 +79,7 @@ void StancePlannerOptions::validate() const {
   };
   require(grid_m >= 1e-3 && grid_m <= 10.0, "grid_m", "0.001 to 10 m");
   require(reach > 0.0 && reach <= 2.0, "reach", "above 0, up to 2");
+  require(threads >= 1, "threads", "1 or more");
   require(max_transitions >= 0, "max_transitions", "0 or more");
 }
 

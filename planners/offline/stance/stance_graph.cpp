@@ -42,6 +42,7 @@ Graph stance_graph(const Scenario& scenario, const StanceProblem& problem, const
   const auto format = std::make_shared<PlanParameter>();
   format->stances_only = true;
   format->incomplete = !plan.success;
+  format->moves = problem.moves;
   graph.parameters().replace(kPlanNumber, format);
 
   const double weight_N = model.total_mass() * standard_gravity().norm();

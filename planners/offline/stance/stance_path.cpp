@@ -6,22 +6,68 @@
 namespace locograph {
 namespace {
 
-/// The path with one end effector held, from change `from`, which frees or places it, up to and
-/// with change `to`, where it is as without. Nothing where a transition on the way is not found.
-bool without_changes(StanceSpace& space, const StancePath& path, std::size_t from, std::size_t to,
-                     int effector, StancePath& shorter) {
-  shorter.footings.assign(path.footings.begin(),
-                          path.footings.begin() + static_cast<std::ptrdiff_t>(from));
-  shorter.configurations.assign(path.configurations.begin(),
-                                path.configurations.begin() + static_cast<std::ptrdiff_t>(from));
+using Transition = StanceSpace::Expected;
+
+/// Transitions ahead of those that are tried, of all that may be left out further on.
+constexpr std::size_t kMostAhead = 16;
+
+/// How far the end effector of change `from` can be held where it is before: up to and with the
+/// change that is returned; 0: it cannot.
+std::size_t held_up_to(const StancePath& path, std::size_t from) {
+  const std::size_t e =
+      static_cast<std::size_t>(changed_effector(path.footings[from - 1], path.footings[from]));
+  const int held = path.footings[from - 1][e];
+  // Where a contact comes back to later, or is moved on from: leave out all in between.
+  for (std::size_t j = from + 1; j < path.footings.size(); ++j) {
+    const int at = path.footings[j][e];
+    const int before = path.footings[j - 1][e];
+    // A move that ends where it began, or one place left out: lifted from there anyway.
+    if (at == before) continue;
+    if (at == held || (at == kFree && held != kFree && before != held)) return j;
+  }
+  return 0;
+}
+
+/// The changes of the path with an end effector held from change `from`, which frees or places it,
+/// up to and with change `to`, where it is as without.
+std::vector<Transition> changes_held(const StancePath& path, std::size_t from, std::size_t to) {
+  const int effector = changed_effector(path.footings[from - 1], path.footings[from]);
   const int held = path.footings[from - 1][static_cast<std::size_t>(effector)];
+  std::vector<Transition> changes;
+  Footing before = path.footings[from - 1];
   for (std::size_t i = from; i <= to; ++i) {
     Footing next = i < to ? with(path.footings[i], effector, held) : path.footings[i];
-    if (next == shorter.footings.back()) continue;
-    const StanceSpace::Attempt attempt =
-        space.try_transition(shorter.footings.back(), next, path.configurations[i], 0);
+    if (next == before) continue;
+    changes.push_back({before, next, path.configurations[i]});
+    before = std::move(next);
+  }
+  return changes;
+}
+
+/// What is tried if the change is not left out, and then if those after it are not.
+void expect_changes(StanceSpace& space, const StancePath& path, std::size_t from) {
+  if (space.threads() < 2) return;
+  std::vector<std::vector<Transition>> expected;
+  for (; from < path.footings.size() && expected.size() < kMostAhead; ++from) {
+    const std::size_t to = held_up_to(path, from);
+    if (to == 0) continue;
+    for (Transition& change : changes_held(path, from, to)) {
+      expected.push_back({std::move(change)});
+    }
+  }
+  space.expect(expected);
+}
+
+/// Nothing where one of the changes is not found.
+bool without_changes(StanceSpace& space, const StancePath& path, std::size_t from, std::size_t to,
+                     StancePath& shorter) {
+  const std::ptrdiff_t kept = static_cast<std::ptrdiff_t>(from);
+  shorter.footings.assign(path.footings.begin(), path.footings.begin() + kept);
+  shorter.configurations.assign(path.configurations.begin(), path.configurations.begin() + kept);
+  for (Transition& change : changes_held(path, from, to)) {
+    StanceSpace::Attempt attempt = space.try_transition(change.from, change.to, change.start, 0);
     if (!attempt.found) return false;
-    shorter.append(std::move(next), attempt.configuration);
+    shorter.append(std::move(change.to), std::move(attempt.configuration));
   }
   // What comes after depends on its own stances only.
   for (std::size_t i = to + 1; i < path.footings.size(); ++i) {
@@ -35,27 +81,10 @@ bool without_changes(StanceSpace& space, const StancePath& path, std::size_t fro
 int shorten(StanceSpace& space, StancePath& path, std::size_t first) {
   int fewer = 0;
   for (std::size_t i = first + 1; i < path.footings.size() && !space.ended();) {
-    const int effector = changed_effector(path.footings[i - 1], path.footings[i]);
-    const std::size_t e = static_cast<std::size_t>(effector);
-    // Where a contact comes back to later, or is moved on from: leave out all in between.
-    std::size_t to = 0;
-    const int held = path.footings[i - 1][e];
-    for (std::size_t j = i + 1; j < path.footings.size(); ++j) {
-      const int at = path.footings[j][e];
-      const int before = path.footings[j - 1][e];
-      // A move that ends where it began, or one place left out: lifted from there anyway.
-      if (at == before) continue;
-      if (at == held) {
-        to = j;
-        break;
-      }
-      if (at == kFree && held != kFree && before != held) {
-        to = j;
-        break;
-      }
-    }
+    const std::size_t to = held_up_to(path, i);
     StancePath shorter;
-    if (to == 0 || !without_changes(space, path, i, to, effector, shorter) ||
+    if (to != 0) expect_changes(space, path, i);
+    if (to == 0 || !without_changes(space, path, i, to, shorter) ||
         shorter.footings.size() >= path.footings.size()) {
       ++i;
       continue;

@@ -17,11 +17,12 @@
 ///   rrt      the published one: a random tree in contact space, on the same transitions
 ///
 /// What is found is judged (check/judge.h): success means judged feasible. Deterministic for a seed
-/// but for the deadline.
+/// but for the deadline, whatever the number of threads.
 
 #include <locograph/check/check_report.h>
 #include <locograph/check/motion.h>
 #include <locograph/common/deadline.h>
+#include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/configuration/robot_parameters.h>
 #include <locograph/world/world.h>
 
@@ -43,6 +44,7 @@ struct StanceProblem {
   Eigen::VectorXd start_configuration;  ///< feasible for the start
   std::vector<Stance> goals;            ///< reached one after the other
   CheckOptions check;                   ///< what the judge is asked
+  ContactMoves moves;                   ///< how start and goals differ from the scenario's
 };
 
 /// One change of stance that a planner asked for, and what came of it.
@@ -51,14 +53,17 @@ struct TransitionAttempt {
   Eigen::VectorXd start;  ///< the configuration it was looked for from
   int restarts = 0;       ///< at most
   bool found = false;
-  double seconds = 0.0;
+  double seconds = 0.0;  ///< that the search waited; of little meaning with several threads
 };
 
 struct StancePlannerOptions {
   std::uint64_t seed = 0;
   Deadline deadline;
   const std::atomic<bool>* stop = nullptr;  ///< set, as by Ctrl-C: the search ends; may be null
-  double grid_m = 0.05;                     ///< between places of contacts on a surface
+  /// That a search may use, the caller's included; a plan that ends before the deadline does not
+  /// depend on it. `rrt` takes them only to shorten its way.
+  int threads = 1;
+  double grid_m = 0.05;  ///< between places of contacts on a surface
   /// How far an end effector gets in one move, as a part of its chain's length.
   double reach = 0.7;
   /// Transitions that may be tried for each goal; 0: no end but the deadline.
@@ -105,6 +110,7 @@ struct StancePlan {
   std::vector<StanceFailure> failures;  ///< the most frequent first
   std::vector<StanceTreeNode> tree;     ///< in the order of trying, one tree after the other
   CheckReport report;                   ///< of the judge
+  /// transitions_s: that the search worked on transitions or waited for them.
   double transitions_s = 0.0, judge_s = 0.0, total_s = 0.0;
 };
 

@@ -3,17 +3,15 @@
 #include <locograph/planners/offline/stance/stance_space.h>
 #include <locograph/planners/posture/posture_solver.h>
 #include <locograph/planners/scenario/contact_place.h>
-#include <locograph/planners/scenario/move_contacts.h>
-#include <locograph/planners/scenario/snap_to_places.h>
+#include <locograph/planners/scenario/task_stances.h>
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 namespace locograph {
 namespace {
 
-constexpr int kMostAttempts = 4, kMostDraws = 20;
+constexpr int kMostAttempts = 4;
 
 /// Runs f; what it throws is the fault of a line of the scenario.
 template <class F>
@@ -52,18 +50,15 @@ Eigen::VectorXd given_configuration(const Scenario& scenario, const Robot& robot
 }
 
 /// The scenario's task as it says it, without a start configuration.
-StanceProblem problem_of(const Scenario& scenario) {
-  const ContactTask& task = *scenario.contacts;
+StanceProblem problem_of(const Scenario& scenario, const Deadline& deadline) {
   StanceProblem problem;
   problem.robot =
       std::make_shared<const RobotParameter>(scenario.urdf, scenario.srdf, scenario.robot);
-  problem.world = world_of(scenario);
+  problem.world = world_of(scenario, deadline);
   problem.end_effectors = scenario.end_effectors;
-  problem.start = task.start;
-  problem.goals = task.goals;
-  const std::vector<std::string> scanned = scanned_names(scenario);
-  snap_to_places(problem.start, problem.world, scanned);
-  for (Stance& goal : problem.goals) snap_to_places(goal, problem.world, scanned);
+  TaskStances task = task_stances(scenario, problem.world);
+  problem.start = std::move(task.start);
+  problem.goals = std::move(task.goals);
   problem.check.known = scenario.end_effectors;
   problem.check.enforce_torque_limits = scenario.enforce_torque_limits;
   problem.check.effort_scale = scenario.effort_scale;
@@ -85,7 +80,8 @@ void require_sound_goals(const Scenario& scenario, const StanceProblem& problem)
 
 /// Finds a configuration that stands at the start, the given one if it does. Returns why there is
 /// none; empty: found.
-std::string find_start(const Judge& judge, const Eigen::VectorXd& given, StartedProblem& started) {
+std::string find_start(const Judge& judge, const Eigen::VectorXd& given, const Deadline& deadline,
+                       StartedProblem& started) {
   StanceProblem& problem = started.problem;
   problem.start_configuration = given;
   const CheckReport as_given = judge.check(given, problem.start, problem.check);
@@ -94,6 +90,7 @@ std::string find_start(const Judge& judge, const Eigen::VectorXd& given, Started
   StanceSpace space(problem, options);
   std::string reason;
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+    if (attempt > 0) deadline.require();
     const StanceSpace::Attempt found = space.stand(problem.start, given, attempt);
     if (!found.found) {
       if (reason.empty()) reason = found.reason;
@@ -117,14 +114,16 @@ std::string find_start(const Judge& judge, const Eigen::VectorXd& given, Started
 
 }  // namespace
 
-StartedProblem stance_problem(const Scenario& scenario, const ContactMoves& moves) {
+StartedProblem stance_problem(const Scenario& scenario, const ContactMoves& moves,
+                              const Deadline& deadline) {
   if (!scenario.contacts)
     throw Error(scenario.source, 0, "no <start> and <goal>", "a contact task");
   const int start_line = scenario.contacts->start_line;
   StartedProblem started;
   StanceProblem& problem = started.problem;
-  problem = problem_of(scenario);
+  problem = problem_of(scenario, deadline);
   const Robot& robot = *problem.robot->robot;
+  require_camera_links(scenario, robot);
   for (std::size_t e = 0; e < scenario.end_effectors.size(); ++e) {
     blame_line(scenario, scenario.end_effector_lines[e],
                [&] { require_sound_effector(robot, scenario.end_effectors[e]); });
@@ -133,26 +132,23 @@ StartedProblem stance_problem(const Scenario& scenario, const ContactMoves& move
   blame_line(scenario, start_line, [&] { require_sound_stance(robot, problem.start); });
 
   const bool moved = moves.most_m > 0.0;
-  std::mt19937_64 goal_places(2 * moves.seed), start_places(2 * moves.seed + 1);
+  problem.moves = moves;
+  problem.moves.draws = 1;
   if (moved) {
-    for (Stance& goal : problem.goals) {
-      move_contacts(goal, problem.world, moves.most_m, goal_places);
-    }
+    problem.goals = task_stances(scenario, problem.world, moves).goals;
     require_sound_goals(scenario, problem);
   }
   const Judge judge(problem.robot->robot, problem.world);
-  const Stance unmoved = problem.start;
-  for (;; ++started.draws) {
+  for (;; ++problem.moves.draws) {
     Eigen::VectorXd given;
-    problem.start = unmoved;
-    if (moved) move_contacts(problem.start, problem.world, moves.most_m, start_places);
+    if (moved) problem.start = task_stances(scenario, problem.world, problem.moves).start;
     blame_line(scenario, start_line, [&] {
       require_sound_stance(robot, problem.start);
       given = given_configuration(scenario, robot, problem.start);
     });
-    const std::string reason = find_start(judge, given, started);
+    const std::string reason = find_start(judge, given, deadline, started);
     if (reason.empty()) return started;
-    if (moved && started.draws < kMostDraws) continue;
+    if (moved && problem.moves.draws < kMostDraws) continue;
     throw Error(scenario.source, start_line, "no configuration stands at the start: " + reason,
                 "contacts that can be held");
   }

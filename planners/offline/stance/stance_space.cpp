@@ -1,3 +1,5 @@
+#include <locograph/check/bar_contact.h>
+#include <locograph/check/limits.h>
 #include <locograph/planners/offline/stance/stance_space.h>
 
 #include <algorithm>
@@ -7,9 +9,10 @@
 namespace locograph {
 namespace {
 
-constexpr double kRegionMargin = 0.1;
 constexpr double kSamePlane_m = 1e-4, kSamePlane_rad = 1e-3;
 constexpr double kQuantum = 1e-9;  ///< places nearer than this are one
+/// Less area than this on a surface is none, as for the judge.
+constexpr double kNoArea_m2 = 1e-8;
 /// Sides around a bar that grasps come from and points touch.
 constexpr int kBarSides = 8;
 
@@ -46,6 +49,10 @@ TransitionOptions wide_margins() {
   return options;
 }
 
+StanceSpace::Attempt attempt_of(TransitionResult result) {
+  return {result.found, std::move(result.configuration), result.failure, std::move(result.reason)};
+}
+
 bool lies_in(const Surface& surface, const Contact& contact) {
   const Eigen::Isometry3d& pose = surface.world_from_surface;
   const Eigen::Vector3d normal = pose.linear().col(2);
@@ -53,7 +60,8 @@ bool lies_in(const Surface& surface, const Contact& contact) {
          std::abs(normal.dot(contact.position - pose.translation())) <= kSamePlane_m;
 }
 
-/// Length of the way along the joints from the robot's root to a link's point.
+/// Length of the way along the joints from the robot's root to a link's point, what slides pulled
+/// out.
 double chain_length(const Robot& robot, const EndEffector& effector) {
   double length = effector.point.norm();
   int link = robot.link_index(effector.link);
@@ -61,6 +69,8 @@ double chain_length(const Robot& robot, const EndEffector& effector) {
     const Joint& joint = robot.joints()[static_cast<std::size_t>(
         robot.links()[static_cast<std::size_t>(link)].parent_joint)];
     length += joint.parent_from_joint.translation().norm();
+    const double slide = std::max(std::abs(joint.lower), std::abs(joint.upper));
+    if (joint.type == JointType::kPrismatic && std::isfinite(slide)) length += slide;
     link = joint.parent_link;
   }
   return length;
@@ -68,41 +78,13 @@ double chain_length(const Robot& robot, const EndEffector& effector) {
 
 }  // namespace
 
-std::size_t FootingHash::operator()(const Footing& footing) const {
-  std::size_t hash = 1469598103934665603ULL;
-  for (const int place : footing) {
-    hash = (hash ^ (static_cast<std::size_t>(place) + 2)) * 1099511628211ULL;
-  }
-  return hash;
-}
-
-Footing with(Footing footing, int effector, int place) {
-  footing[static_cast<std::size_t>(effector)] = place;
-  return footing;
-}
-
-int contacts_of(const Footing& footing) {
-  return static_cast<int>(
-      std::count_if(footing.begin(), footing.end(), [](int place) { return place != kFree; }));
-}
-
-Footing joined(Footing from, const Footing& to) {
-  from.insert(from.end(), to.begin(), to.end());
-  return from;
-}
-
-int changed_effector(const Footing& before, const Footing& after) {
-  const auto [changed, now] = std::mismatch(before.begin(), before.end(), after.begin());
-  return static_cast<int>(changed - before.begin());
-}
-
 StanceSpace::StanceSpace(const StanceProblem& problem, const StancePlannerOptions& options)
     : problem_(problem),
       options_(options),
-      solver_(problem.robot, problem.world),
+      regions_(problem.robot->robot->total_mass()),
+      solver_(problem, regions_),
       state_(*problem.robot->robot),
-      mass_kg_(problem.robot->robot->total_mass()),
-      preferred_(problem.start_configuration) {
+      surfaces_(bounds_of(problem.world.surfaces)) {
   for (const EndEffector& effector : problem.end_effectors) {
     require_sound_effector(*problem.robot->robot, effector);
     reach_m_.push_back(options.reach * chain_length(*problem.robot->robot, effector));
@@ -126,9 +108,17 @@ int StanceSpace::intern(int effector, const Contact& contact) {
   return found->second;
 }
 
+std::vector<int> StanceSpace::surfaces_at(const Contact& contact) const {
+  constexpr double kRound_m = 1e-3;
+  const EndEffector& of = contact.effector;
+  const double sole = of.kind == ContactKind::kSurface ? std::hypot(of.half_x_m, of.half_y_m) : 0.0;
+  return surfaces_.touching(box_around(contact.position, sole + kRound_m));
+}
+
 double StanceSpace::friction_at(const Contact& contact) const {
   double friction = contact.effector.friction;
-  for (const Surface& surface : problem_.world.surfaces) {
+  for (const int s : surfaces_at(contact)) {
+    const Surface& surface = problem_.world.surfaces[static_cast<std::size_t>(s)];
     if (surface.friction > 0.0 && lies_in(surface, contact)) {
       friction = std::min(friction, surface.friction);
     }
@@ -146,40 +136,37 @@ double StanceSpace::friction_at(const Contact& contact) const {
 
 std::vector<Eigen::Vector2d> StanceSpace::area_on_surfaces(const Contact& contact) const {
   if (contact.effector.kind != ContactKind::kSurface) return {};
-  const EndEffector& sole = contact.effector;
-  const double half_x = contact.forward ? sole.half_x_m : std::min(sole.half_x_m, sole.half_y_m);
-  const double half_y = contact.forward ? sole.half_y_m : half_x;
+  Contact standing = contact;
+  EndEffector& sole = standing.effector;
+  if (!contact.forward) sole.half_x_m = sole.half_y_m = std::min(sole.half_x_m, sole.half_y_m);
   const Eigen::Matrix3d axes = axes_in_world(contact);
-  std::vector<Eigen::Vector2d> best;
-  for (const Surface& surface : problem_.world.surfaces) {
+  std::vector<Eigen::Vector2d> all;
+  const auto add = [&all](const std::vector<Eigen::Vector2d>& part) {
+    all.insert(all.end(), part.begin(), part.end());
+  };
+  for (const int s : surfaces_at(contact)) {
+    const Surface& surface = problem_.world.surfaces[static_cast<std::size_t>(s)];
     if (!lies_in(surface, contact)) continue;
-    std::vector<Eigen::Vector2d> area_there = {
-        {half_x, half_y}, {-half_x, half_y}, {-half_x, -half_y}, {half_x, -half_y}};
+    const double x = sole.half_x_m, y = sole.half_y_m;
+    std::vector<Eigen::Vector2d> part = {{x, y}, {-x, y}, {-x, -y}, {x, -y}};
     const Eigen::Vector3d centre = surface.world_from_surface.inverse() * contact.position;
     const double half[] = {surface.half_x_m, surface.half_y_m};
     for (int axis = 0; axis < 2; ++axis) {
       if (std::isinf(half[axis])) continue;
       const Eigen::Vector3d out = surface.world_from_surface.linear().col(axis);
       const Eigen::Vector2d across(out.dot(axes.col(0)), out.dot(axes.col(1)));
-      area_there = cut(area_there, across, half[axis] - centre[axis]);
-      area_there = cut(area_there, -across, half[axis] + centre[axis]);
+      part = cut(part, across, half[axis] - centre[axis]);
+      part = cut(part, -across, half[axis] + centre[axis]);
     }
-    if (best.empty() || area(area_there) > area(best)) best = std::move(area_there);
+    if (area(part) > kNoArea_m2) add(part);
   }
+  Eigen::Isometry3d link = Eigen::Isometry3d::Identity();
+  link.linear() = axes * axes_in_link(sole).transpose();
+  link.translation() = contact.position - link.linear() * sole.point;
   for (const Bar& bar : problem_.world.bars) {
-    if (!best.empty()) break;
-    const Eigen::Vector3d way = (bar.to - bar.from).normalized();
-    const Eigen::Vector3d off = contact.position - bar.from;
-    const Eigen::Vector3d radial = off - way * way.dot(off);
-    if (std::abs(radial.norm() - bar.radius_m) > 2.0 * kSamePlane_m) continue;
-    const Eigen::Vector2d along(way.dot(axes.col(0)), way.dot(axes.col(1)));
-    const double length = std::min(half_x / std::max(1e-9, std::abs(along.x())),
-                                   half_y / std::max(1e-9, std::abs(along.y())));
-    const double before = std::min(length, way.dot(off));
-    const double after = std::min(length, (bar.to - bar.from).norm() - way.dot(off));
-    best = {-before * along, after * along};
+    if (off_bar_m(standing, bar) <= limits::kClosed_m) add(sole_on_bar(bar, standing, link).line);
   }
-  return best;
+  return all;
 }
 
 Footing StanceSpace::footing(const Stance& stance) {
@@ -217,7 +204,8 @@ Eigen::Vector3d StanceSpace::position(int effector, const Eigen::VectorXd& q) {
 std::vector<int> StanceSpace::places_near(int effector, const Eigen::Vector3d& point,
                                           double reach_m) {
   std::vector<int> places;
-  for (const Surface& surface : problem_.world.surfaces) {
+  for (const int s : surfaces_.touching(box_around(point, reach_m))) {
+    const Surface& surface = problem_.world.surfaces[static_cast<std::size_t>(s)];
     places_on(effector, surface, point, reach_m, places);
   }
   for (const Bar& bar : problem_.world.bars) places_on(effector, bar, point, reach_m, places);
@@ -233,8 +221,8 @@ void StanceSpace::places_on(int effector, const Surface& surface, const Eigen::V
   const double off = std::abs(local.z());
   if (off >= reach_m) return;
   const double radius = std::sqrt(reach_m * reach_m - off * off);
-  // A sole stays whole on the surface where it can, else in its middle; a wheel a radius away from
-  // where it would roll off.
+  // A sole stays whole on the surface where that leaves it some room, else with its middle in the
+  // inner half, as a larger one bears no less; a wheel a radius away from where it would roll off.
   Eigen::Vector2d inset = Eigen::Vector2d::Zero();
   Contact contact;
   contact.effector = of;
@@ -248,7 +236,8 @@ void StanceSpace::places_on(int effector, const Surface& surface, const Eigen::V
   std::vector<double> along[2];
   for (int axis = 0; axis < 2; ++axis) {
     const double half = axis == 0 ? surface.half_x_m : surface.half_y_m;
-    const double most = std::max(0.0, half - inset[axis]);
+    const double least = of.kind == ContactKind::kSurface ? 0.5 * half : 0.0;
+    const double most = std::max(least, half - inset[axis]);
     const double step = options_.grid_m;
     const double first = std::ceil((local[axis] - radius) / step);
     const double last = std::floor((local[axis] + radius) / step);
@@ -280,7 +269,7 @@ void StanceSpace::places_on(int effector, const Bar& bar, const Eigen::Vector3d&
   up.normalize();
   const double middle = 0.5 * length, step = options_.grid_m;
   const int sides = of.kind == ContactKind::kSurface ? 1 : kBarSides;
-  const double end = of.kind == ContactKind::kSurface ? std::min(of.half_y_m, middle) : 0.0;
+  const double end = of.kind == ContactKind::kSurface ? std::min(of.half_y_m, 0.5 * middle) : 0.0;
   for (double k = std::ceil((at - radius - middle) / step); k * step <= at + radius - middle; ++k) {
     if (std::abs(k * step) > middle - end + 1e-9) continue;
     const Eigen::Vector3d on_axis = bar.from + (middle + k * step) * way;
@@ -306,42 +295,29 @@ std::vector<BearingContact> StanceSpace::bearing_contacts(const Footing& footing
   return bearing;
 }
 
-const BalanceRegion& StanceSpace::region(const Footing& footing) {
-  const auto found = regions_.find(footing);
-  if (found != regions_.end()) return found->second;
-  const std::vector<BearingContact> bearing = bearing_contacts(footing);
-  BalanceRegion region;
-  if (!bearing.empty()) region = balance_region(mass_kg_, bearing, kRegionMargin);
-  return regions_.emplace(footing, std::move(region)).first->second;
+TransitionTask StanceSpace::task_of(const Footing& from, const Footing& to,
+                                    const Eigen::VectorXd& start, std::uint64_t seed,
+                                    const TransitionOptions& options) const {
+  const bool adds = contacts_of(to) > contacts_of(from);
+  TransitionTask task{.larger = adds ? to : from, .smaller = adds ? from : to};
+  task.closed = stance(task.larger).contacts;
+  task.held = stance(task.smaller).contacts;
+  task.bearing = bearing_contacts(task.smaller);
+  task.start = start;
+  task.seed = seed;
+  task.options = options;
+  return task;
 }
 
-StanceSpace::Attempt StanceSpace::change(const Footing& from, const Footing& to,
-                                         const Eigen::VectorXd& start,
-                                         const TransitionOptions& options) {
-  const bool adds = contacts_of(to) > contacts_of(from);
+StanceSpace::Attempt StanceSpace::change(const TransitionTask& task) {
   const Stopwatch watch;
-  Attempt attempt = solve(adds ? to : from, adds ? from : to, start, options_.seed, options);
+  std::optional<TransitionResult> ahead;
+  if (ahead_) ahead = ahead_->take(task);
+  Attempt attempt = attempt_of(ahead ? std::move(*ahead) : solver_.solve(task));
   ++transitions;
   if (attempt.found) ++transitions_found;
   transitions_s += watch.seconds();
   return attempt;
-}
-
-StanceSpace::Attempt StanceSpace::solve(const Footing& larger, const Footing& smaller,
-                                        const Eigen::VectorXd& start, std::uint64_t seed,
-                                        const TransitionOptions& options) {
-  const Stance closed = stance(larger);
-  TransitionProblem problem;
-  problem.closed = closed.contacts;
-  problem.balance = &region(smaller);
-  problem.start = start;
-  problem.preferred = preferred_;
-  problem.seed = seed;
-  TransitionResult result = solver_.solve(problem, options);
-  if (result.found && problem_.check.enforce_torque_limits) {
-    ease_torques(smaller, problem, options, result);
-  }
-  return {result.found, std::move(result.configuration), result.failure, std::move(result.reason)};
 }
 
 StanceSpace::Attempt StanceSpace::stand(const Stance& stance, const Eigen::VectorXd& start,
@@ -350,28 +326,15 @@ StanceSpace::Attempt StanceSpace::stand(const Stance& stance, const Eigen::Vecto
   options.max_iterations = 100;
   options.restarts = 10 * attempt;
   const Footing standing = footing(stance);
-  return solve(standing, standing, start, static_cast<std::uint64_t>(attempt), options);
-}
-
-void StanceSpace::ease_torques(const Footing& smaller, TransitionProblem& problem,
-                               const TransitionOptions& options, TransitionResult& result) {
-  TorqueProgramme torques(state_.robot(), bearing_contacts(smaller), problem_.check.effort_scale,
-                          kRegionMargin);
-  state_.update(result.configuration.data());
-  Eigen::VectorXd gradient;
-  if (torques.solve(state_, gradient) <= 1.0 - options.torque_margin) return;
-  problem.torques = &torques;
-  problem.start = result.configuration;
-  result = solver_.solve(problem, options);
+  return attempt_of(solver_.solve(
+      task_of(standing, standing, start, static_cast<std::uint64_t>(attempt), options)));
 }
 
 StanceSpace::Attempt StanceSpace::try_transition(const Footing& from, const Footing& to,
                                                  const Eigen::VectorXd& start, int restarts) {
   if (refused_.contains(joined(from, to))) return {};
-  TransitionOptions options;
-  options.restarts = restarts;
   const Stopwatch watch;
-  Attempt attempt = change(from, to, start, options);
+  Attempt attempt = change(task_of(from, to, start, options_.seed, {.restarts = restarts}));
   if (options_.observe) {
     options_.observe({stance(from), stance(to), start, restarts, attempt.found, watch.seconds()});
   }
@@ -385,7 +348,26 @@ StanceSpace::Attempt StanceSpace::try_harder(const Footing& from, const Footing&
                                              const Eigen::VectorXd& start) {
   TransitionOptions options = wide_margins();
   options.restarts = 10;
-  return change(from, to, start, options);
+  return change(task_of(from, to, start, options_.seed, options));
+}
+
+void StanceSpace::expect(const std::vector<std::vector<Expected>>& chains) {
+  if (threads() < 2) return;
+  std::vector<TransitionAhead::Expected> tasks;
+  for (const std::vector<Expected>& chain : chains) {
+    if (refused_.contains(joined(chain[0].from, chain[0].to))) continue;
+    const auto task = [&](const Expected& one) {
+      return task_of(one.from, one.to, one.start, options_.seed, {.restarts = one.restarts});
+    };
+    tasks.push_back({task(chain[0])});
+    if (chain.size() > 1) tasks.back().then = task(chain[1]);
+  }
+  if (!ahead_) ahead_ = std::make_unique<TransitionAhead>(solver_, threads() - 1);
+  ahead_->expect(std::move(tasks));
+}
+
+void StanceSpace::expect_nothing() {
+  if (ahead_) ahead_->forget();
 }
 
 void StanceSpace::forbid(const Footing& from, const Footing& to) {

@@ -9,34 +9,18 @@
 ///
 /// A place is an end effector's contact at one point of the world; places that are equal are one.
 
-#include <locograph/planners/offline/stance/balance_region.h>
+#include <locograph/planners/offline/stance/footing.h>
 #include <locograph/planners/offline/stance/stance_planner.h>
-#include <locograph/planners/offline/stance/transition_solver.h>
+#include <locograph/planners/offline/stance/transition_ahead.h>
+#include <locograph/world/box_tree.h>
 
+#include <algorithm>
 #include <map>
-#include <unordered_map>
+#include <memory>
 #include <unordered_set>
 #include <vector>
 
 namespace locograph {
-
-/// Of each end effector the place it touches; kFree: none.
-using Footing = std::vector<int>;
-inline constexpr int kFree = -1;
-
-struct FootingHash {
-  std::size_t operator()(const Footing& footing) const;
-};
-
-Footing with(Footing footing, int effector, int place);
-inline Footing without(Footing footing, int effector) {
-  return with(std::move(footing), effector, kFree);
-}
-int contacts_of(const Footing& footing);
-/// Both, one behind the other: the key of a transition.
-Footing joined(Footing from, const Footing& to);
-/// The first end effector that two footings differ in; they must differ.
-int changed_effector(const Footing& before, const Footing& after);
 
 class StanceSpace {
  public:
@@ -49,6 +33,13 @@ class StanceSpace {
     Eigen::VectorXd configuration;
     TransitionFailure failure = TransitionFailure::kNone;
     std::string reason = {};  ///< in words
+  };
+
+  /// One that try_transition() may be asked for.
+  struct Expected {
+    Footing from, to;
+    Eigen::VectorXd start = {};
+    int restarts = 0;
   };
 
   StanceSpace(const StanceProblem& problem, const StancePlannerOptions& options);
@@ -68,9 +59,6 @@ class StanceSpace {
   /// in the order of the surfaces.
   std::vector<int> places_near(int effector, const Eigen::Vector3d& point, double reach_m);
 
-  /// Of the stance; worked out once.
-  const BalanceRegion& region(const Footing& footing);
-
   /// From one footing to the next, which has one contact more or less: what is closed are the
   /// contacts of the larger one, what balances is the smaller one. Counts.
   Attempt try_transition(const Footing& from, const Footing& to, const Eigen::VectorXd& start,
@@ -81,6 +69,15 @@ class StanceSpace {
   Attempt stand(const Stance& stance, const Eigen::VectorXd& start, int attempt);
   /// The transition is not to be found again: the judge refused it.
   void forbid(const Footing& from, const Footing& to);
+
+  /// What is likely to be asked for next, the likeliest first: other threads begin with it
+  /// (transition_ahead.h), and no result is another one. A chain has one or two transitions; the
+  /// second goes on from what is found for the first, whatever its `start`. Nothing on one thread.
+  void expect(const std::vector<std::vector<Expected>>& chains);
+  /// StancePlannerOptions::threads, as far as they are of use.
+  int threads() const { return std::min(options_.threads, kMostThreads); }
+  /// What was expected before will not be asked for any more.
+  void expect_nothing();
 
   /// From here on transitions count for the next goal; plan_stances calls it.
   void begin_goal() { began_ = transitions; }
@@ -102,6 +99,8 @@ class StanceSpace {
 
  private:
   int intern(int effector, const Contact& contact);
+  /// Of World::surfaces, those that the end effector may lie on there, and a few more.
+  std::vector<int> surfaces_at(const Contact& contact) const;
   void places_on(int effector, const Surface& surface, const Eigen::Vector3d& point, double reach_m,
                  std::vector<int>& places);
   void places_on(int effector, const Bar& bar, const Eigen::Vector3d& point, double reach_m,
@@ -109,23 +108,23 @@ class StanceSpace {
   std::vector<Eigen::Vector2d> area_on_surfaces(const Contact& contact) const;
   double friction_at(const Contact& contact) const;
   std::vector<BearingContact> bearing_contacts(const Footing& footing) const;
-  void ease_torques(const Footing& smaller, TransitionProblem& problem,
-                    const TransitionOptions& options, TransitionResult& result);
-  Attempt solve(const Footing& larger, const Footing& smaller, const Eigen::VectorXd& start,
-                std::uint64_t seed, const TransitionOptions& options);
-  Attempt change(const Footing& from, const Footing& to, const Eigen::VectorXd& start,
-                 const TransitionOptions& options);
+  TransitionTask task_of(const Footing& from, const Footing& to, const Eigen::VectorXd& start,
+                         std::uint64_t seed, const TransitionOptions& options) const;
+  Attempt change(const TransitionTask& task);
+
+  /// What is expected further ahead is hardly ever asked for.
+  static constexpr int kMostThreads = 8;
 
   const StanceProblem& problem_;
   const StancePlannerOptions& options_;
-  TransitionSolver solver_;
+  BalanceRegions regions_;
+  TaskSolver solver_;
+  std::unique_ptr<TransitionAhead> ahead_;  ///< once there is something to work out ahead
   RobotState state_;
-  double mass_kg_;
-  Eigen::VectorXd preferred_;
   std::vector<double> reach_m_;
+  BoxTree surfaces_;
   std::vector<Place> places_;
   std::map<std::vector<long long>, int> numbers_;
-  std::unordered_map<Footing, BalanceRegion, FootingHash> regions_;
   std::unordered_set<Footing, FootingHash> refused_;  ///< transitions, as joined() gives them
   std::map<std::pair<int, std::string>, int> failures_;
   int began_ = 0;  ///< transitions tried before this goal

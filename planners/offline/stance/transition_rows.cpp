@@ -2,6 +2,7 @@
 #include <locograph/plugins/self_collision/edge_self_collision.h>
 #include <locograph/world/distance_view.h>
 #include <locograph/world/link_solid.h>
+#include <locograph/world/obstacle_way.h>
 
 #include <algorithm>
 #include <array>
@@ -13,46 +14,16 @@ namespace {
 
 /// What is further away than this beyond its margin has no row: a step is too short to get there.
 constexpr double kBand_m = 0.03, kBandJoint_rad = 0.5, kBandSurface_m = 0.1;
+/// Between places of a moving obstacle: what lies in between is nearer by less than the margin.
+constexpr double kAlong_m = 0.016;
 /// An effort that is exceeded by all of itself counts as so many metres.
 constexpr double kTorqueUnit_m = 0.1;
-/// As the judge: links that touch are exempt from what lies below the plane of their contact, so
-/// far away.
-constexpr double kTouchedReach_m = 0.3, kBelow_m = 1e-3, kSamePlane_m = 1e-4, kSamePlane_rad = 1e-3;
-/// So deep below a plate a sphere is still above it; deeper, it is below.
-constexpr double kPlateDepth_m = 0.15, kPlateDepthShare = 0.3;
-
-bool in_plane(const Surface& surface, const Contact& contact, const Eigen::Vector3d& normal) {
-  const Eigen::Isometry3d& pose = surface.world_from_surface;
-  const Eigen::Vector3d own = pose.linear().col(2);
-  return angle_between(own, normal) <= kSamePlane_rad &&
-         std::abs(own.dot(contact.position - pose.translation())) <= kSamePlane_m;
-}
-
-bool below_contact(const Surface& surface, const Contact& contact, const Eigen::Vector3d& normal) {
-  if (std::isinf(surface.half_x_m) || std::isinf(surface.half_y_m)) return false;
-  for (const double x : {surface.half_x_m, -surface.half_x_m}) {
-    for (const double y : {surface.half_y_m, -surface.half_y_m}) {
-      const Eigen::Vector3d corner = surface.world_from_surface * Eigen::Vector3d(x, y, 0.0);
-      if (normal.dot(corner - contact.position) > kBelow_m) return false;
-    }
-  }
-  const Eigen::Vector3d local = surface.world_from_surface.inverse() * contact.position;
-  return std::abs(local.x()) - surface.half_x_m <= kTouchedReach_m &&
-         std::abs(local.y()) - surface.half_y_m <= kTouchedReach_m &&
-         std::abs(local.z()) <= kTouchedReach_m;
-}
-
-bool on_bar(const Bar& bar, const Contact& contact) {
-  const Eigen::Vector3d along = (bar.to - bar.from).normalized();
-  const Eigen::Vector3d off = contact.position - bar.from;
-  return (off - along * along.dot(off)).norm() <= bar.radius_m + kBelow_m;
-}
 
 }  // namespace
 
 TransitionRows::TransitionRows(std::shared_ptr<const RobotParameter> robot, World world)
     : robot_(std::move(robot)),
-      world_(std::move(world)),
+      places_(robot_, world),
       size_(robot_->robot->tangent_size()),
       state_(robot_) {
   const Robot& model = *robot_->robot;
@@ -60,18 +31,18 @@ TransitionRows::TransitionRows(std::shared_ptr<const RobotParameter> robot, Worl
     throw Error("stances of a robot with a fixed base", "a floating base");
   }
   state_.kinematics.require_mass();
-  anything_in_the_way_ = world_.map || !world_.obstacles.empty();
+  anything_in_the_way_ = world.map || !world.obstacles.empty();
   if (anything_in_the_way_) {
     DistanceFieldOptions options;
     options.max_distance_m = 0.3;
-    in_the_way_ = distance_view(world_, options);
-  }
-  for (const Surface& surface : world_.surfaces) {
-    const bool endless = std::isinf(surface.half_x_m) && std::isinf(surface.half_y_m);
-    const double half = std::min(surface.half_x_m, surface.half_y_m);
-    plates_.push_back({surface.name, surface.world_from_surface.inverse(), surface.half_x_m,
-                       surface.half_y_m, std::min(kPlateDepth_m, kPlateDepthShare * half),
-                       endless});
+    // What moves is in the way wherever it gets to.
+    World still = world;
+    still.obstacles.clear();
+    for (const Obstacle& obstacle : world.obstacles) {
+      const std::vector<Obstacle> along = all_along(obstacle, kAlong_m);
+      still.obstacles.insert(still.obstacles.end(), along.begin(), along.end());
+    }
+    in_the_way_ = distance_view(still, options);
   }
   pair_weights_ =
       Eigen::VectorXd::Ones(static_cast<Eigen::Index>(robot_->self_collision.pairs.size()));
@@ -82,6 +53,9 @@ TransitionRows::TransitionRows(std::shared_ptr<const RobotParameter> robot, Worl
 /// apart are compared by those shapes.
 void TransitionRows::find_coarse_pairs() {
   const Robot& model = robot();
+  const auto shapes_of = [&](int bound) {
+    return LinkShapes(model, robot_->bounds[static_cast<std::size_t>(bound)].link);
+  };
   std::vector<Eigen::VectorXd> examples = {model.neutral_configuration()};
   for (const std::string& name : model.configuration_names()) {
     examples.push_back(model.named_configuration(name));
@@ -93,23 +67,12 @@ void TransitionRows::find_coarse_pairs() {
     for (const NearPair& found : near_) {
       const SelfCollisionShapes::Pair& pair =
           robot_->self_collision.pairs[static_cast<std::size_t>(found.pair)];
-      CoarsePair coarse{found.pair, solid_of(pair.first), solid_of(pair.second)};
+      CoarsePair coarse{found.pair, shapes_of(pair.first), shapes_of(pair.second)};
       if (exact_distance(coarse, kTooNear_m).distance < 0.0) continue;
       pair_weights_[found.pair] = 0.0;
       coarse_.push_back(std::move(coarse));
     }
   }
-}
-
-TransitionRows::Solid TransitionRows::solid_of(int bound) const {
-  const Robot& model = *robot_->robot;
-  Solid solid;
-  const int link = robot_->bounds[static_cast<std::size_t>(bound)].link;
-  for (const CollisionShape& shape : model.links()[static_cast<std::size_t>(link)].collision) {
-    solid.shapes.push_back(link_solid(model, shape));
-    solid.link_from_shape.push_back(shape.link_from_shape);
-  }
-  return solid;
 }
 
 ShapeDistance TransitionRows::exact_distance(const CoarsePair& coarse, double limit) const {
@@ -147,7 +110,7 @@ void TransitionRows::set_problem(const TransitionProblem& problem,
   contact_of_row_.clear();
   contact_links_.clear();
   const std::size_t bounds = robot_->bounds.size();
-  touched_.assign((world_.surfaces.size() + world_.bars.size()) * bounds, false);
+  places_.set_contacts(problem.closed, problem.held);
   exempt_.assign(bounds, false);
   for (const Contact& contact : problem.closed) {
     const int number = static_cast<int>(closures_.size());
@@ -156,21 +119,8 @@ void TransitionRows::set_problem(const TransitionProblem& problem,
     contact_links_.push_back(closures_.back().link());
     for (int i = 0; i < closures_.back().rows(); ++i) contact_of_row_.push_back(number);
     const std::vector<bool> links = touching_links(robot(), {&contact, 1});
-    const Eigen::Vector3d normal = contact.normal.normalized();
     for (std::size_t b = 0; b < bounds; ++b) {
-      if (!links[static_cast<std::size_t>(robot_->bounds[b].link)]) continue;
-      exempt_[b] = true;
-      for (std::size_t s = 0; s < world_.surfaces.size(); ++s) {
-        const Surface& surface = world_.surfaces[s];
-        if (in_plane(surface, contact, normal) || below_contact(surface, contact, normal)) {
-          touched_[s * bounds + b] = true;
-        }
-      }
-      for (std::size_t s = 0; s < world_.bars.size(); ++s) {
-        if (on_bar(world_.bars[s], contact)) {
-          touched_[(world_.surfaces.size() + s) * bounds + b] = true;
-        }
-      }
+      if (links[static_cast<std::size_t>(robot_->bounds[b].link)]) exempt_[b] = true;
     }
   }
   closure_.resize(static_cast<Eigen::Index>(contact_of_row_.size()));
@@ -201,8 +151,7 @@ void TransitionRows::evaluate(const Eigen::VectorXd& q) {
   if (balance_ != nullptr) add_balance();
   if (torques_ != nullptr) add_torques();
   add_self();
-  add_plates();
-  add_bars();
+  add_places();
   if (anything_in_the_way_) add_obstacles();
 }
 
@@ -279,87 +228,55 @@ void TransitionRows::add_self() {
   }
 }
 
-TransitionRows::Distance TransitionRows::to_plate(const Plate& plate, const Eigen::Vector3d& centre,
-                                                  double radius) const {
-  const Eigen::Vector3d local = plate.surface_from_world * centre;
-  if (plate.endless) return {local.z() - radius, Eigen::Vector3d::UnitZ()};
-  const auto beyond = [](double x, double half) {
-    return x > half ? x - half : (x < -half ? x + half : 0.0);
-  };
-  Eigen::Vector3d way(beyond(local.x(), plate.half_x_m), beyond(local.y(), plate.half_y_m),
-                      local.z());
-  if (way.x() == 0.0 && way.y() == 0.0) {
-    if (local.z() >= -plate.depth_m) return {local.z() - radius, Eigen::Vector3d::UnitZ()};
-    return {-local.z() - radius, -Eigen::Vector3d::UnitZ()};
-  }
-  const double length = way.norm();
-  return {length - radius, way / length};
-}
-
-void TransitionRows::add_plates() {
+void TransitionRows::add_places() {
+  const std::vector<RobotParameter::LinkBound>& bounds = robot_->bounds;
   const double limit = options_.surface_margin_m + kBandSurface_m;
-  for (std::size_t s = 0; s < plates_.size(); ++s) {
-    const Plate& plate = plates_[s];
-    for (std::size_t b = 0; b < robot_->bounds.size(); ++b) {
-      const RobotParameter::LinkBound& bound = robot_->bounds[b];
-      if (touches(static_cast<int>(s), static_cast<int>(b))) continue;
-      const Distance whole = to_plate(plate, state_.bound_centres[b], 0.0);
-      if (std::abs(whole.value) - bound.radius >= limit && (!plate.endless || whole.value > 0.0)) {
-        continue;
-      }
-      Distance worst{limit, {}};
-      int nearest = -1;
-      for (int i = bound.begin; i < bound.end; ++i) {
-        const CollisionSphere& sphere = robot_->spheres[static_cast<std::size_t>(i)];
-        const Distance found =
-            to_plate(plate, state_.sphere_centres[static_cast<std::size_t>(i)], sphere.radius);
-        if (found.value >= worst.value) continue;
-        worst = found;
-        nearest = i;
-      }
-      if (nearest < 0) continue;
-      double* row = add(TransitionFailure::kSurface, static_cast<int>(b), static_cast<int>(s),
-                        worst.value - options_.surface_margin_m);
-      state_.kinematics.add_point_gradient(
-          bound.link, state_.sphere_centres[static_cast<std::size_t>(nearest)],
-          plate.surface_from_world.linear().transpose() * worst.gradient, 1.0, row);
+  Eigen::AlignedBox3d around;
+  for (std::size_t b = 0; b < bounds.size(); ++b) {
+    around.extend(box_around(state_.bound_centres[b], bounds[b].radius + limit));
+  }
+  const std::vector<int>& near = places_.near(around);
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    for (std::size_t b = 0; b < bounds.size(); ++b) {
+      const TransitionPlaces::Relation relation = places_.relation(i, b);
+      if (relation == TransitionPlaces::Relation::kApart) keep_apart(near[i], b);
+      if (relation == TransitionPlaces::Relation::kTouches)
+        keep_shallow(near[i], b, places_.deepest_m(i, b));
     }
   }
 }
 
-void TransitionRows::add_bars() {
+void TransitionRows::keep_apart(int place, std::size_t b) {
+  const RobotParameter::LinkBound& bound = robot_->bounds[b];
   const double limit = options_.surface_margin_m + kBandSurface_m;
-  for (std::size_t s = 0; s < world_.bars.size(); ++s) {
-    const Bar& bar = world_.bars[s];
-    const int surface = static_cast<int>(world_.surfaces.size() + s);
-    const Eigen::Vector3d way = bar.to - bar.from;
-    const double squared = way.squaredNorm();
-    const auto off_axis = [&](const Eigen::Vector3d& point) -> Eigen::Vector3d {
-      const double along = std::clamp((point - bar.from).dot(way) / squared, 0.0, 1.0);
-      return point - bar.from - along * way;
-    };
-    for (std::size_t b = 0; b < robot_->bounds.size(); ++b) {
-      const RobotParameter::LinkBound& bound = robot_->bounds[b];
-      if (touches(surface, static_cast<int>(b))) continue;
-      if (off_axis(state_.bound_centres[b]).norm() - bar.radius_m - bound.radius >= limit) continue;
-      double least = limit;
-      int nearest = -1;
-      for (int i = bound.begin; i < bound.end; ++i) {
-        const std::size_t k = static_cast<std::size_t>(i);
-        const double found =
-            off_axis(state_.sphere_centres[k]).norm() - bar.radius_m - robot_->spheres[k].radius;
-        if (found >= least) continue;
-        least = found;
-        nearest = i;
-      }
-      if (nearest < 0) continue;
-      const Eigen::Vector3d& centre = state_.sphere_centres[static_cast<std::size_t>(nearest)];
-      double* row = add(TransitionFailure::kSurface, static_cast<int>(b), surface,
-                        least - options_.surface_margin_m);
-      state_.kinematics.add_point_gradient(bound.link, centre, off_axis(centre).stableNormalized(),
-                                           1.0, row);
-    }
+  if (places_.is_far(place, state_.bound_centres[b], bound.radius, limit)) return;
+  TransitionPlaces::Distance worst{limit, Eigen::Vector3d::Zero()};
+  int nearest = -1;
+  for (int i = bound.begin; i < bound.end; ++i) {
+    const std::size_t k = static_cast<std::size_t>(i);
+    const TransitionPlaces::Distance found =
+        places_.distance(place, state_.sphere_centres[k], robot_->spheres[k].radius);
+    if (found.value >= worst.value) continue;
+    worst = found;
+    nearest = i;
   }
+  if (nearest < 0) return;
+  double* row = add(TransitionFailure::kSurface, static_cast<int>(b), place,
+                    worst.value - options_.surface_margin_m);
+  state_.kinematics.add_point_gradient(bound.link,
+                                       state_.sphere_centres[static_cast<std::size_t>(nearest)],
+                                       worst.gradient, 1.0, row);
+}
+
+void TransitionRows::keep_shallow(int place, std::size_t b, double deepest_m) {
+  const RobotParameter::LinkBound& bound = robot_->bounds[b];
+  const double limit = kBand_m - deepest_m;
+  const std::optional<TransitionPlaces::Depth> depth = places_.depth(
+      place, static_cast<int>(b), state_.kinematics.world_from_link(bound.link), limit);
+  if (!depth) return;
+  double* row =
+      add(TransitionFailure::kSurface, static_cast<int>(b), place, depth->value + deepest_m);
+  state_.kinematics.add_point_gradient(bound.link, depth->point, depth->out, 1.0, row);
 }
 
 void TransitionRows::add_obstacles() {
@@ -419,11 +336,8 @@ std::string TransitionRows::text(const Row& row) const {
       return "joint " + robot().active_joint(row.first).name + " at its limit";
     case TransitionFailure::kSelf:
       return name(first) + " in " + name(second);
-    case TransitionFailure::kSurface: {
-      const std::size_t s = static_cast<std::size_t>(row.second);
-      return name(first) + " in " +
-             (s < plates_.size() ? plates_[s].name : world_.bars[s - plates_.size()].name);
-    }
+    case TransitionFailure::kSurface:
+      return name(first) + " in " + places_.name(row.second);
     case TransitionFailure::kObstacle:
       return name(first) + " in an obstacle";
     case TransitionFailure::kBalance:

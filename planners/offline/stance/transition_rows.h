@@ -6,8 +6,11 @@
 ///     rows.evaluate(q);
 ///     for (const TransitionRows::Row& row : rows.rows()) worst = std::min(worst, row.value);
 ///
-/// Rows are given for what is near only: nearer than kBand_m of its margin.
+/// Rows are given for what is near only: nearer than kBand_m of its margin. Links that touch are
+/// kept from reaching deeper into what they touch than the judge allows, by their exact shapes; the
+/// others are kept away by the spheres that cover them.
 
+#include <locograph/planners/offline/stance/transition_places.h>
 #include <locograph/planners/offline/stance/transition_solver.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
 #include <locograph/world/convex_shape.h>
@@ -21,7 +24,7 @@ class TransitionRows {
  public:
   struct Row {
     TransitionFailure kind;
-    int first, second;  ///< joint; bounds of links; bound and surface
+    int first, second;  ///< joint; bounds of links; bound and place
     double value;       ///< at least 0 where it holds, margin included [m, rad]
   };
 
@@ -55,48 +58,27 @@ class TransitionRows {
  private:
   /// The bits of products depend on how numbers are aligned.
   using Aligned = std::vector<double, Eigen::aligned_allocator<double>>;
-  struct Plate {
-    std::string name;
-    Eigen::Isometry3d surface_from_world;
-    double half_x_m, half_y_m, depth_m;
-    bool endless;
-  };
-  struct Solid {
-    std::vector<ConvexShape> shapes;
-    std::vector<Eigen::Isometry3d> link_from_shape;
-  };
   struct CoarsePair {
     int pair;
-    Solid first, second;
-  };
-  /// A signed distance of a sphere and its gradient by the sphere's centre.
-  struct Distance {
-    double value;
-    Eigen::Vector3d gradient;
+    LinkShapes first, second;
   };
 
   void find_coarse_pairs();
-  Solid solid_of(int bound) const;
   ShapeDistance exact_distance(const CoarsePair& pair, double limit) const;
-  Distance to_plate(const Plate& plate, const Eigen::Vector3d& centre, double radius) const;
   double* add(TransitionFailure kind, int first, int second, double value);
   void add_joints();
   void add_balance();
   void add_torques();
   void add_self();
-  void add_plates();
-  void add_bars();
+  void add_places();
+  void keep_apart(int place, std::size_t bound);
+  void keep_shallow(int place, std::size_t bound, double deepest_m);
   void add_obstacles();
-  bool touches(int surface, int bound) const {
-    return touched_[static_cast<std::size_t>(surface) * robot_->bounds.size() +
-                    static_cast<std::size_t>(bound)];
-  }
 
   std::shared_ptr<const RobotParameter> robot_;
-  World world_;
+  TransitionPlaces places_;
   WorldDistance in_the_way_;
   bool anything_in_the_way_ = false;
-  std::vector<Plate> plates_;
   Eigen::VectorXd pair_weights_;
   std::vector<CoarsePair> coarse_;
   int size_;  ///< of the tangent
@@ -110,8 +92,7 @@ class TransitionRows {
   std::vector<ContactClosure> closures_;
   std::vector<std::string> contact_names_;
   std::vector<int> contact_of_row_, contact_links_;
-  std::vector<bool> touched_;  ///< surfaces, then bars, by bound
-  std::vector<bool> exempt_;   ///< bounds of links that touch: from map and obstacles
+  std::vector<bool> exempt_;  ///< bounds of links that touch: from map and obstacles
 
   Eigen::VectorXd closure_;
   Aligned closure_jacobian_;

@@ -259,6 +259,8 @@ struct TransitionSolver::Parts {
 TransitionSolver::TransitionSolver(std::shared_ptr<const RobotParameter> robot, World world)
     : parts_(std::make_unique<Parts>(std::move(robot), std::move(world))) {}
 TransitionSolver::~TransitionSolver() = default;
+TransitionSolver::TransitionSolver(const TransitionSolver& other)
+    : parts_(std::make_unique<Parts>(*other.parts_)) {}
 TransitionSolver::TransitionSolver(TransitionSolver&&) noexcept = default;
 
 TransitionResult TransitionSolver::solve(const TransitionProblem& problem,

@@ -21,7 +21,8 @@
 /// asked (check/judge.h); this solver shares nothing with the judge.
 ///
 /// Restarts begin from the start with what was violated moved at random. Deterministic for a seed.
-/// One solver for each thread.
+/// The result depends on the arguments alone, not on what was solved before. One solver for each
+/// thread; copies share what does not change.
 
 #include <locograph/planners/offline/stance/balance_region.h>
 #include <locograph/planners/offline/stance/torque_programme.h>
@@ -48,6 +49,8 @@ struct TransitionOptions {
   double obstacle_margin_m = 0.01;
   double balance_margin_m = 4e-3;  ///< of the centre of mass to the sides of the polygon
   double torque_margin = 0.03;     ///< the part of efforts left unused
+
+  bool operator==(const TransitionOptions&) const = default;
 };
 
 struct TransitionProblem {
@@ -57,6 +60,9 @@ struct TransitionProblem {
   Eigen::VectorXd start;
   Eigen::VectorXd preferred;  ///< a configuration whose joints the posture tends to
   std::uint64_t seed = 0;
+  /// The contacts of the smaller stance: links of others may touch, and not reach into what they
+  /// touch. Empty: those that are closed.
+  std::span<const Contact> held = {};
 };
 
 /// What was violated most where no posture was found.
@@ -87,6 +93,7 @@ class TransitionSolver {
   /// cannot be used.
   TransitionSolver(std::shared_ptr<const RobotParameter> robot, World world);
   ~TransitionSolver();
+  TransitionSolver(const TransitionSolver& other);
   TransitionSolver(TransitionSolver&&) noexcept;
 
   /// Throws Error for contacts that are not sound.

@@ -1,0 +1,102 @@
+#include <locograph/check/plan_ends.h>
+#include <locograph/check/violation_tally.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace locograph {
+namespace {
+
+std::string off_by(const std::string& what, double off_m, double off_rad) {
+  char text[64];
+  std::snprintf(text, sizeof text, " is %.3g m and %.3g rad away", off_m, off_rad);
+  return what + text;
+}
+
+/// What of the directions that a contact's kind holds is off [rad].
+double turned_rad(const Contact& contact, const Contact& asked) {
+  const ContactKind kind = asked.effector.kind;
+  const double tilted =
+      kind == ContactKind::kRung ? 0.0 : angle_between(contact.normal, asked.normal);
+  const bool in_yaw = kind == ContactKind::kSurface || kind == ContactKind::kRung;
+  if (!in_yaw || !asked.forward) return tilted;
+  if (!contact.forward) return std::numbers::pi;  // it may be anything
+  return std::max(tilted, angle_between(contact.normal.cross(*contact.forward),
+                                        asked.normal.cross(*asked.forward)));
+}
+
+std::string off_stance(const Stance& stance, const Stance& asked) {
+  for (const Contact& place : asked.contacts) {
+    const auto found = std::ranges::find(stance.contacts, place.name(), &Contact::name);
+    if (found == stance.contacts.end()) return place.name() + " does not touch";
+    const double off_m = (found->position - place.position).norm();
+    const double off_rad = turned_rad(*found, place);
+    if (off_m <= limits::kClosed_m && off_rad <= limits::kClosed_rad) continue;
+    return off_by(place.name(), off_m, off_rad);
+  }
+  if (stance.contacts.size() == asked.contacts.size()) return "";
+  return "something else touches";
+}
+
+std::string off_base(const Eigen::VectorXd& configuration, const TaskPlace& asked) {
+  if (configuration.size() < 7 || !configuration.allFinite()) return "there is no base";
+  const double x = configuration[3], y = configuration[4], z = configuration[5],
+               w = configuration[6];
+  const double heading = std::atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z);
+  const double off_m = (configuration.head<2>() - asked.base.head<2>()).norm();
+  const double off_rad = std::abs(std::remainder(heading - asked.base.z(), 2.0 * std::numbers::pi));
+  if (off_m <= asked.within_m && off_rad <= asked.within_rad) return "";
+  return off_by("the base", off_m, off_rad);
+}
+
+/// What is elsewhere than asked; empty: nothing.
+std::string off_place(const Motion& motion, std::size_t vertex, const TaskPlace& asked) {
+  if (asked.stance.contacts.empty()) return off_base(motion.configurations[vertex], asked);
+  const int stance = motion.stance_from.empty() ? -1 : motion.stance_from[vertex];
+  if (stance < 0) return "the stance is not known";
+  return off_stance(motion.stances.at(static_cast<std::size_t>(stance)), asked.stance);
+}
+
+}  // namespace
+
+PlanEnds plan_ends(const Motion& motion, const PlannedTask& task) {
+  PlanEnds ends;
+  ends.goals = static_cast<int>(task.goals.size());
+  ends.off_start = off_place(motion, 0, task.start);
+  const std::size_t vertices = motion.configurations.size(), goals = task.goals.size();
+  std::size_t reached = 0;
+  for (std::size_t i = 0; i < vertices; ++i) {
+    const bool last = i + 1 == vertices;
+    while (reached < goals && (reached + 1 < goals || last)) {
+      ends.off_goal = off_place(motion, i, task.goals[reached]);
+      if (!ends.off_goal.empty()) break;
+      ++reached;
+    }
+  }
+  ends.goals_reached = static_cast<int>(reached);
+  return ends;
+}
+
+std::vector<Violation> end_violations(const Motion& motion, const PlanEnds& ends,
+                                      const std::string& why_not) {
+  const std::size_t vertices = motion.configurations.size();
+  ViolationTally start("scenario_start", "count", 0.0, Worse::kHigher, vertices);
+  ViolationTally goals("scenario_goals", "count", 0.0, Worse::kHigher, vertices);
+  if (why_not.empty()) {
+    const Eigen::Vector3d nowhere = Eigen::Vector3d::Zero();
+    start.add(ends.starts() ? 0.0 : 1.0, 0, motion.time_s.front(), nowhere,
+              [&] { return ends.starts() ? "it begins there" : ends.off_start; });
+    goals.add(ends.goals - ends.goals_reached, static_cast<int>(vertices) - 1, motion.time_s.back(),
+              nowhere, [&] {
+                return ends.goals_reached == ends.goals
+                           ? "all are reached"
+                           : "goal " + std::to_string(ends.goals_reached + 1) + " of " +
+                                 std::to_string(ends.goals) + ": " + ends.off_goal;
+              });
+  }
+  return {start.result(why_not), goals.result(why_not)};
+}
+
+}  // namespace locograph

@@ -1,0 +1,64 @@
+#include <locograph/planners/offline/stance/transition_task.h>
+
+#include <cstring>
+
+namespace locograph {
+namespace {
+
+/// Of friction, areas and limits of force: what is left unused.
+constexpr double kRegionMargin = 0.1;
+
+}  // namespace
+
+bool same_task(const TransitionTask& a, const TransitionTask& b) {
+  return a.larger == b.larger && a.smaller == b.smaller && a.seed == b.seed &&
+         a.options == b.options && a.start.size() == b.start.size() &&
+         std::memcmp(a.start.data(), b.start.data(),
+                     static_cast<std::size_t>(a.start.size()) * sizeof(double)) == 0;
+}
+
+const BalanceRegion& BalanceRegions::of(const Footing& footing,
+                                        std::span<const BearingContact> contacts) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto found = regions_.find(footing);
+    if (found != regions_.end()) return found->second;
+  }
+  // Two threads may both get here, to the same region.
+  BalanceRegion region;
+  if (!contacts.empty()) region = balance_region(mass_kg_, contacts, kRegionMargin);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return regions_.emplace(footing, std::move(region)).first->second;
+}
+
+TaskSolver::TaskSolver(const StanceProblem& problem, BalanceRegions& regions)
+    : problem_(problem),
+      regions_(regions),
+      solver_(problem.robot, problem.world),
+      state_(*problem.robot->robot) {}
+
+TransitionResult TaskSolver::solve(const TransitionTask& task) {
+  TransitionProblem problem;
+  problem.closed = task.closed;
+  problem.held = task.held;
+  problem.balance = &regions_.of(task.smaller, task.bearing);
+  problem.start = task.start;
+  problem.preferred = problem_.start_configuration;
+  problem.seed = task.seed;
+  TransitionResult result = solver_.solve(problem, task.options);
+  if (result.found && problem_.check.enforce_torque_limits) ease_torques(task, problem, result);
+  return result;
+}
+
+void TaskSolver::ease_torques(const TransitionTask& task, TransitionProblem& problem,
+                              TransitionResult& result) {
+  TorqueProgramme torques(state_.robot(), task.bearing, problem_.check.effort_scale, kRegionMargin);
+  state_.update(result.configuration.data());
+  Eigen::VectorXd gradient;
+  if (torques.solve(state_, gradient) <= 1.0 - task.options.torque_margin) return;
+  problem.torques = &torques;
+  problem.start = result.configuration;
+  result = solver_.solve(problem, task.options);
+}
+
+}  // namespace locograph

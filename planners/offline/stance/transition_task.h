@@ -1,0 +1,65 @@
+#pragma once
+/// A transition as a value, and who works it out, on any thread.
+///
+///     BalanceRegions regions(mass_kg);
+///     TaskSolver solver(problem, regions);       // one for each thread
+///     const TransitionResult result = solver.solve(task);
+///
+/// The outcome depends on the task alone, bit for bit: not on what was solved before.
+
+#include <locograph/planners/offline/stance/footing.h>
+#include <locograph/planners/offline/stance/stance_planner.h>
+#include <locograph/planners/offline/stance/transition_solver.h>
+
+#include <mutex>
+#include <unordered_map>
+#include <vector>
+
+namespace locograph {
+
+/// From one footing to another with one contact more or less, whichever way.
+struct TransitionTask {
+  Footing larger, smaller;
+  std::vector<Contact> closed = {};          ///< of the larger one
+  std::vector<Contact> held = {};            ///< of the smaller one
+  std::vector<BearingContact> bearing = {};  ///< of the smaller one
+  Eigen::VectorXd start = {};
+  std::uint64_t seed = 0;
+  TransitionOptions options = {};
+};
+
+/// Whether two tasks of one search ask for the same, to the last bit.
+bool same_task(const TransitionTask& a, const TransitionTask& b);
+
+/// What footings balance, each worked out once. Threads may share it.
+class BalanceRegions {
+ public:
+  explicit BalanceRegions(double mass_kg) : mass_kg_(mass_kg) {}
+  /// The reference stays valid.
+  const BalanceRegion& of(const Footing& footing, std::span<const BearingContact> contacts);
+
+ private:
+  double mass_kg_;
+  std::mutex mutex_;
+  std::unordered_map<Footing, BalanceRegion, FootingHash> regions_;
+};
+
+/// Keeps references to both arguments. Copies are for other threads.
+class TaskSolver {
+ public:
+  TaskSolver(const StanceProblem& problem, BalanceRegions& regions);
+
+  /// Throws Error for contacts that are not sound.
+  TransitionResult solve(const TransitionTask& task);
+
+ private:
+  void ease_torques(const TransitionTask& task, TransitionProblem& problem,
+                    TransitionResult& result);
+
+  const StanceProblem& problem_;
+  BalanceRegions& regions_;
+  TransitionSolver solver_;
+  RobotState state_;
+};
+
+}  // namespace locograph

@@ -1,0 +1,46 @@
+#pragma once
+/// Boxes in space, and which of them are near: for worlds with thousands of surfaces.
+///
+///     const BoxTree tree(bounds_of(world.surfaces));
+///     for (const int s : tree.touching(box_around(point, 0.5))) use(world.surfaces[s]);
+///
+/// Immutable; queries are thread-safe. World frame, metres. Boxes may be without an end.
+
+#include <locograph/world/world.h>
+
+#include <Eigen/Geometry>
+#include <span>
+#include <vector>
+
+namespace locograph {
+
+class BoxTree {
+ public:
+  BoxTree() = default;
+  explicit BoxTree(const std::vector<Eigen::AlignedBox3d>& boxes);
+
+  /// Numbers of the boxes that have a point in common with this one, ascending.
+  std::vector<int> touching(const Eigen::AlignedBox3d& box) const;
+
+ private:
+  struct Node {
+    Eigen::AlignedBox3d bounds;
+    int right = -1;   ///< the right child; the left one follows its parent; -1: a leaf
+    int number = -1;  ///< of a leaf's box
+  };
+
+  void build(const std::vector<Eigen::AlignedBox3d>& boxes, std::span<int> numbers);
+
+  std::vector<Node> nodes_;
+  std::vector<int> endless_;  ///< boxes that are near everywhere, or nearly
+};
+
+/// All points no further from this one along any axis.
+Eigen::AlignedBox3d box_around(const Eigen::Vector3d& point, double reach_m);
+Eigen::AlignedBox3d bounds_of(const Surface& surface);
+std::vector<Eigen::AlignedBox3d> bounds_of(std::span<const Surface> surfaces);
+Eigen::AlignedBox3d bounds_of(const SolidBox& box);
+/// For each surface the first solid that it is part of, -1: none. The solids' faces are known so.
+std::vector<int> solids_of_surfaces(const World& world);
+
+}  // namespace locograph
