@@ -10,6 +10,7 @@
 #include <locograph/common/input_file.h>
 #include <locograph/common/stop_signals.h>
 #include <locograph/planners/scenario/scenario.h>
+#include <locograph/plugins/configuration/plan_parameters.h>
 
 #include <algorithm>
 #include <chrono>
@@ -322,7 +323,7 @@ Command add_campaign(OptionParser& app) {
   parser
       .add_option("--move-contacts", o.move_contacts_m,
                   "As for plan: each run moves the contacts of start and goals by its seed [m]")
-      .between(0.0, 10.0)
+      .between(0.0, ContactMoves::kFurthest_m)
       .show_default();
   parser
       .add_option("--threads", o.threads,

@@ -300,7 +300,7 @@ Command add_plan(OptionParser& app) {
       .add_option("--move-contacts", o.move_contacts_m,
                   "Another task of the kind: each contact of start and goals is moved on its "
                   "surface or bar at random, by the seed, up to so far along each axis [m]")
-      .between(0.0, 10.0)
+      .between(0.0, ContactMoves::kFurthest_m)
       .show_default();
   parser
       .add_option("--threads", o.threads,

@@ -77,7 +77,7 @@ ClearanceSearch::Sample ClearanceSearch::sample(int vertex, double fraction,
                               .touches = touches,
                               .cutoff_m = context_.cutoff_m + further_m_};
   CollisionWorld::Surroundings around = context_.exact.surroundings(query);
-  if (keeps_from_surfaces_) keep_from_surfaces(stance, query, around.obstacle);
+  if (keeps_from_surfaces_) keep_from_surfaces(vertex, stance, query, around.obstacle);
   sample.distances = {around.obstacle.distance_m, around.surface.distance_m,
                       around.touched.distance_m};
   add(0, around.obstacle, vertex, time_s);
@@ -101,10 +101,15 @@ void ClearanceSearch::add_grasps(int vertex, const JudgedStance* stance, const L
   }
 }
 
-void ClearanceSearch::keep_from_surfaces(const JudgedStance* stance, CollisionWorld::Query query,
+void ClearanceSearch::keep_from_surfaces(int vertex, const JudgedStance* stance,
+                                         CollisionWorld::Query query,
                                          CollisionWorld::Closest& nearest) const {
+  // The end of a step is looked at with the step's stance.
+  const bool ends_step = vertex > 0 && stance != context_.stance_from(vertex);
+  const std::size_t from = std::size_t(ends_step ? vertex - 1 : vertex);
   std::vector<CollisionWorld::Touch> touches(query.touches.begin(), query.touches.end());
-  for (const JudgedStance* other : around_.at(stance)) {
+  for (const JudgedStance* other : {before_[from], after_[from]}) {
+    if (other == nullptr) continue;
     const std::vector<CollisionWorld::Touch> more = other->touches(query.world_from_link);
     touches.insert(touches.end(), more.begin(), more.end());
   }
@@ -115,21 +120,15 @@ void ClearanceSearch::keep_from_surfaces(const JudgedStance* stance, CollisionWo
 }
 
 void ClearanceSearch::find_stances_around() {
-  around_ = {{nullptr, {}}};
-  for (const JudgedStance& stance : context_.stances) around_[&stance];
-  const auto add = [this](const JudgedStance* to, const JudgedStance* other) {
-    std::vector<const JudgedStance*>& others = around_[to];
-    if (std::ranges::find(others, other) == others.end()) others.push_back(other);
-  };
-  const JudgedStance* before = nullptr;
-  for (std::size_t i = 0; i < context_.vertices(); ++i) {
-    const JudgedStance* stance = context_.stance_from(int(i));
-    if (i > 0 && stance == before) continue;
-    if (before != nullptr && stance != nullptr) {
-      add(stance, before);
-      add(before, stance);
-    }
-    before = stance;
+  const std::size_t vertices = context_.vertices();
+  before_.assign(vertices, nullptr);
+  after_.assign(vertices, nullptr);
+  const auto stance = [this](std::size_t i) { return context_.stance_from(int(i)); };
+  for (std::size_t i = 1; i < vertices; ++i) {
+    before_[i] = stance(i) == stance(i - 1) ? before_[i - 1] : stance(i - 1);
+  }
+  for (std::size_t i = vertices; i-- > 1;) {
+    after_[i - 1] = stance(i) == stance(i - 1) ? after_[i] : stance(i);
   }
 }
 

@@ -28,7 +28,6 @@
 #include <locograph/check/violation_tally.h>
 
 #include <array>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -68,7 +67,7 @@ class ClearanceSearch {
                   std::vector<CollisionWorld::Touch>& touches) const;
   /// `nearest` becomes what links are to keep away from of surfaces, bars and solids, if that is
   /// nearer.
-  void keep_from_surfaces(const JudgedStance* stance, CollisionWorld::Query query,
+  void keep_from_surfaces(int vertex, const JudgedStance* stance, CollisionWorld::Query query,
                           CollisionWorld::Closest& nearest) const;
   void find_stances_around();
   void run_step(int step, const JudgedStance* stance, const Sample& from, const Sample& to);
@@ -90,7 +89,8 @@ class ClearanceSearch {
   double further_m_;
   std::vector<Channel> channels_;
   bool keeps_from_surfaces_ = false;
-  std::map<const JudgedStance*, std::vector<const JudgedStance*>> around_;  // before and after it
+  // Of each vertex: the other stances next to the one from there on; null: none.
+  std::vector<const JudgedStance*> before_, after_;
   bool self_ = false;
   int samples_ = 0;
 };

@@ -27,10 +27,14 @@ double turned_rad(const Contact& contact, const Contact& asked) {
                                         asked.normal.cross(*asked.forward)));
 }
 
-std::string off_stance(const Stance& stance, const Stance& asked) {
+/// Only a wheel that is locked is where its contact is; in plans of stances all are.
+std::string off_stance(const Stance& stance, const Stance& asked, bool all_locked) {
   for (const Contact& place : asked.contacts) {
     const auto found = std::ranges::find(stance.contacts, place.name(), &Contact::name);
     if (found == stance.contacts.end()) return place.name() + " does not touch";
+    if (found->effector.kind == ContactKind::kWheel && !found->locked && !all_locked) {
+      return place.name() + " is not locked and may be elsewhere";
+    }
     const double off_m = (found->position - place.position).norm();
     const double off_rad = turned_rad(*found, place);
     if (off_m <= limits::kClosed_m && off_rad <= limits::kClosed_rad) continue;
@@ -56,7 +60,8 @@ std::string off_place(const Motion& motion, std::size_t vertex, const TaskPlace&
   if (asked.stance.contacts.empty()) return off_base(motion.configurations[vertex], asked);
   const int stance = motion.stance_from.empty() ? -1 : motion.stance_from[vertex];
   if (stance < 0) return "the stance is not known";
-  return off_stance(motion.stances.at(static_cast<std::size_t>(stance)), asked.stance);
+  return off_stance(motion.stances.at(static_cast<std::size_t>(stance)), asked.stance,
+                    motion.stances_only);
 }
 
 }  // namespace
@@ -80,14 +85,16 @@ PlanEnds plan_ends(const Motion& motion, const PlannedTask& task) {
 }
 
 std::vector<Violation> end_violations(const Motion& motion, const PlanEnds& ends,
-                                      const std::string& why_not) {
+                                      const std::string& no_start, const std::string& no_goals) {
   const std::size_t vertices = motion.configurations.size();
   ViolationTally start("scenario_start", "count", 0.0, Worse::kHigher, vertices);
   ViolationTally goals("scenario_goals", "count", 0.0, Worse::kHigher, vertices);
-  if (why_not.empty()) {
-    const Eigen::Vector3d nowhere = Eigen::Vector3d::Zero();
+  const Eigen::Vector3d nowhere = Eigen::Vector3d::Zero();
+  if (no_start.empty()) {
     start.add(ends.starts() ? 0.0 : 1.0, 0, motion.time_s.front(), nowhere,
               [&] { return ends.starts() ? "it begins there" : ends.off_start; });
+  }
+  if (no_goals.empty()) {
     goals.add(ends.goals - ends.goals_reached, static_cast<int>(vertices) - 1, motion.time_s.back(),
               nowhere, [&] {
                 return ends.goals_reached == ends.goals
@@ -96,7 +103,7 @@ std::vector<Violation> end_violations(const Motion& motion, const PlanEnds& ends
                                  std::to_string(ends.goals) + ": " + ends.off_goal;
               });
   }
-  return {start.result(why_not), goals.result(why_not)};
+  return {start.result(no_start), goals.result(no_goals)};
 }
 
 }  // namespace locograph

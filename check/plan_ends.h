@@ -8,7 +8,8 @@
 /// The start and the last goal are what the motion begins and ends with; the other goals are
 /// reached in passing, in their order. A stance is one of these where it has the same end
 /// effectors, by name, and each of them at its place, up to what a contact may be off
-/// (limits.h): its position, and the directions that its kind holds. That the robot is there, too,
+/// (limits.h): its position, and the directions that its kind holds; a wheel is locked, else it may
+/// have rolled away from its place. That the robot is there, too,
 /// is what the contacts of the motion are judged for. Any posture that holds the contacts will do.
 
 #include <locograph/check/check_report.h>
@@ -36,9 +37,9 @@ struct PlannedTask {
 PlanEnds plan_ends(const Motion& motion, const PlannedTask& task);
 
 /// Constraints of whole plans, in this order: `scenario_start` (count: 1 where it begins elsewhere)
-/// and `scenario_goals` (count of those that are not reached). why_not: why they are not judged;
-/// empty: they are.
+/// and `scenario_goals` (count of those that are not reached). no_start, no_goals: why they are not
+/// judged; empty: they are.
 std::vector<Violation> end_violations(const Motion& motion, const PlanEnds& ends,
-                                      const std::string& why_not);
+                                      const std::string& no_start, const std::string& no_goals);
 
 }  // namespace locograph

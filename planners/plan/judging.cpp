@@ -91,11 +91,12 @@ PlannedTask task_of(const Scenario& scenario, const World& world, const ContactM
 
 /// Says of the report where the motion begins and what it gets to.
 void judge_ends(const Motion& motion, const Judging& judging, CheckReport& report) {
-  std::string why_not;
-  if (judging.incomplete) why_not = "the plan says that it is incomplete";
-  if (!judging.task) why_not = "the plan names no scenario";
+  std::string no_start, no_goals;
+  if (judging.incomplete) no_goals = "the plan says that it is incomplete";
+  if (!judging.task) no_start = no_goals = "the plan names no scenario";
   if (judging.task) report.ends = plan_ends(motion, *judging.task);
-  for (Violation& violation : end_violations(motion, report.ends.value_or(PlanEnds()), why_not)) {
+  for (Violation& violation :
+       end_violations(motion, report.ends.value_or(PlanEnds()), no_start, no_goals)) {
     if (violation.violated) report.feasible = false;
     report.violations.push_back(std::move(violation));
   }
@@ -160,7 +161,10 @@ Judging judging_of(const Graph& graph, const Plan& plan, const JudgingRequest& r
     judging.world.surfaces.push_back(ground());
     judging.options.surfaces_known = false;
   }
-  if (scenario && origin) judging.task = task_of(*scenario, judging.world, plan.moves);
+  // A posture that names no scenario is part of no task.
+  if (scenario && (origin || plan.slots.size() > 1)) {
+    judging.task = task_of(*scenario, judging.world, plan.moves);
+  }
   if (contacts && !other) {
     Stance stance = load_contacts(contacts->file, *plan.robot->robot);
     for (const Contact& contact : stance.contacts)

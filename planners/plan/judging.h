@@ -53,7 +53,7 @@ struct Judging {
   std::string scenario;             ///< by whose word, see Scenario::source; empty: no one's
   std::optional<PlannedTask> task;  ///< of a plan that names a scenario: that of `scenario`
   ContactMoves moves;               ///< by the plan's word, of the contacts of the task
-  bool incomplete = false;          ///< the plan says so: its ends are told, and not judged
+  bool incomplete = false;          ///< by its word: goals are told, and not judged
 };
 
 /// Throws Error for files that cannot be used, for a plan that names both a scenario and a contacts

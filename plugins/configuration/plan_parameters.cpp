@@ -9,8 +9,9 @@ namespace {
 ContactMoves read_moves(FieldReader& in) {
   ContactMoves moves;
   moves.most_m = in.number();
-  if (!(moves.most_m > 0.0)) {
-    in.fail("contacts moved by up to " + std::to_string(moves.most_m), "more than 0 m");
+  if (!(moves.most_m > 0.0 && moves.most_m <= ContactMoves::kFurthest_m)) {
+    in.fail("contacts moved by up to " + std::to_string(moves.most_m) + " m",
+            "more than 0 m, and 10 m at most");
   }
   const std::string seed = in.word();
   const char* const end = seed.data() + seed.size();

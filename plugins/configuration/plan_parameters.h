@@ -26,7 +26,9 @@ inline constexpr int kMostDraws = 20;
 /// The contacts of a scenario's start and goals moved at random, see
 /// planners/scenario/task_stances.h.
 struct ContactMoves {
-  double most_m = 0.0;  ///< 0: they stay
+  /// As far as tasks may be moved; others are other tasks.
+  static constexpr double kFurthest_m = 10.0;
+  double most_m = 0.0;  ///< 0: they stay; kFurthest_m at most
   std::uint64_t seed = 0;
   int draws = 1;  ///< of the start's contacts, up to kMostDraws; the last one counts
 };

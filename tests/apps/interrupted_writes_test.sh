@@ -45,7 +45,8 @@ for ((run = 0; run < runs; ++run)); do
   job=$!
   temporary=(out/.graph.g2o.locograph-*)
   if ((run % 2)); then
-    until [ -e "${temporary[0]}" ] || ! kill -0 $job 2>/dev/null; do
+    # One that has ended has no executable any more; `kill -0` finds it until the shell waits for it.
+    until [ -e "${temporary[0]}" ] || [ ! -e /proc/$job/exe ]; do
       temporary=(out/.graph.g2o.locograph-*)
     done
     for ((i = RANDOM % 2000; i > 0; --i)); do :; done

@@ -1,6 +1,7 @@
 // Plan files that lie: `check` refuses each of them by the name of what it breaks.
 #include <apps/command_runner.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "apps/standing_plan.h"
@@ -255,7 +256,10 @@ TEST(LyingPlan, APlanOfStancesBeginsElsewhereOrDoesNotArrive) {
   EXPECT_TRUE(refused(runner, late.text(), "scenario_start"));
   early.configurations.pop_back();
   EXPECT_TRUE(refused(runner, early.text(), "scenario_goals"));
-  // What says that it is a part is told of, and no more.
+  // What says that it is a part may end early, and begins at the start all the same.
+  late = runner.plan_that_says("incomplete");
+  late.configurations.erase(late.configurations.begin());
+  EXPECT_TRUE(refused(runner, late.text(), "scenario_start"));
   early = runner.plan_that_says("incomplete");
   early.configurations.pop_back();
   runner.write("part.g2o", early.text());
@@ -266,7 +270,45 @@ TEST(LyingPlan, APlanOfStancesBeginsElsewhereOrDoesNotArrive) {
   EXPECT_EQ(part.json()["incomplete"], true);
   const std::string words = runner.run("check part.g2o").out;
   EXPECT_NE(words.find("begins at the start, and reaches 0 of 1 goal"), std::string::npos) << words;
-  EXPECT_NE(words.find("not judged: scenario_start, scenario_goals"), std::string::npos) << words;
+  EXPECT_NE(words.find("not judged: scenario_goals"), std::string::npos) << words;
+}
+
+TEST(LyingPlan, APlanThatNamesNoScenarioMissesTheEndsOfTheOneGiven) {
+  const StandingUp runner;
+  PlanText plan = runner.plan();
+  std::erase_if(plan.parameters,
+                [](const std::string& line) { return line.starts_with("PARAMS_SCENARIO "); });
+  plan.configurations.erase(plan.configurations.begin());
+  runner.write("late.g2o", plan.text());
+  const Outcome outcome = runner.run("check late.g2o --scenario standing_up");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.out.find("scenario_start"), std::string::npos) << outcome.out;
+}
+
+TEST(LyingPlan, AClearanceIsJudgedHoweverOftenAStanceComesBack) {
+  const StandingUp runner;
+  PlanText plan = runner.plan();
+  // To and fro between the first two stances, the first one under another number each time.
+  const std::string first = plan.configurations[0].stance;
+  const auto stance = std::ranges::find_if(plan.parameters, [&](const std::string& line) {
+    return line.starts_with("PARAMS_STANCE " + first + " ");
+  });
+  ASSERT_NE(stance, plan.parameters.end());
+  const std::string contacts = stance->substr(("PARAMS_STANCE " + first).size());
+  const PlanText::Configuration there = plan.configurations[1];
+  for (int i = 0; i < 30; ++i) {
+    const std::string number = std::to_string(1000 + i);
+    plan.parameters.push_back("PARAMS_STANCE " + number + contacts);
+    PlanText::Configuration back = there, again = there;
+    back.id = 1000 + 2 * i;
+    again.id = back.id + 1;
+    back.stance = number;
+    plan.configurations.insert(plan.configurations.begin() + 2, {back, again});
+  }
+  runner.write("often.g2o", plan.text());
+  EXPECT_EQ(runner.run("check often.g2o").exit_code, 0);
+  const Outcome outcome = runner.run("check often.g2o --clearance 0.0001");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
 }
 
 TEST(LyingPlan, AnotherScenarioHasOtherGoals) {

@@ -97,6 +97,19 @@ TEST(PlanEnds, OnlyDirectionsThatAKindHoldsCount) {
   EXPECT_FALSE(starts(turned(asked, 0.1), asked)) << "along another bar";
 }
 
+TEST(PlanEnds, AWheelThatMayRollIsNowhere) {
+  Contact wheel = at("wheel", 0.0);
+  wheel.effector.kind = ContactKind::kWheel;
+  const PlannedTask task{.start = {.stance = {{wheel}}}, .goals = {}};
+  Motion motion = motion_of({Stance{{wheel}}});
+  EXPECT_EQ(plan_ends(motion, task).off_start, "wheel is not locked and may be elsewhere");
+  motion.stances_only = true;
+  EXPECT_TRUE(plan_ends(motion, task).starts()) << "all wheels stand still";
+  motion.stances_only = false;
+  motion.stances[0].contacts[0].locked = true;
+  EXPECT_TRUE(plan_ends(motion, task).starts());
+}
+
 TEST(PlanEnds, ADriveBeginsAndEndsWhereItsBaseIs) {
   const PlannedTask drive{
       .start = {}, .goals = {{.base = {2.0, 1.0, 3.1}, .within_m = 0.25, .within_rad = 0.25}}};
@@ -118,7 +131,7 @@ TEST(PlanEnds, ADriveBeginsAndEndsWhereItsBaseIs) {
 TEST(PlanEnds, AreConstraintsThatAreJudgedOrSayWhyNot) {
   const Motion motion = motion_of({kMiddle, kStart});
   const PlanEnds ends = plan_ends(motion, kTask);
-  const std::vector<Violation> judged = end_violations(motion, ends, "");
+  const std::vector<Violation> judged = end_violations(motion, ends, "", "");
   ASSERT_EQ(judged.size(), 2u);
   EXPECT_EQ(judged[0].constraint, "scenario_start");
   EXPECT_TRUE(judged[0].violated);
@@ -126,12 +139,15 @@ TEST(PlanEnds, AreConstraintsThatAreJudgedOrSayWhyNot) {
   EXPECT_EQ(judged[1].worst, 1.0);
   EXPECT_EQ(judged[1].at_vertex, 1);
   EXPECT_EQ(judged[1].what, "goal 2 of 2: left is 0.5 m and 0 rad away");
-  for (const Violation& told : end_violations(motion, ends, "it is incomplete")) {
+  for (const Violation& told : end_violations(motion, ends, "no scenario", "no scenario")) {
     EXPECT_FALSE(told.judged);
     EXPECT_FALSE(told.violated);
     EXPECT_EQ(told.count, 0);
-    EXPECT_EQ(told.why_not, "it is incomplete");
+    EXPECT_EQ(told.why_not, "no scenario");
   }
+  const std::vector<Violation> part = end_violations(motion, ends, "", "it is incomplete");
+  EXPECT_TRUE(part[0].violated);
+  EXPECT_FALSE(part[1].judged);
 }
 
 }  // namespace

@@ -44,8 +44,7 @@ struct TransitionSolver::Parts {
   Eigen::LLT<Eigen::MatrixXd> factor, small_factor;
   std::vector<bool> active;
 
-  Parts(std::shared_ptr<const RobotParameter> robot, World world)
-      : rows(std::move(robot), std::move(world)), size(rows.robot().tangent_size()) {
+  explicit Parts(TransitionRows of) : rows(std::move(of)), size(rows.robot().tangent_size()) {
     hessian.resize(size, size);
     step.resize(size);
     away.resize(size);
@@ -257,10 +256,10 @@ struct TransitionSolver::Parts {
 };
 
 TransitionSolver::TransitionSolver(std::shared_ptr<const RobotParameter> robot, World world)
-    : parts_(std::make_unique<Parts>(std::move(robot), std::move(world))) {}
+    : parts_(std::make_unique<Parts>(TransitionRows(std::move(robot), std::move(world)))) {}
 TransitionSolver::~TransitionSolver() = default;
 TransitionSolver::TransitionSolver(const TransitionSolver& other)
-    : parts_(std::make_unique<Parts>(*other.parts_)) {}
+    : parts_(std::make_unique<Parts>(other.parts_->rows)) {}
 TransitionSolver::TransitionSolver(TransitionSolver&&) noexcept = default;
 
 TransitionResult TransitionSolver::solve(const TransitionProblem& problem,
