@@ -13,6 +13,7 @@
 #include <locograph/planners/offline/stance/stance_tree.h>
 #include <locograph/planners/offline/stance/standing_wheels.h>
 #include <locograph/planners/offline/stance/transition_rows.h>
+#include <locograph/planners/offline/timing/path_timing.h>
 #include <locograph/planners/online/refine.h>
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
@@ -123,6 +124,21 @@ extern const std::size_t bound;
 extern const Eigen::Vector3d centre;
 extern const double radius;
 }  // namespace offline_stance_transition_places_h
+namespace offline_timing_effort_rows_h {
+extern const std::vector<Eigen::VectorXd> waypoints;
+extern const TimingLimits limits;
+}  // namespace offline_timing_effort_rows_h
+namespace offline_timing_path_spline_h {
+extern const std::vector<Eigen::VectorXd> waypoints;
+}
+namespace offline_timing_path_timing_h {
+extern const std::vector<Eigen::VectorXd> waypoints;
+extern const Scenario scenario;
+}  // namespace offline_timing_path_timing_h
+namespace offline_timing_speed_profile_h {
+extern const Scenario scenario;
+extern const PathSpline path;
+}  // namespace offline_timing_speed_profile_h
 namespace offline_stance_transition_rows_h {
 extern const std::shared_ptr<const RobotParameter> robot;
 extern const TransitionProblem problem;
