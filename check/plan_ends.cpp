@@ -44,20 +44,36 @@ std::string off_stance(const Stance& stance, const Stance& asked, bool all_locke
   return "something else touches";
 }
 
-std::string off_base(const Eigen::VectorXd& configuration, const TaskPlace& asked) {
-  if (configuration.size() < 7 || !configuration.allFinite()) return "there is no base";
-  const double x = configuration[3], y = configuration[4], z = configuration[5],
-               w = configuration[6];
-  const double heading = std::atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z);
+bool has_base(const Eigen::VectorXd& q) { return q.size() >= 7 && q.allFinite(); }
+
+double heading_of(const Eigen::VectorXd& q) {
+  return std::atan2(2.0 * (q[6] * q[5] + q[3] * q[4]),
+                    q[6] * q[6] + q[3] * q[3] - q[4] * q[4] - q[5] * q[5]);
+}
+
+/// Heading at a vertex, full turns counted: a step turns by the shorter way, as it is judged.
+double heading_at(const Motion& motion, std::size_t vertex) {
+  double heading = heading_of(motion.configurations[0]);
+  for (std::size_t i = 1; i <= vertex; ++i) {
+    heading +=
+        std::remainder(heading_of(motion.configurations[i]) - heading, 2.0 * std::numbers::pi);
+  }
+  return heading;
+}
+
+std::string off_base(const Motion& motion, std::size_t vertex, const TaskPlace& asked) {
+  const auto end = motion.configurations.begin() + static_cast<std::ptrdiff_t>(vertex) + 1;
+  if (!std::all_of(motion.configurations.begin(), end, has_base)) return "there is no base";
+  const Eigen::VectorXd& configuration = motion.configurations[vertex];
   const double off_m = (configuration.head<2>() - asked.base.head<2>()).norm();
-  const double off_rad = std::abs(std::remainder(heading - asked.base.z(), 2.0 * std::numbers::pi));
+  const double off_rad = std::abs(heading_at(motion, vertex) - asked.base.z());
   if (off_m <= asked.within_m && off_rad <= asked.within_rad) return "";
   return off_by("the base", off_m, off_rad);
 }
 
 /// What is elsewhere than asked; empty: nothing.
 std::string off_place(const Motion& motion, std::size_t vertex, const TaskPlace& asked) {
-  if (asked.stance.contacts.empty()) return off_base(motion.configurations[vertex], asked);
+  if (asked.stance.contacts.empty()) return off_base(motion, vertex, asked);
   const int stance = motion.stance_from.empty() ? -1 : motion.stance_from[vertex];
   if (stance < 0) return "the stance is not known";
   return off_stance(motion.stances.at(static_cast<std::size_t>(stance)), asked.stance,

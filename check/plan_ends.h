@@ -23,7 +23,8 @@ namespace locograph {
 
 struct TaskPlace {
   Stance stance = {};  ///< all that touches; without contacts: of a drive, see base
-  /// Where the base is, seen from above: x, y [m], heading [rad].
+  /// Where the base is, seen from above: x, y [m], heading [rad], full turns since the motion began
+  /// counted: a drive round a circle is no rest.
   Eigen::Vector3d base = Eigen::Vector3d::Zero();
   double within_m = limits::kClosed_m, within_rad = limits::kClosed_rad;  ///< of base
 };

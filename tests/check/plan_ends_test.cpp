@@ -128,6 +128,30 @@ TEST(PlanEnds, ADriveBeginsAndEndsWhereItsBaseIs) {
   EXPECT_FALSE(plan_ends(motion, drive).starts());
 }
 
+TEST(PlanEnds, ADriveRoundACircleIsNoRest) {
+  const auto heading = [](double angle) {
+    Eigen::VectorXd q = Eigen::VectorXd::Zero(7);
+    q[5] = std::sin(0.5 * angle);
+    q[6] = std::cos(0.5 * angle);
+    return q;
+  };
+  const PlannedTask round{
+      .start = {},
+      .goals = {{.base = {0.0, 0.0, 2.0 * M_PI}, .within_m = 0.25, .within_rad = 0.25}}};
+  Motion motion = motion_of({kStart, kStart, kStart, kStart, kStart});
+  for (std::size_t i = 0; i < 5; ++i) motion.configurations[i] = heading(0.0);
+  EXPECT_EQ(plan_ends(motion, round).goals_reached, 0);
+  EXPECT_EQ(plan_ends(motion, round).off_goal, "the base is 0 m and 6.28 rad away");
+  for (int i = 0; i < 5; ++i) {
+    motion.configurations[static_cast<std::size_t>(i)] = heading(0.5 * M_PI * i);
+  }
+  EXPECT_EQ(plan_ends(motion, round).goals_reached, 1);
+  for (int i = 0; i < 5; ++i) {
+    motion.configurations[static_cast<std::size_t>(i)] = heading(-0.5 * M_PI * i);
+  }
+  EXPECT_EQ(plan_ends(motion, round).goals_reached, 0) << "the wrong way round";
+}
+
 TEST(PlanEnds, AreConstraintsThatAreJudgedOrSayWhyNot) {
   const Motion motion = motion_of({kMiddle, kStart});
   const PlanEnds ends = plan_ends(motion, kTask);

@@ -73,8 +73,7 @@ TEST(ComanAndABox, StandsOnItsTopAsOnTheGround) {
 /// 0.05 m on a joint, is the body above.
 class ShinOnAStone : public ::testing::Test {
  protected:
-  /// The shin is turned by an angle about y about the ball, which touches the stone's top at x.
-  CheckReport check(double x, double angle, const CheckOptions& options = {}) const {
+  static Contact ball() {
     Contact contact;
     contact.effector = {.name = "foot",
                         .link = "foot",
@@ -82,6 +81,12 @@ class ShinOnAStone : public ::testing::Test {
                         .radius_m = 0.02,
                         .friction = 0.5,
                         .max_force_N = 1000.0};
+    return contact;
+  }
+
+  /// The shin is turned by an angle about y about the ball, which touches the stone's top at x.
+  CheckReport check(double x, double angle, const CheckOptions& options = {}) const {
+    Contact contact = ball();
     contact.position.x() = x;
     Eigen::VectorXd q = robot_->neutral_configuration();
     const Eigen::Quaterniond turned(Eigen::AngleAxisd(angle, Vector3d::UnitY()));
@@ -177,13 +182,7 @@ TEST_F(ShinOnAStone, KeepsTheClearanceThatIsAskedForFromAllThatItDoesNotTouch) {
 TEST_F(ShinOnAStone, MayLeaveWhatItTouchesWhereAClearanceIsAskedFor) {
   CheckOptions options;
   options.min_clearance_m = 0.05;
-  Contact contact;
-  contact.effector = {.name = "foot",
-                      .link = "foot",
-                      .kind = ContactKind::kPoint,
-                      .radius_m = 0.02,
-                      .friction = 0.5,
-                      .max_force_N = 1000.0};
+  Contact contact = ball();
   Contact other = contact;  // touches elsewhere: the foot is in the air
   other.position.z() = 1.0;
   Eigen::VectorXd q = robot_->neutral_configuration();
