@@ -50,6 +50,7 @@ ExitCode check(const CommandOptions& options) {
     judging.options.enforce_torque_limits = options.torques == "enforce";
   }
   if (options.until_s != kNotGiven) judging.options.until_s = options.until_s;
+  judging.options.threads = options.threads;
   const CheckReport report = check_plan(file, judging);
   progress.reset();
   // Vertices are named by their id in the file.

@@ -3,7 +3,7 @@
 /// between the vertices where the margin is so small that the motion could use it up.
 ///
 ///     BalanceAlong balance(context);
-///     balance.run();
+///     balance.run(threads);
 ///     balance.report(report.violations);
 ///
 /// What bears is what of each contact lies on the surfaces and bars of the world (judged_stance.h),
@@ -13,13 +13,25 @@
 /// How far a margin can fall is estimated, not bounded: by 10 for each metre that contacts move as
 /// seen from the centre of mass, or that gravity turns at 1 m; on an area of half size h below
 /// 0.1 m, by 1 / h. Where the ends of an interval and its path leave room for a margin below the
-/// limit, the interval is halved, down to CheckOptions::balance_resolution_m of path.
+/// limit, the interval is halved, down to CheckOptions::balance_resolution_m of path. h is the
+/// least of all vertices and of the step.
+///
+/// Most linear programmes are not needed. The report tells the least margin and the largest of the
+/// least torques of the whole motion; where wrenches found nearby prove (nearby_balance.h) that a
+/// sample is inside all limits and comes near neither, by more than what counts as equal
+/// (violation_tally.h), its programme cannot change the report, and is left out. What is known when
+/// that is decided depends on the place along the motion only: first every sixteenth vertex, then
+/// the vertices in between, in pieces of sixteen, then the steps. The same report for any number of
+/// threads, and with CheckOptions::prove_nearby off.
 
 #include <locograph/check/balance_certificate.h>
+#include <locograph/check/balance_worker.h>
 #include <locograph/check/check_context.h>
 #include <locograph/check/motion_rates.h>
 #include <locograph/check/violation_tally.h>
+#include <locograph/common/thread_pool.h>
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -29,7 +41,7 @@ class BalanceAlong {
  public:
   explicit BalanceAlong(CheckContext& context);
 
-  void run();
+  void run(ThreadPool& threads);
   /// static_balance, torque_limits.
   void report(std::vector<Violation>& violations) const;
 
@@ -38,27 +50,15 @@ class BalanceAlong {
   std::optional<double> max_torque_ratio() const;
 
  private:
-  using Half = MotionRates::Half;
-  struct Sample {
-    double fraction = 0.0, margin = 0.0;
-    std::vector<Eigen::Vector3d> arms;  // contacts from the centre of mass; gravity; base axes
-  };
-
-  /// At a vertex, or in a half of the step from it.
-  Sample judge(int vertex, double fraction, std::optional<Half> half, const JudgedStance& stance);
-  void run_half(int step, Half half, const JudgedStance& stance, double margin_at_vertex);
-  void refine(int step, Half half, const JudgedStance& stance, const Sample& from,
-              const Sample& to);
-  double steepest_fall() const;
-  BalanceOptions options_for(const JudgedStance& stance, const LinkPoses& poses,
-                             std::vector<Contact>& contacts);
-  void record(const BalanceCertificate& certificate, bool torques, int vertex, double time_s);
+  void know(const std::vector<BalanceFindings::List>& all);
+  static bool all_verified(const std::vector<BalanceFindings::List>& all);
+  void record(const BalanceFindings::List& findings);
+  void tell() const;
 
   CheckContext& context_;
   MotionRates rates_;
-  MotionSampler& sampler_;
-  LinkPoses poses_;
-  double smallest_half_m_ = 0.1;  // of the areas looked at
+  std::vector<std::unique_ptr<BalanceWorker>> workers_;
+  BalanceFindings found_;
   std::optional<BalanceCertificate> worst_;
   ViolationTally static_balance_, torque_limits_;
 };

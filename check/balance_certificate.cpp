@@ -1,4 +1,5 @@
 #include <locograph/check/balance_certificate.h>
+#include <locograph/check/loaded_contact.h>
 #include <locograph/common/error.h>
 #include <locograph/robots/dynamics.h>
 #include <locograph/robots/robot_state.h>
@@ -30,21 +31,13 @@ void give_messages(ClpSimplex& model) {
   *model.coinMessagesPointer() = of_coin;
 }
 
-/// Where a contact is in the world.
-struct ContactInWorld {
-  const Contact* given;
-  const EndEffector* effector;
-  int link;
-  Eigen::Matrix3d axes;
-  Eigen::Vector3d point;
-};
-
 /// An unknown: what one unit of it does.
 struct Unknown {
   int contact;
   Wrench wrench;            // N, N m, along the contact's axes, about the contact point
   Eigen::VectorXd torques;  // J^T wrench, entries of the tangent
   double lower = 0.0;       // 0, or -infinity
+  int place = 0;            // of BalanceCertificate::at_places
 };
 
 /// What the margin takes away from one friction cone: a force along the normal.
@@ -53,20 +46,6 @@ struct Reserve {
   int corner;     // -1: a point
   Eigen::Vector2d at;
 };
-
-/// A wheel's disc in its link: its centre, and the axis of the joint above.
-Eigen::Vector3d lowest_of_disc(const RobotState& state, const Contact& contact, int link) {
-  const Robot& robot = state.robot();
-  const Joint& joint = robot.joints()[std::size_t(robot.links()[std::size_t(link)].parent_joint)];
-  const Eigen::Isometry3d& pose = state.world_from_link(link);
-  const Eigen::Vector3d axle = pose.linear() * joint.axis;
-  const Eigen::Vector3d normal = contact.normal.stableNormalized();
-  const Eigen::Vector3d up = normal - axle * axle.dot(normal);
-  const Eigen::Vector3d centre = pose * contact.effector.point;
-  // A disc that lies flat touches anywhere: its centre is no worse a guess than another.
-  if (up.norm() < 1e-9) return centre;
-  return centre - up.normalized() * contact.effector.radius_m;
-}
 
 class Programme {
  public:
@@ -98,7 +77,11 @@ class Programme {
   BalanceCertificate solve() {
     if (solve(Mode::kMargin) || solve(Mode::kViolation)) {
       BalanceCertificate result = certificate();
-      if (options_.least_torques && solve(Mode::kTorques)) result.max_torque_ratio = solution_[0];
+      if (result.margin >= 0.0) result.at_places = at_places(result.margin);
+      if (options_.least_torques && solve(Mode::kTorques)) {
+        result.max_torque_ratio = solution_[0];
+        result.least_at_places = at_places(0.0);
+      }
       return result;
     }
     BalanceCertificate failed;
@@ -151,16 +134,10 @@ class Programme {
   }
 
   Unknown unknown(const Eigen::Vector3d& at, const Wrench& along, double lower) const {
-    const ContactInWorld& contact = contacts_.back();
-    Unknown result{static_cast<int>(contacts_.size()) - 1, along, {}, lower};
+    const LoadedContact& contact = contacts_.back();
+    Unknown result{static_cast<int>(contacts_.size()) - 1, along, {}, lower, places_ - 1};
     result.torques.setZero(robot_.tangent_size());
-    add_wrench_torques(state_,
-                       {.link = contact.link,
-                        .point = state_.world_from_link(contact.link).inverse() *
-                                 (contact.point + contact.axes * at),
-                        .force = contact.axes * along.head<3>(),
-                        .moment = contact.axes * along.tail<3>()},
-                       1.0, result.torques);
+    add_wrench_torques(state_, contact.applied(state_, at, along), 1.0, result.torques);
     // As a wrench about the contact point.
     result.wrench.tail<3>() += at.cross(along.head<3>());
     return result;
@@ -169,23 +146,13 @@ class Programme {
   void add_contact(const Contact& given, const std::vector<Eigen::Vector2d>& area) {
     const EndEffector& effector = given.effector;
     require_sound_effector(robot_, effector);
-    const int link = robot_.link_index(effector.link);
-    const Eigen::Isometry3d& pose = state_.world_from_link(link);
-    const bool fixed_in_link =
-        effector.kind == ContactKind::kSurface || effector.kind == ContactKind::kRung;
-    ContactInWorld contact{&given, &effector, link, {}, pose * effector.point};
-    contact.axes = fixed_in_link ? pose.linear() * axes_in_link(effector) : axes_in_world(given);
-    if (effector.kind == ContactKind::kPoint) {
-      contact.point -= effector.radius_m * contact.axes.col(2);
-    } else if (effector.kind == ContactKind::kWheel) {
-      contact.point = lowest_of_disc(state_, given, link);
-    }
-    contacts_.push_back(contact);
+    contacts_.push_back(loaded_contact(state_, given));
     if (!given.bears_load) return;
-    for (const int axis : robot_.support(link))
+    for (const int axis : robot_.support(contacts_.back().link))
       moving_joint_[std::size_t(robot_.axes()[std::size_t(axis)].active)] = true;
     switch (effector.kind) {
       case ContactKind::kRung:
+        ++places_;
         for (const int component : {0, 1, 2, 3, 5}) {
           if (component >= 3 && effector.max_moment_Nm == 0.0) continue;
           unknowns_.push_back(
@@ -204,11 +171,7 @@ class Programme {
 
   void add_area(const std::vector<Eigen::Vector2d>& area) {
     const EndEffector& effector = *contacts_.back().effector;
-    std::vector<Eigen::Vector2d> corners = area;
-    for (int corner = 0; area.empty() && corner < 4; ++corner) {
-      corners.emplace_back(corner < 2 ? effector.half_x_m : -effector.half_x_m,
-                           corner % 2 == 0 ? effector.half_y_m : -effector.half_y_m);
-    }
+    const std::vector<Eigen::Vector2d> corners = corners_of(effector, area);
     for (std::size_t i = 0; i < corners.size(); ++i) {
       add_cone({corners[i].x(), corners[i].y(), 0.0}, 1.0 / double(corners.size()), int(i));
     }
@@ -219,6 +182,7 @@ class Programme {
     const double mu = contacts_.back().effector->friction,
                  step = 2.0 * std::numbers::pi / options_.facets;
     std::array<Unknown, 3> axes;
+    ++places_;
     for (int i = 0; i < 3; ++i) axes[std::size_t(i)] = unknown(at, weight_ * Wrench::Unit(i), 0.0);
     Reserve reserve{axes[2], corner, at.head<2>()};
     const double height = share / (mu * std::cos(0.5 * step));
@@ -304,7 +268,7 @@ class Programme {
     mode_ = mode;
     const int columns = static_cast<int>(unknowns_.size()) + 1;
     int rows = base_rows() + torque_rows();
-    for (const ContactInWorld& contact : contacts_) rows += rows_of(*contact.effector);
+    for (const LoadedContact& contact : contacts_) rows += rows_of(*contact.effector);
 
     Eigen::MatrixXd matrix(rows, columns);
     for (int c = 1; c < columns; ++c) fill(unknowns_[std::size_t(c - 1)], matrix.col(c));
@@ -394,6 +358,22 @@ class Programme {
     return true;
   }
 
+  /// The wrenches of the last solution, at each place on its own.
+  std::vector<Wrench> at_places(double margin) const {
+    std::vector<Wrench> wrenches(std::size_t(places_), Wrench::Zero());
+    const auto add = [&](const Unknown& unknown, double amount) {
+      Wrench& wrench = wrenches[std::size_t(unknown.place)];
+      wrench.head<3>() += amount * unknown.wrench.head<3>();
+      const LoadedContact& contact = contacts_[std::size_t(unknown.contact)];
+      if (contact.effector->kind == ContactKind::kRung)
+        wrench.tail<3>() += amount * unknown.wrench.tail<3>();
+    };
+    for (const Reserve& reserve : reserves_) add(reserve.force, margin);
+    for (std::size_t c = 0; c < unknowns_.size(); ++c)
+      add(unknowns_[c], solution_[Eigen::Index(c) + 1]);
+    return wrenches;
+  }
+
   BalanceCertificate certificate() const {
     BalanceCertificate result;
     result.margin = solution_[0];
@@ -407,7 +387,7 @@ class Programme {
     }
     std::vector<PointWrench> applied;
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      const ContactInWorld& contact = contacts_[i];
+      const LoadedContact& contact = contacts_[i];
       applied.push_back({.link = contact.link,
                          .point = state_.world_from_link(contact.link).inverse() * contact.point,
                          .force = contact.axes * wrenches[i].head<3>(),
@@ -459,7 +439,7 @@ class Programme {
                [&] { return "torque of " + robot_.active_joint(limited_[std::size_t(i)]).name; });
     }
     int row = base_rows() + torque_rows();
-    for (const ContactInWorld& contact : contacts_) {
+    for (const LoadedContact& contact : contacts_) {
       const int rows = rows_of(*contact.effector);
       for (int k = 0; k < rows; ++k) {
         consider(-prices_[row + k], [&] {
@@ -490,8 +470,9 @@ class Programme {
   Eigen::VectorXd gravity_;  // and inertia
   const std::vector<Eigen::Vector2d> none_;
   double weight_ = 0.0;
-  std::vector<ContactInWorld> contacts_;
+  std::vector<LoadedContact> contacts_;
   std::vector<Unknown> unknowns_;
+  int places_ = 0;
   std::vector<Reserve> reserves_;
   std::vector<bool> moving_joint_;  // some contact loads it
   std::vector<int> limited_;        // joints with rows

@@ -85,6 +85,10 @@ struct BalanceCertificate {
   /// fx fy fz mx my mz of each contact [N, N m]: on the robot, about the contact point, along the
   /// contact's axes; zero for one that bears no load.
   std::vector<Eigen::VectorXd> wrenches;
+  /// The same at each corner and point that bears, in the order of contacts and corners, about it:
+  /// for nearby_balance.h. Of a negative margin none.
+  std::vector<Eigen::Matrix<double, 6, 1>> at_places;
+  std::vector<Eigen::Matrix<double, 6, 1>> least_at_places;  ///< with the least torques
   std::string limiting;  ///< what the margin depends on most, in words
 };
 

@@ -13,6 +13,7 @@
 #include <locograph/world/collision_world.h>
 #include <locograph/world/world.h>
 
+#include <mutex>
 #include <vector>
 
 namespace locograph {
@@ -42,9 +43,11 @@ struct CheckContext {
   UsableParts usable = {};
   std::vector<int> samples_per_step = {};
   int samples = 0;  ///< looked at so far
+  mutable std::mutex asking = {};
 
-  /// To be called before each piece of work. what: the part of the check.
+  /// To be called before each piece of work, by any thread. what: the part of the check.
   void go_on(const char* what, int vertex) const {
+    const std::lock_guard<std::mutex> lock(asking);
     if (!job.go_on(what, std::size_t(vertex), vertices())) throw CheckStopped();
   }
   std::size_t vertices() const { return motion.configurations.size(); }

@@ -50,6 +50,7 @@ void CheckOptions::validate() const {
   positive(max_step_m, "max_step_m");
   positive(max_step_rad, "max_step_rad");
   positive(max_samples_per_step, "max_samples_per_step");
+  positive(threads, "threads");
   positive(clearance_resolution_m, "clearance_resolution_m");
   positive(balance_resolution_m, "balance_resolution_m");
   not_negative(joint_tolerance_rad, "joint_tolerance_rad");

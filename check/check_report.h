@@ -11,6 +11,7 @@
 #include <locograph/robots/contact.h>
 
 #include <Eigen/Core>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -70,6 +71,15 @@ struct CheckOptions {
   /// small that the motion could use it up: how far contacts get as seen from the
   /// centre of mass, see balance_along.h.
   double balance_resolution_m = 0.005;
+
+  int threads = 1;  ///< of a motion; any number gives the same report
+  /// False: a linear programme wherever balance is looked at. The same report, later: to test that.
+  bool prove_nearby = true;
+  /// If it is not empty, it is told the wrenches of the stance that is held from each vertex on (at
+  /// the last one, of the stance that it ends in), in order, by the thread that called, once all
+  /// are known: before the check returns; never where balance is not judged. For the largest
+  /// margin.
+  std::function<void(int vertex, const BalanceCertificate& certificate)> on_balance = {};
 
   double joint_tolerance_rad = 1e-6;  ///< beyond a joint limit; metres for prismatic joints
   double velocity_tolerance = 1e-6;   ///< of a ratio of velocity or acceleration, for rounding

@@ -28,13 +28,13 @@ std::optional<Motion> with_standing(const CheckContext& context) {
 ClearanceSearch::ClearanceSearch(CheckContext& context)
     : context_(context),
       standing_(with_standing(context)),
-      own_sampler_(standing_ ? std::make_unique<MotionSampler>(context.robot, *standing_)
-                             : nullptr),
-      sampler_(standing_ ? *own_sampler_ : context.sampler),
+      sampler_(context.robot, standing_ ? *standing_ : context.motion),
       obstacle_path_(context.world.obstacles),
       way_s_(context.motion.stances_only && context.shapes != nullptr ? obstacle_path_.end_s()
                                                                       : 0.0),
-      further_m_(context.moves() || standing_ || way_s_ > 0.0 ? kFurther_m : 0.0) {}
+      further_m_(context.moves() || standing_ || way_s_ > 0.0 ? kFurther_m : 0.0) {
+  if (context.shapes != nullptr) shapes_ = *context.shapes;
+}
 
 void ClearanceSearch::add(std::size_t channel, CollisionWorld::Closest closest, int vertex,
                           double time_s) {
@@ -135,7 +135,7 @@ void ClearanceSearch::find_stances_around() {
 double ClearanceSearch::path_bound(int step, const Sample& from, const Sample& to,
                                    const Channel& channel) const {
   const double fraction = to.fraction - from.fraction;
-  MovingShapes& shapes = *context_.shapes;
+  const MovingShapes& shapes = *shapes_;
   if (self_) return shapes.relative_path_bound(from.world_from_link, to.world_from_link, fraction);
   const double robot =
       shapes.path_bound(from.world_from_link, to.world_from_link, fraction, channel.links);
@@ -170,8 +170,8 @@ void ClearanceSearch::run_step(int step, const JudgedStance* stance, const Sampl
                                const Sample& to) {
   const std::vector<Eigen::VectorXd>& configurations =
       standing_ ? standing_->configurations : context_.motion.configurations;
-  context_.shapes->set_step(configuration_step(context_.robot, configurations[std::size_t(step)],
-                                               configurations[std::size_t(step) + 1]));
+  shapes_->set_step(configuration_step(context_.robot, configurations[std::size_t(step)],
+                                       configurations[std::size_t(step) + 1]));
   if (!self_) channels_[2].links = stance == nullptr ? nullptr : &stance->touching;
   Sample begin = from, end = to;
   begin.fraction = 0.0;
@@ -181,7 +181,7 @@ void ClearanceSearch::run_step(int step, const JudgedStance* stance, const Sampl
 
 void ClearanceSearch::run_way(int vertex, const JudgedStance* stance, const Sample& from) {
   const Eigen::VectorXd& held = context_.motion.configurations[std::size_t(vertex)];
-  context_.shapes->set_step(configuration_step(context_.robot, held, held));
+  shapes_->set_step(configuration_step(context_.robot, held, held));
   const Sample to = sample(vertex, 1.0, stance);
   refine(vertex, stance, from, to);
 }

@@ -37,7 +37,7 @@ namespace locograph {
 
 class ClearanceSearch {
  public:
-  /// Keeps a reference to the context.
+  /// Keeps a reference to the context. Several may run at once.
   explicit ClearanceSearch(CheckContext& context);
 
   void run_around(ViolationTally& obstacle, ViolationTally& surface, ViolationTally& touching);
@@ -82,8 +82,8 @@ class ClearanceSearch {
   CheckContext& context_;
   // The motion, and standing on after the last vertex until CheckOptions::until_s.
   std::optional<Motion> standing_;
-  std::unique_ptr<MotionSampler> own_sampler_;
-  MotionSampler& sampler_;
+  MotionSampler sampler_;
+  std::optional<MovingShapes> shapes_;
   ObstaclePath obstacle_path_;
   double way_s_;  // what fractions are of in a plan of stances where something moves; else 0
   double further_m_;

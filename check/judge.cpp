@@ -6,6 +6,7 @@
 #include <locograph/check/numbers_check.h>
 #include <locograph/common/deadline.h>
 #include <locograph/common/error.h>
+#include <locograph/common/thread_pool.h>
 
 #include <algorithm>
 
@@ -39,6 +40,7 @@ class Check {
 
   CheckReport run() {
     const Stopwatch watch;
+    ThreadPool threads(context_.single ? 1 : context_.options.threads);
     for (Stance stance : context_.motion.stances) {
       // Nothing is known of how they would roll from one configuration to the next.
       for (Contact& contact : stance.contacts)
@@ -51,10 +53,12 @@ class Check {
     numbers.run();
     check_stances();
     ContactCheck contacts(context_);
-    contacts.run();
-    ClearanceSearch search(context_);
-    search.run_around(obstacle_distance_, ground_penetration_, touching_depth_);
-    search.run_self(self_collision_);
+    ClearanceSearch around(context_), self(context_);
+    threads.run(3, [&](int part) {
+      if (part == 0) around.run_around(obstacle_distance_, ground_penetration_, touching_depth_);
+      if (part == 1) self.run_self(self_collision_);
+      if (part == 2) contacts.run();
+    });
 
     CheckReport report;
     report.violations.push_back(stance_.result("the base is fixed to the world"));
@@ -69,7 +73,7 @@ class Check {
     BalanceAlong balance(context_);
     const bool rest_holds = holds(report.violations);
     const Stopwatch balance_watch;
-    if (rest_holds || !context_.options.certify_only_if_rest_holds) balance.run();
+    if (rest_holds || !context_.options.certify_only_if_rest_holds) balance.run(threads);
     report.balance_s = balance_watch.seconds();
     balance.report(report.violations);
     if (!rest_holds && context_.options.certify_only_if_rest_holds)
@@ -81,7 +85,7 @@ class Check {
     report.feasible = holds(report.violations) &&
                       (!balance_required || report.constraint("static_balance").judged);
     report.configurations = int(vertices_);
-    report.samples = context_.samples + search.samples();
+    report.samples = context_.samples + around.samples() + self.samples();
     report.trusted = trusted();
     if (!obstacle_distance_.empty()) report.min_clearance_m = obstacle_distance_.worst();
     if (!self_collision_.empty()) report.min_self_clearance_m = self_collision_.worst();

@@ -50,7 +50,8 @@
 /// between vertices because joints are linear there; distances follow clearance_search.h; balance
 /// follows balance_along.h; the rest is sampled as CheckOptions say.
 ///
-/// Deterministic; const members may be called by several threads at once.
+/// Deterministic, with any number of CheckOptions::threads; const members may be called by several
+/// threads at once.
 /// Throws Error for an empty motion, as many times or stances as configurations missing, a stance
 /// that does not exist or is not sound (robots/contact.h), and an option that makes no sense.
 
@@ -76,7 +77,8 @@ class Judge {
   Judge& operator=(Judge&&) noexcept;
 
   CheckReport check(const Motion& motion, const CheckOptions& options = {}) const;
-  /// Nothing when the job, which is asked at every vertex and sample, ends before the check does.
+  /// Nothing when the job, which is asked at every vertex and sample, by one thread at a time, ends
+  /// before the check does.
   std::optional<CheckReport> check(const Motion& motion, const CheckOptions& options,
                                    const JobControl& job) const;
   /// Distances are looked for up to 0.05 m only.

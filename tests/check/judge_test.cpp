@@ -165,6 +165,9 @@ TEST(Judge, RefusesCallsThatMakeNoSense) {
   options = {};
   options.until_s = kInfinity;
   refused(good, options);
+  options = {};
+  options.threads = 0;
+  refused(good, options);
   for (const double scale : {0.0, -1.0, kNaN, kInfinity}) {
     options = {};
     options.effort_scale = scale;

@@ -38,6 +38,24 @@ extern MovingShapes shapes;
 extern MotionSampler sampler;
 void use(const JudgedStance& stance);
 }  // namespace check_context_h
+namespace balance_along_h {
+extern ThreadPool threads;
+}
+namespace balance_worker_h {
+extern const MotionRates rates;
+extern BalanceFindings found;
+}  // namespace balance_worker_h
+namespace loaded_contact_h {
+extern const Contact contact;
+extern const std::vector<Eigen::Vector2d> area;
+void use(const LoadedContact& contact, const Eigen::Vector2d& corner);
+}  // namespace loaded_contact_h
+namespace nearby_balance_h {
+extern const std::vector<Contact> contacts;
+extern const BalanceCertificate certificate;
+extern const double enough;
+extern const BalanceOptions options;
+}  // namespace nearby_balance_h
 namespace bar_contact_h {
 extern const Contact contact;
 extern const Bar bar;

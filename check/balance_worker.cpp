@@ -1,0 +1,280 @@
+#include <locograph/check/balance_worker.h>
+#include <locograph/check/limits.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace locograph {
+namespace {
+
+constexpr double kFall = 10.0;  // of a margin, per metre
+/// What is nearer than this to the least margin or the largest ratio is worked out exactly: more
+/// than what a tally counts as equal.
+constexpr double kNear = 1e-6;
+constexpr int kTries = 4;  // wrenches found nearby
+
+/// How far apart the farthest two corners are along the narrowest of both axes, halved; of a line,
+/// half its length.
+double half_size(const std::vector<Eigen::Vector2d>& area) {
+  if (area.size() == 2) return std::max(1e-3, 0.5 * (area[1] - area[0]).norm());
+  Eigen::Vector2d least = area.front(), most = area.front();
+  for (const Eigen::Vector2d& corner : area) {
+    least = least.cwiseMin(corner);
+    most = most.cwiseMax(corner);
+  }
+  return std::max(1e-3, 0.5 * (most - least).minCoeff());
+}
+
+}  // namespace
+
+bool BalanceFinding::verified() const {
+  return certificate.balanced || !(certificate.margin >= -limits::kBalanceRounding);
+}
+
+void BalanceFindings::Extremes::add(const BalanceFinding& finding) {
+  margin = std::min(margin, finding.certificate.margin);
+  if (finding.torques && finding.certificate.balanced)
+    torque_ratio = std::max(torque_ratio, finding.certificate.max_torque_ratio);
+}
+
+BalanceWorker::BalanceWorker(CheckContext& context, const MotionRates& rates)
+    : context_(context),
+      rates_(rates),
+      sampler_(context.robot, context.motion),
+      nearby_(context.robot) {
+  if (context.shapes != nullptr) shapes_ = *context.shapes;
+}
+
+void BalanceWorker::begin(const BalanceFindings& found) {
+  prove_nearby_ = found.prove_nearby;
+  known_ = found.known;
+  near_.clear();
+}
+
+void BalanceWorker::judge_vertices(std::size_t first, std::size_t last, BalanceFindings& found) {
+  begin(found);
+  // Those found already come last: tried after the newest.
+  if (last < found.at_vertices.size())
+    for (const BalanceFinding& finding : found.at_vertices[last]) near_.push_back(&finding);
+  if (first > 0)
+    for (const BalanceFinding& finding : found.at_vertices[first - 1]) near_.push_back(&finding);
+  for (std::size_t i = first; i < last; ++i) {
+    if (!context_.usable.vertices[i]) continue;
+    const int vertex = static_cast<int>(i);
+    smallest_half_m_ = found.half_m[i];
+    const JudgedStance* before = i == 0 ? nullptr : context_.stance_from(vertex - 1);
+    const JudgedStance* after = context_.stance_from(vertex);
+    std::array<BalanceFindings::Margin, 2>& margins = found.margins[i];
+    if (before != nullptr)
+      margins[0] = judge({.vertex = vertex, .stance = before}, &found.at_vertices[i]);
+    if (after == before)
+      margins[1] = margins[0];
+    else if (after != nullptr)
+      margins[1] = judge({.vertex = vertex, .stance = after}, &found.at_vertices[i]);
+    found.half_m[i] = smallest_half_m_;
+  }
+}
+
+void BalanceWorker::judge_steps(std::size_t first, std::size_t last, BalanceFindings& found) {
+  begin(found);
+  // The margin at the end of a step is that at the beginning of the next one.
+  std::array<BalanceFindings::Margin, 2> here, there = found.margins[first];
+  for (std::size_t i = first; i < last; ++i) {
+    here = there;
+    there = found.margins[i + 1];
+    const JudgedStance* stance = context_.stance_from(static_cast<int>(i));
+    for (const std::size_t vertex : {i + 1, i})
+      for (const BalanceFinding& finding : found.at_vertices[vertex]) near_.push_back(&finding);
+    if (stance == nullptr || !context_.usable.steps[i]) continue;
+    findings_ = &found.in_steps[i];
+    smallest_half_m_ = found.smallest_half_m;
+    violated_ = std::ranges::any_of(
+        found.at_vertices[i], [&](const BalanceFinding& finding) { return violates(finding); });
+    shapes_->set_step(configuration_step(context_.robot, context_.motion.configurations[i],
+                                         context_.motion.configurations[i + 1]));
+    judge_half({static_cast<int>(i), 0.0, Half::kFirst, stance}, here[1]);
+    judge_half({static_cast<int>(i), 0.5, Half::kSecond, stance}, there[0]);
+    if (context_.stance_from(static_cast<int>(i) + 1) == stance) there[1] = there[0];
+  }
+}
+
+bool BalanceWorker::violates(const BalanceFinding& finding) const {
+  return !finding.verified() ||
+         !(context_.options.min_balance_margin - finding.certificate.margin <=
+           limits::kBalanceRounding);
+}
+
+double BalanceWorker::steepest_fall() const { return std::max(kFall, 1.0 / smallest_half_m_); }
+
+/// And the contacts, where the poses are.
+BalanceOptions BalanceWorker::options_for(const Spot& spot) {
+  BalanceOptions options;
+  options.enforce_torque_limits = context_.options.enforce_torque_limits;
+  options.effort_scale = context_.options.effort_scale;
+  contacts_.clear();
+  for (const JudgedContact& judged : spot.stance->contacts) {
+    Contact contact = judged.contact;
+    Support support = support_of(judged, context_.world, poses_);
+    if (support.known) {
+      contact.effector.friction = support.friction;
+      // What is beyond the border of its surface bears nothing.
+      if (support.outside_m > limits::kClosed_m) contact.bears_load = false;
+    }
+    if (contact.effector.kind == ContactKind::kSurface && contact.bears_load) {
+      const double half = support.area.empty()
+                              ? std::min(contact.effector.half_x_m, contact.effector.half_y_m)
+                              : half_size(support.area);
+      smallest_half_m_ = std::min(smallest_half_m_, half);
+    }
+    options.areas.push_back(std::move(support.area));
+    contacts_.push_back(std::move(contact));
+  }
+  if (context_.moves())
+    options.motion = spot.half ? rates_.at(spot.vertex, spot.fraction, *spot.half, sampler_.state())
+                               : rates_.at(spot.vertex, sampler_.state());
+  return options;
+}
+
+BalanceFindings::Margin BalanceWorker::judge(const Spot& spot, BalanceFindings::List* findings) {
+  context_.go_on("judging balance", spot.vertex);
+  sampler_.link_poses(spot.vertex, spot.fraction, poses_);
+  BalanceOptions options = options_for(spot);
+  bool torques = !spot.half;
+  // Of motions the least torques are told, at vertices; of a posture those of its wrenches.
+  options.least_torques = torques && (!context_.single || !options.enforce_torque_limits);
+  if (prove_nearby_ && !context_.single) {
+    const BalanceBounds bounds = prove(spot, options);
+    const bool told = enough_is_known_of_torques(bounds);
+    if (told && enough_is_known_of_margin(bounds) && (spot.half || !context_.options.on_balance))
+      return {bounds.margin_at_least, false};
+    if (told) options.least_torques = torques = false;
+  }
+  BalanceFinding found = programme(spot, options, torques);
+  const BalanceFindings::Margin margin{found.certificate.margin, true};
+  known_.add(found);
+  violated_ = violated_ || violates(found);
+  findings->push_back(std::move(found));
+  near_.push_back(&findings->back());
+  return margin;
+}
+
+bool BalanceWorker::enough_is_known_of_margin(const BalanceBounds& bounds) const {
+  return bounds.margin_at_least >=
+         std::max({0.0, context_.options.min_balance_margin, known_.margin + kNear});
+}
+
+bool BalanceWorker::enough_is_known_of_torques(const BalanceBounds& bounds) const {
+  double most = known_.torque_ratio - kNear;
+  if (context_.options.enforce_torque_limits) most = std::min(most, 1.0);
+  return bounds.torque_ratio_at_most <= most;
+}
+
+BalanceBounds BalanceWorker::prove(const Spot& spot, const BalanceOptions& options) {
+  BalanceBounds bounds;
+  if (!options.least_torques)
+    bounds.torque_ratio_at_most = -std::numeric_limits<double>::infinity();
+  int tries = 0;
+  for (auto near = near_.rbegin(); near != near_.rend() && tries < kTries; ++near) {
+    if ((*near)->stance != spot.stance) continue;
+    ++tries;
+    const BalanceBounds some =
+        nearby_.prove(sampler_.state(), contacts_, options, (*near)->certificate);
+    bounds.margin_at_least = std::max(bounds.margin_at_least, some.margin_at_least);
+    bounds.torque_ratio_at_most = std::min(bounds.torque_ratio_at_most, some.torque_ratio_at_most);
+    if (enough_is_known_of_margin(bounds) && enough_is_known_of_torques(bounds)) break;
+  }
+  return bounds;
+}
+
+BalanceFinding BalanceWorker::programme(const Spot& spot, BalanceOptions options, bool torques) {
+  BalanceCertificate certificate =
+      certify_balance(context_.robot, sampler_.configuration(), contacts_, options);
+  if (!certificate.balanced && options.enforce_torque_limits) {
+    // Is it balance that fails, or what joints can bear?
+    options.enforce_torque_limits = false;
+    options.least_torques = true;
+    certificate = certify_balance(context_.robot, sampler_.configuration(), contacts_, options);
+    torques = true;
+  }
+  return {.certificate = std::move(certificate),
+          .stance = spot.stance,
+          .vertex = spot.vertex,
+          .time_s = sampler_.time_s(spot.vertex, spot.fraction),
+          .place = poses_[0].translation(),
+          .torques = torques};
+}
+
+/// Of a vertex it is not told again.
+void BalanceWorker::make_exact(const Spot& spot, BalanceFindings::Margin& margin) {
+  if (margin.exact) return;
+  sampler_.link_poses(spot.vertex, spot.fraction, poses_);
+  margin = {programme(spot, options_for(spot), false).certificate.margin, true};
+}
+
+BalanceWorker::Sample BalanceWorker::sample(const Spot& spot) {
+  Sample sample{spot.fraction, judge(spot, findings_), {}};
+  const RobotState& state = sampler_.state();
+  const Eigen::Vector3d com = state.center_of_mass();
+  const Eigen::Matrix3d base_from_world = poses_[0].linear().transpose();
+  for (const JudgedContact& contact : spot.stance->contacts)
+    sample.arms.push_back(base_from_world * (touching_point(contact, poses_) - com));
+  sample.arms.push_back(base_from_world.col(2));
+  return sample;
+}
+
+void BalanceWorker::judge_half(const Spot& half, BalanceFindings::Margin& at_vertex) {
+  const Motion& motion = context_.motion;
+  const std::size_t step = static_cast<std::size_t>(half.vertex);
+  const ConfigurationStep change = configuration_step(context_.robot, motion.configurations[step],
+                                                      motion.configurations[step + 1]);
+  // Where the base and what hangs on it move as one, or wheels turn about their axles, contacts
+  // stay where they are as seen from the centre of mass.
+  LinkPoses from, to;
+  sampler_.link_poses(half.vertex, half.fraction, from);
+  sampler_.link_poses(half.vertex, half.fraction + 0.5, to);
+  const double tilt =
+      (from[0].linear().row(2) - to[0].linear().row(2)).norm() + 0.1 * change.base_angle_rad;
+  const double path = shapes_->step_length_bound_in_base() + tilt;
+  const auto far_enough = [&] {
+    return at_vertex.value - path * steepest_fall() >= context_.options.min_balance_margin;
+  };
+  if (far_enough()) return;
+  if (!at_vertex.exact) {
+    const double fall = smallest_half_m_;
+    make_exact({half.vertex + (half.half == Half::kSecond ? 1 : 0), 0.0, {}, half.stance},
+               at_vertex);
+    smallest_half_m_ = fall;
+    if (far_enough()) return;
+  }
+  Spot end = half;
+  end.fraction += 0.5;
+  const Sample first = sample(half);
+  refine(half, first, sample(end));
+}
+
+void BalanceWorker::refine(const Spot& half, const Sample& from, const Sample& to) {
+  double chord = 0.0;
+  for (std::size_t i = 0; i < from.arms.size(); ++i)
+    chord = std::max(chord, (from.arms[i] - to.arms[i]).norm());
+  const double path = chord + 2.0 * shapes_->bend_in_base(to.fraction - from.fraction);
+  if (path <= context_.options.balance_resolution_m || violated_) return;
+  const auto far_enough = [&](const Sample& one, const Sample& other) {
+    return 0.5 * (one.margin.value + other.margin.value - path * steepest_fall()) >=
+           context_.options.min_balance_margin;
+  };
+  if (far_enough(from, to)) return;
+  Sample begin = from, end = to;
+  Spot spot = half;
+  for (Sample* sample : {&begin, &end}) {
+    spot.fraction = sample->fraction;
+    make_exact(spot, sample->margin);
+  }
+  if (far_enough(begin, end)) return;
+  spot.fraction = 0.5 * (from.fraction + to.fraction);
+  if (spot.fraction <= from.fraction || spot.fraction >= to.fraction) return;
+  const Sample between = sample(spot);
+  refine(half, begin, between);
+  refine(half, between, end);
+}
+
+}  // namespace locograph

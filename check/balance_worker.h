@@ -1,0 +1,116 @@
+#pragma once
+/// What one thread needs to judge balance at vertices and in steps of a motion, see
+/// balance_along.h.
+///
+///     BalanceWorker worker(context, rates);
+///     worker.judge_vertices(17, 32, found);  // writes only what is of these
+///     worker.judge_steps(16, 32, found);     // once all vertices are judged
+
+#include <locograph/check/balance_certificate.h>
+#include <locograph/check/check_context.h>
+#include <locograph/check/motion_rates.h>
+#include <locograph/check/nearby_balance.h>
+
+#include <array>
+#include <limits>
+#include <list>
+#include <optional>
+#include <vector>
+
+namespace locograph {
+
+/// A certificate by linear programming, and of what.
+struct BalanceFinding {
+  BalanceCertificate certificate;
+  const JudgedStance* stance = nullptr;
+  int vertex = 0;
+  double time_s = 0.0;
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< of the base
+  bool torques = false;                             ///< max_torque_ratio is to be told
+
+  /// A margin without wrenches that could be verified is no proof.
+  bool verified() const;
+};
+
+/// Of a whole motion.
+struct BalanceFindings {
+  struct Margin {
+    double value = 0.0;  ///< that, or where it is not exact a lower bound of it
+    bool exact = true;
+  };
+  struct Extremes {
+    double margin = std::numeric_limits<double>::infinity();  ///< least so far
+    double torque_ratio = -std::numeric_limits<double>::infinity();
+    void add(const BalanceFinding& finding);
+  };
+
+  explicit BalanceFindings(std::size_t vertices)
+      : at_vertices(vertices), in_steps(vertices), margins(vertices), half_m(vertices, 0.1) {}
+
+  using List = std::list<BalanceFinding>;  // whose entries stay where they are
+
+  std::vector<List> at_vertices, in_steps;
+  /// At each vertex on the stances of the steps before and after it.
+  std::vector<std::array<Margin, 2>> margins;
+  std::vector<double> half_m;  ///< of the areas at each vertex, the smallest; at most 0.1
+  Extremes known;              ///< to all pieces, when they begin
+  double smallest_half_m = 0.1;
+  bool prove_nearby = true;
+};
+
+class BalanceWorker {
+ public:
+  BalanceWorker(CheckContext& context, const MotionRates& rates);
+
+  /// Vertices from first to before last, with wrenches found at one before and at `ahead`. What is
+  /// found is added, also where it is already known: beyond `found.known` it goes by that only.
+  void judge_vertices(std::size_t first, std::size_t last, BalanceFindings& found);
+  /// Steps likewise, with what was found at their vertices.
+  void judge_steps(std::size_t first, std::size_t last, BalanceFindings& found);
+
+ private:
+  using Half = MotionRates::Half;
+  struct Sample {
+    double fraction = 0.0;
+    BalanceFindings::Margin margin;
+    std::vector<Eigen::Vector3d> arms;  // contacts from the centre of mass; gravity; base axes
+  };
+  struct Spot {
+    int vertex = 0;
+    double fraction = 0.0;
+    std::optional<Half> half = {};  // of the step from the vertex; none: at it
+    const JudgedStance* stance = nullptr;
+  };
+
+  void begin(const BalanceFindings& found);
+  BalanceFindings::Margin judge(const Spot& spot, BalanceFindings::List* findings);
+  BalanceBounds prove(const Spot& spot, const BalanceOptions& options);
+  bool enough_is_known_of_margin(const BalanceBounds& bounds) const;
+  bool enough_is_known_of_torques(const BalanceBounds& bounds) const;
+  bool violates(const BalanceFinding& finding) const;
+  BalanceFinding programme(const Spot& spot, BalanceOptions options, bool torques);
+  BalanceOptions options_for(const Spot& spot);
+  void make_exact(const Spot& spot, BalanceFindings::Margin& margin);
+  void judge_half(const Spot& half, BalanceFindings::Margin& at_vertex);
+  Sample sample(const Spot& spot);
+  void refine(const Spot& half, const Sample& from, const Sample& to);
+  double steepest_fall() const;
+
+  CheckContext& context_;
+  const MotionRates& rates_;
+  MotionSampler sampler_;
+  std::optional<MovingShapes> shapes_;
+  LinkPoses poses_;
+  NearbyBalance nearby_;
+  std::vector<Contact> contacts_;
+
+  // Of the piece.
+  bool prove_nearby_ = true;
+  BalanceFindings::Extremes known_;
+  std::vector<const BalanceFinding*> near_;  // whose wrenches are tried
+  BalanceFindings::List* findings_ = nullptr;
+  bool violated_ = false;  // the step
+  double smallest_half_m_ = 0.1;
+};
+
+}  // namespace locograph
