@@ -1,12 +1,11 @@
 #include "pose_graph_run.h"
 
-#include <locograph/common/deadline.h>
 #include <locograph/core/graph_file.h>
-#include <locograph/solvers/linear_solvers.h>
 #include <locograph/types/standard_types.h>
 
 #include <algorithm>
-#include <memory>
+
+#include "started_run.h"
 
 namespace locograph {
 
@@ -24,35 +23,23 @@ PoseGraphRun run_locograph(const Graph& start, const OptimiserOptions& options, 
   Graph graph = copy_of(start);
   std::vector<std::pair<double, double>> history;
   history.reserve(options.max_iterations + 2);
-  const std::unique_ptr<LinearSolver> solver = make_linear_solver("auto");
-  ThreadPool pool(threads);
-
-  const Stopwatch watch;
-  Problem problem;
-  problem.compile(graph);
-  Workspace workspace;
-  workspace.allocate(problem);
-  workspace.use_threads(&pool);
-  workspace.load_state();
-  solver->use_threads(&pool);
-  Optimiser optimiser(options);
-  const double compiled = watch.seconds();
-  optimiser.start(workspace, *solver);
-  history.emplace_back(watch.seconds(), optimiser.result().initial.chi2);
-  while (optimiser.iterate()) {
-    history.emplace_back(watch.seconds(), optimiser.result().final.chi2);
+  StartedRun started(graph, options, "auto", threads);
+  const OptimiserResult& result = started.optimiser.result();
+  history.emplace_back(started.started_s, result.initial.chi2);
+  while (started.optimiser.iterate()) {
+    history.emplace_back(started.watch.seconds(), result.final.chi2);
   }
-  workspace.store_state();
-  history.emplace_back(watch.seconds(), optimiser.result().final.chi2);
+  started.workspace.store_state();
+  history.emplace_back(started.watch.seconds(), result.final.chi2);
 
   PoseGraphRun run = finished_run(history);
-  run.build_s = compiled;
-  run.iterations = optimiser.result().iterations;
-  run.reason = optimiser.result().reason_text();
-  run.ended = optimiser.result().reason != OptimiserResult::Reason::kMaxIterations &&
-              optimiser.result().reason != OptimiserResult::Reason::kDeadline;
-  run.state = workspace.state();
-  run.linear_solver = solver->name();
+  run.build_s = started.loaded_s;
+  run.iterations = result.iterations;
+  run.reason = result.reason_text();
+  run.ended = result.reason != OptimiserResult::Reason::kMaxIterations &&
+              result.reason != OptimiserResult::Reason::kDeadline;
+  run.state = started.workspace.state();
+  run.linear_solver = started.solver->name();
   return run;
 }
 

@@ -8,9 +8,6 @@
 /// seconds.
 
 #include <ceres/ceres.h>
-#include <locograph/common/deadline.h>
-#include <locograph/core/optimiser.h>
-#include <locograph/solvers/linear_solvers.h>
 #include <locograph/types/slam2d/edges.h>
 #include <locograph/types/slam3d/edges.h>
 #include <sys/resource.h>
@@ -23,6 +20,7 @@
 #include <random>
 
 #include "command_line.h"
+#include "started_run.h"
 
 namespace locograph {
 namespace {
@@ -98,26 +96,13 @@ SE3<double> spatial(double x, double y, double heading, std::mt19937& engine, do
 
 Json optimise_grid(Graph& graph, const std::string& solver_name, int threads) {
   const double before = peak_bytes();
-  ThreadPool pool(threads);
-  const std::unique_ptr<LinearSolver> solver = make_linear_solver(solver_name);
   OptimiserOptions options;
   options.gain = 1e-6;
-  const Stopwatch total;
-  Stopwatch watch;
-  Problem problem;
-  problem.compile(graph);
-  const double compile = watch.lap();
-  Workspace workspace;
-  workspace.allocate(problem);
-  workspace.use_threads(&pool);
-  workspace.load_state();
-  solver->use_threads(&pool);
-  Optimiser optimiser(options);
-  optimiser.start(workspace, *solver);
-  const double analyse = watch.lap();
-  while (optimiser.iterate()) {
+  StartedRun run(graph, options, solver_name, threads);
+  while (run.optimiser.iterate()) {
   }
-  const OptimiserResult& result = optimiser.result();
+  const double total = run.watch.seconds();
+  const OptimiserResult& result = run.optimiser.result();
   double linearise = 0.0, solve = 0.0;
   for (const IterationStatistics& now : result.statistics) {
     linearise += now.time_linearise;
@@ -126,17 +111,17 @@ Json optimise_grid(Graph& graph, const std::string& solver_name, int threads) {
   const double poses = graph.vertex_count();
   return {{"poses", graph.vertex_count()},
           {"edges", graph.edge_count()},
-          {"solver", solver->name()},
+          {"solver", run.solver->name()},
           {"threads", threads},
           {"chi2", result.final.chi2},
           {"iterations", result.iterations},
           {"converged", result.converged},
-          {"compile", compile},
-          {"analyse", analyse},
+          {"compile", run.compiled_s},
+          {"analyse", run.started_s - run.compiled_s},
           {"linearise", linearise},
           {"solve", solve},
-          {"total", total.seconds()},
-          {"microseconds_per_pose", 1e6 * total.seconds() / poses},
+          {"total", total},
+          {"microseconds_per_pose", 1e6 * total / poses},
           {"graph_bytes_per_pose", before / poses},
           {"peak_bytes_per_pose", peak_bytes() / poses}};
 }

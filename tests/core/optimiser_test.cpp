@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 
+#include "core/cost_of.h"
 #include "core/toy_graphs.h"
 
 namespace locograph::test {
@@ -93,12 +94,7 @@ TEST(Optimiser, ReportsTheCostItReached) {
   Graph graph = ring_2d(12);
   graph.set_kernel(RobustKernel::parse("cauchy:0.3"));
   const OptimiserResult result = run(graph, {});
-  Problem problem;
-  problem.compile(graph);
-  Workspace workspace;
-  workspace.allocate(problem);
-  workspace.load_state();
-  const Cost cost = workspace.evaluate(workspace.state());
+  const Cost cost = cost_of(graph);
   EXPECT_NEAR(cost.robust, result.final.robust, 1e-12 * cost.robust);
   EXPECT_NEAR(cost.chi2, result.final.chi2, 1e-12 * cost.chi2);
   EXPECT_LT(cost.robust, cost.chi2);

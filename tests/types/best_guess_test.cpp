@@ -7,6 +7,8 @@
 #include <numbers>
 #include <random>
 
+#include "core/cost_of.h"
+
 namespace locograph {
 namespace {
 
@@ -41,14 +43,7 @@ struct TwoLaps {
       graph.vertex(poses[i]) = VertexSE2(SE2<double>(normal(engine), normal(engine), 0.0));
     }
   }
-  double cost() {
-    Problem problem;
-    problem.compile(graph);
-    Workspace workspace;
-    workspace.allocate(problem);
-    workspace.load_state();
-    return workspace.evaluate(workspace.state()).robust;
-  }
+  double cost() { return test::cost_of(graph).robust; }
   BestGuess take(const BestGuessOptions& options = {}) {
     Problem problem;
     problem.compile(graph);
