@@ -9,6 +9,7 @@
 #include <locograph/common/error.h>
 #include <locograph/common/input_file.h>
 #include <locograph/common/stop_signals.h>
+#include <locograph/planners/offline/motion/segment_planner.h>
 #include <locograph/planners/scenario/scenario.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 
@@ -34,6 +35,7 @@ constexpr char kThisProgram[] = "/proc/self/exe";
 
 struct CampaignOptions {
   std::string scenario, planner, torques, csv;
+  std::vector<std::string> segment_planners;
   int runs = 0;
   unsigned seed = 0;
   bool stances_only = false;
@@ -46,6 +48,9 @@ struct CampaignOptions {
   std::vector<std::string> passed_on() const {
     std::vector<std::string> words;
     if (stances_only) words.emplace_back("--stances-only");
+    for (const std::string& name : segment_planners) {
+      words.insert(words.end(), {"--segment-planner", name});
+    }
     if (!torques.empty()) words.insert(words.end(), {"--torque-limits", torques});
     if (timeout_s > 0.0) words.insert(words.end(), {"--timeout", Json(timeout_s).dump()});
     if (move_contacts_m > 0.0) {
@@ -317,6 +322,10 @@ Command add_campaign(OptionParser& app) {
       .show_default();
   parser.add_option("--planner", o.planner, "As for plan");
   parser.add_flag("--stances-only", o.stances_only, "As for plan: no motion between stances");
+  parser.add_option("--segment-planner", o.segment_planners, "As for plan")
+      .one_of(segment_planner_names())
+      .value_name("NAME")
+      .one_at_a_time();
   add_torque_limits_option(parser, o.torques, "As for plan");
   parser.add_option("--timeout", o.timeout_s, "Seconds that each run may take; 0: no limit")
       .not_negative();

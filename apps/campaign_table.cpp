@@ -109,6 +109,15 @@ void CampaignTable::read(const std::filesystem::path& file) {
   if (!header || header->fields != names) {
     std::string expected = csv_line(names);
     expected.pop_back();
+    // Columns are only ever added, behind the others.
+    const bool older = header && header->fields.size() < names.size() &&
+                       header->fields.size() > kFirstQuantity &&
+                       std::equal(header->fields.begin(), header->fields.end(), names.begin());
+    if (older) {
+      reader.fail(header->line,
+                  "the table of an older version, without " + names[header->fields.size()],
+                  "another file, or none, for the seeds to be run again");
+    }
     reader.fail(header ? header->line : 1, "other columns than a campaign's", expected);
   }
   while (const std::optional<CsvRow> row = reader.next()) {

@@ -29,7 +29,7 @@ struct CampaignQuantity {
   bool whole_plans_only;  ///< says nothing of plans that are stances only
 };
 
-inline constexpr std::array<CampaignQuantity, 10> kCampaignQuantities = {{
+inline constexpr std::array<CampaignQuantity, 22> kCampaignQuantities = {{
     {"planning_time", "/time/total", false},
     {"transition_time", "/time/transitions", false},
     {"iterations", "/iterations", false},
@@ -40,6 +40,18 @@ inline constexpr std::array<CampaignQuantity, 10> kCampaignQuantities = {{
     {"duration_s", "/duration_s", true},
     {"stance_planner_time", "/time/stance_planner", false},
     {"judge_time", "/time/judge", false},
+    {"segments", "/segments", true},
+    {"refused_segments", "/refused_segments", true},
+    {"path_ratio_median", "/path_ratio/median", true},
+    {"path_ratio_worst", "/path_ratio/worst", true},
+    {"interpolation_segments", "/segments_by_planner/interpolation/count", true},
+    {"interpolation_time", "/segments_by_planner/interpolation/seconds", true},
+    {"optimisation_segments", "/segments_by_planner/optimisation/count", true},
+    {"optimisation_time", "/segments_by_planner/optimisation/seconds", true},
+    {"rrt_connect_segments", "/segments_by_planner/rrt_connect/count", true},
+    {"rrt_connect_time", "/segments_by_planner/rrt_connect/seconds", true},
+    {"atlas_rrt_star_segments", "/segments_by_planner/atlas_rrt_star/count", true},
+    {"atlas_rrt_star_time", "/segments_by_planner/atlas_rrt_star/seconds", true},
 }};
 
 struct CampaignRun {
@@ -67,7 +79,7 @@ class CampaignTable {
   explicit CampaignTable(CampaignSetting setting) : setting_(std::move(setting)) {}
 
   /// Adds the runs in the file; one without a byte holds none. Throws Error with file and line when
-  /// it is no such table, or one of another setting.
+  /// it is no such table, one of an older version, or one of another setting.
   void read(const std::filesystem::path& file);
   /// Throws Error when the planner is another than that of the runs before, or there is a run of
   /// this seed.

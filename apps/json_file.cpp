@@ -12,22 +12,69 @@ int line_of(const std::string& text, std::size_t at) {
   return 1 + static_cast<int>(std::count(text.begin(), end, '\n'));
 }
 
+/// Behind the value that begins here.
+std::size_t behind_value(const std::string& text, std::size_t at) {
+  int depth = 0;
+  do {
+    const char letter = text[at];
+    if (letter == '"') {
+      for (++at; at < text.size() && text[at] != '"'; ++at) at += text[at] == '\\' ? 1 : 0;
+      ++at;
+    } else if (letter == '{' || letter == '[') {
+      ++depth, ++at;
+    } else if (letter == '}' || letter == ']') {
+      --depth, ++at;
+    } else {
+      at = text.find_first_of(",]}\"{[", at + 1);
+    }
+  } while (depth > 0 && at < text.size());
+  return at;
+}
+
+std::size_t next_token(const std::string& text, std::size_t at) {
+  return std::min(text.find_first_not_of(" \t\r\n,:", at), text.size());
+}
+
 }  // namespace
+
+int json_line(const std::string& text, const std::vector<std::string>& path) {
+  std::size_t at = next_token(text, 0);
+  for (const std::string& name : path) {
+    if (at >= text.size() || (text[at] != '{' && text[at] != '[')) break;
+    const bool names = text[at] == '{';
+    at = next_token(text, at + 1);
+    for (int i = 0; at < text.size() && text[at] != '}' && text[at] != ']'; ++i) {
+      std::string here = std::to_string(i);
+      if (names) {
+        const std::size_t end = behind_value(text, at);
+        here = text.substr(at + 1, end - at - 2);
+        at = next_token(text, end);
+      }
+      if (here == name) break;
+      at = next_token(text, behind_value(text, at));
+    }
+  }
+  return line_of(text, at);
+}
 
 Json read_json(const std::filesystem::path& file, const std::string& expected) {
   const std::string text = file == "-" ? read_input(file, kMostInputBytes, expected)
                                        : read_file(file, kMostInputBytes, expected);
+  return parse_json(text, file.string(), expected);
+}
+
+Json parse_json(const std::string& text, const std::string& file, const std::string& expected) {
   try {
     return Json::parse(text);
   } catch (const Json::parse_error& failure) {
     const std::size_t at = failure.byte > 0 ? failure.byte - 1 : 0;
-    throw Error(file.string(), line_of(text, at), "is not JSON", expected);
+    throw Error(file, line_of(text, at), "is not JSON", expected);
   } catch (const Json::out_of_range& failure) {
     // "number overflow parsing '1e400'", without a place.
     const std::string message = failure.what();
     const std::size_t begin = message.find('\'') + 1, end = message.rfind('\'');
     const std::string number = begin < end ? message.substr(begin, end - begin) : "a number";
-    throw Error(file.string(), line_of(text, text.find(number)), "'" + number + "' is not finite",
+    throw Error(file, line_of(text, text.find(number)), "'" + number + "' is not finite",
                 "finite numbers");
   }
 }

@@ -2,6 +2,7 @@
 
 #include <locograph/apps/campaign_command.h>
 #include <locograph/apps/check_command.h>
+#include <locograph/apps/convert_command.h>
 #include <locograph/apps/info_command.h>
 #include <locograph/apps/list_command.h>
 #include <locograph/apps/optimize_command.h>
@@ -46,9 +47,10 @@ ExitCode run_chosen(const std::vector<Command>& commands) {
 int run(int argc, char** argv) {
   OptionParser app("Hyper-graph optimisation and loco-manipulation planning", "locograph");
   app.add_version("locograph " LOCOGRAPH_VERSION);
-  std::vector<Command> commands = {
-      add_optimize(app), add_plan(app), add_refine(app), add_check(app),   add_info(app),
-      add_list(app),     add_view(app), add_plot(app),   add_posture(app), add_campaign(app)};
+  std::vector<Command> commands = {add_optimize(app), add_plan(app),   add_refine(app),
+                                   add_check(app),    add_info(app),   add_list(app),
+                                   add_view(app),     add_plot(app),   add_posture(app),
+                                   add_campaign(app), add_convert(app)};
   bool quiet = false;
   for (Command& command : commands) {
     command.parser.add_flag("--quiet", quiet, "Neither progress nor warnings on stderr");

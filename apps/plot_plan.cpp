@@ -78,6 +78,53 @@ std::vector<Series> velocities(const Robot& robot, const Motion& motion) {
   return all;
 }
 
+/// |jerk| by differences of differences, constant from one configuration to the next. The robot
+/// stands still before and after.
+std::vector<Series> jerks(const Robot& robot, const Motion& motion) {
+  const std::size_t steps = motion.configurations.size() - 1;
+  std::vector<double> step_s(steps), velocity(steps), acceleration(steps + 1, 0.0);
+  for (std::size_t i = 0; i < steps; ++i) step_s[i] = motion.time_s[i + 1] - motion.time_s[i];
+  const auto rate = [](double change, double time_s) {
+    return time_s > 0.0 ? change / time_s : 0.0;
+  };
+  std::vector<Series> all;
+  for (int j = 0; j < robot.active_joint_count(); ++j) {
+    const int k = robot.base_configuration_size() + j;
+    for (std::size_t i = 0; i < steps; ++i) {
+      velocity[i] = rate(motion.configurations[i + 1][k] - motion.configurations[i][k], step_s[i]);
+    }
+    for (std::size_t i = 1; i < steps; ++i) {
+      acceleration[i] = rate(velocity[i] - velocity[i - 1], 0.5 * (step_s[i - 1] + step_s[i]));
+    }
+    Series series{robot.active_joint(j).name, {}};
+    for (std::size_t i = 0; i < steps; ++i) {
+      series.values.push_back(std::abs(rate(acceleration[i + 1] - acceleration[i], step_s[i])));
+      series.peak = std::max(series.peak, series.values.back());
+    }
+    all.push_back(std::move(series));
+  }
+  return all;
+}
+
+double highest(const std::vector<Series>& all, double at_least) {
+  for (const Series& series : all) at_least = std::max(at_least, series.peak);
+  return at_least;
+}
+
+/// A thin line where the stance changes, in this and the next panels; the tags of its arrows.
+std::vector<int> mark_stance_changes(PlotScript& plot, const Motion& motion) {
+  constexpr int kFirstTag = 10;
+  std::vector<int> tags;
+  for (std::size_t i = 1; i < motion.stance_from.size(); ++i) {
+    if (motion.stance_from[i] == motion.stance_from[i - 1]) continue;
+    tags.push_back(kFirstTag + static_cast<int>(tags.size()));
+    const std::string time = short_number(motion.time_s[i]);
+    plot.line("set arrow " + std::to_string(tags.back()) + " from " + time + ", graph 0 to " +
+              time + ", graph 1 nohead back linewidth 0.7 linecolor '#d0d4d8'");
+  }
+  return tags;
+}
+
 void limit_line(PlotScript& plot, int tag, double at) {
   plot.line("set arrow " + std::to_string(tag) + " from graph 0, first " + short_number(at) +
             " to graph 1, first " + short_number(at) +
@@ -116,32 +163,40 @@ PlotScript plot_plan(const std::filesystem::path& file, const std::vector<std::s
   if (motion.configurations.size() < 2) {
     throw Error(file.string(), 0, "one configuration is no motion", "two or more");
   }
-  const bool base = robot.floating_base();
-  PlotScript plot(1000, base ? 1020 : 720);
-  plot.line("set multiplot layout " + std::string(base ? "3" : "2") + ",1 title " +
+  const bool base = robot.floating_base(), moves = !motion.stances_only;
+  const int panels = 1 + (moves ? 2 : 0) + (base ? 1 : 0);
+  PlotScript plot(1000, 340 * panels + (base ? 0 : 40));
+  plot.line("set multiplot layout " + std::to_string(panels) + ",1 title " +
             PlotScript::label(file.filename().string() + ": " + robot.name() +
                               ", joints nearest to their limits in colour"));
   plot.line("set rmargin 26");
   plot.line("set lmargin 10");
   plot.line("set key outside right top invert font ',11'");
-  plot.line("set xlabel 'time [s]'");
+  plot.line(moves ? "set xlabel 'time [s]'" : "set xlabel 'stance'");
   plot.line("set xrange [" + short_number(motion.time_s.front()) + ":" +
             short_number(motion.time_s.back()) + "]");
   plot.line("set title 'joint positions (-1 lower limit, 1 upper limit; far from both is better)'");
   plot.line("set ylabel 'position'");
   plot.line("set yrange [-1.1:1.1]");
+  const std::vector<int> changes = mark_stance_changes(plot, motion);
   limit_line(plot, 1, -1.0);
   limit_line(plot, 2, 1.0);
   add_lines(plot, "position", motion.time_s, positions(robot, motion));
   plot.line("unset arrow 1");
-  const std::vector<Series> speeds = velocities(robot, motion);
-  double fastest = 1.0;
-  for (const Series& series : speeds) fastest = std::max(fastest, series.peak);
-  plot.line("set title 'joint velocities (1 at the limit; lower is better)'");
-  plot.line("set ylabel '|velocity| / limit'");
-  plot.line("set yrange [0:" + short_number(1.1 * fastest) + "]");
-  add_lines(plot, "velocity", motion.time_s, speeds);
+  if (moves) {
+    const std::vector<Series> speeds = velocities(robot, motion), jerky = jerks(robot, motion);
+    plot.line("set title 'joint velocities (1 at the limit; lower is better)'");
+    plot.line("set ylabel '|velocity| / limit'");
+    plot.line("set yrange [0:" + short_number(1.1 * highest(speeds, 1.0)) + "]");
+    add_lines(plot, "velocity", motion.time_s, speeds);
+    plot.line("unset arrow 2");
+    plot.line("set title 'joint jerk (not limited; lower is smoother)'");
+    plot.line("set ylabel '|jerk| [rad/s^3]'");
+    plot.line("set yrange [0:" + short_number(1.1 * highest(jerky, 1e-6)) + "]");
+    add_lines(plot, "jerk", motion.time_s, jerky);
+  }
   plot.line("unset arrow 2");
+  for (const int tag : changes) plot.line("unset arrow " + std::to_string(tag));
   if (base) add_base_path(plot, motion);
   plot.line("unset multiplot");
   return plot;

@@ -28,6 +28,7 @@ if(LOCOGRAPH_PLANNING)
   pkg_check_modules(urdfdom REQUIRED IMPORTED_TARGET urdfdom)
   pkg_check_modules(dynamicedt3d REQUIRED IMPORTED_TARGET dynamicEDT3D)
   pkg_check_modules(clp REQUIRED IMPORTED_TARGET clp)
+  find_package(ompl 1.5 REQUIRED)
 endif()
 
 if(LOCOGRAPH_TESTS)

@@ -49,7 +49,7 @@ function(locograph_folder name)
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/locograph/${name} FILES_MATCHING PATTERN "*.h"
-          PATTERN models EXCLUDE PATTERN scenarios EXCLUDE)
+          PATTERN models EXCLUDE PATTERN scenarios EXCLUDE PATTERN ompl_manifold.h EXCLUDE)
 endfunction()
 
 # locograph_test(NAME SOURCES... LINK targets... [PRECOMPILE headers...] [SHARDS n]): one GoogleTest

@@ -12,6 +12,7 @@ install(FILES ${PROJECT_BINARY_DIR}/locographConfig.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindMETIS.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindCHOLMOD.cmake
               ${PROJECT_SOURCE_DIR}/cmake/LocographPlugin.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/hide_eigen.map
         DESTINATION ${locograph_config_dir})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 if(LOCOGRAPH_PLANNING)

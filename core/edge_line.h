@@ -5,8 +5,9 @@
 ///     EdgeRange edge;
 ///     detail::read_edge_line(edge, 2, in);      // after the ids of its two vertices
 ///
-/// Ω is the upper triangle row by row; weights are `scalar w` when all are equal, `diagonal w…`
-/// otherwise. Included by typed_edge_pool.h only.
+/// Ω is the upper triangle row by row; weights are `scalar w` when all are equal, `scalar w without
+/// k row…` when k of many rows have none and the others are equal (rows from 0, ascending),
+/// `diagonal w…` otherwise. Included by typed_edge_pool.h only.
 
 #include <locograph/core/edge_evaluation.h>
 
@@ -60,10 +61,44 @@ void read_weights(E& edge, int size, FieldReader& in) {
     edge.weights[r] = kind == "scalar" && r > 0 ? edge.weights[0] : in.number();
     if (edge.weights[r] < 0.0) in.fail("a negative weight", "weights >= 0");
   }
+  if (kind != "scalar" || in.peek() != "without") return;
+  in.word();
+  const int count = in.integer();
+  if (count < 1) in.fail(std::to_string(count) + " rows without weight", "1 or more");
+  for (int k = 0, last = -1; k < count; ++k) {
+    const int row = in.integer();
+    if (row <= last || row >= size) {
+      in.fail("row " + std::to_string(row) + " without weight",
+              "ascending rows, 0 to " + std::to_string(size - 1));
+    }
+    edge.weights[row] = 0.0;
+    last = row;
+  }
+}
+
+/// Writes `scalar w without …` where that is what the weights are and there are many; false: not.
+template <class E>
+bool write_weights_without(const E& edge, FieldWriter& out) {
+  constexpr int kMany = 24;
+  const double most = edge.weights.maxCoeff();
+  const Eigen::Index none = (edge.weights.array() == 0.0).count();
+  const Eigen::Index equal = (edge.weights.array() == most).count();
+  if (edge.dimension() < kMany || !(most > 0.0) || none == 0 || none + equal != edge.dimension()) {
+    return false;
+  }
+  out.word("scalar");
+  out.number(most);
+  out.word("without");
+  out.integer(static_cast<long>(none));
+  for (int r = 0; r < edge.dimension(); ++r) {
+    if (edge.weights[r] == 0.0) out.integer(r);
+  }
+  return true;
 }
 
 template <class E>
 void write_weights(const E& edge, FieldWriter& out) {
+  if (write_weights_without(edge, out)) return;
   const bool scalar = (edge.weights.array() == edge.weights[0]).all();
   out.word(scalar ? "scalar" : "diagonal");
   for (int r = 0; r < (scalar ? 1 : edge.dimension()); ++r) out.number(edge.weights[r]);

@@ -42,6 +42,10 @@ class Parameters {
   void replace(int number, std::shared_ptr<const Parameter> parameter) {
     all_[number] = std::move(parameter);
   }
+  void remove(int number) {
+    all_.erase(number);
+    lines_.erase(number);
+  }
 
   /// Throws Error when there is none, or when it is of another type.
   template <class P>

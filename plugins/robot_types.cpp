@@ -3,6 +3,7 @@
 #include <locograph/plugins/com/edge_com.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/contact/edge_contact.h>
+#include <locograph/plugins/contact/segment_parameter.h>
 #include <locograph/plugins/contact/stance_parameter.h>
 #include <locograph/plugins/frame_pose/edge_frame_pose.h>
 #include <locograph/plugins/ground_distance/edge_ground_distance.h>
@@ -36,6 +37,7 @@ void add_robot_types(TypeRegistry& types) {
   types.add_parameter<ContactsParameter>("PARAMS_CONTACTS");
   types.add_parameter<ContactParameter>("PARAMS_CONTACT");
   types.add_parameter<StanceParameter>("PARAMS_STANCE");
+  types.add_parameter<SegmentParameter>("PARAMS_SEGMENT");
   types.add_vertex<VertexConfiguration>();
   types.add_vertex<VertexTimeStep>();
   types.add_vertex<VertexWrenches>();

@@ -1,8 +1,11 @@
 #include <locograph/planners/plan/plan.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
+#include <locograph/plugins/contact/segment_parameter.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 
 namespace locograph {
@@ -67,6 +70,94 @@ void require_wrenches_of_stances(const Graph& graph, const Plan& plan) {
   }
 }
 
+/// As exactly as hand-written files and those of nanoseconds have times.
+constexpr double kSameTime_s = 1e-6;
+
+struct GivenSegment {
+  std::shared_ptr<const SegmentParameter> segment;
+  int number = 0, line = 0;  ///< of the parameter
+
+  [[noreturn]] void fail(const std::string& what, const std::string& expected) const {
+    throw Error("", line, "segment " + std::to_string(segment->segment) + what, expected);
+  }
+  double end_s() const { return segment->from_s + segment->duration_s; }
+};
+
+/// In their order.
+std::vector<GivenSegment> given_segments(const Parameters& parameters) {
+  std::vector<GivenSegment> given;
+  for (const auto& [number, parameter] : parameters.all()) {
+    auto segment = std::dynamic_pointer_cast<const SegmentParameter>(parameter);
+    if (segment) given.push_back({std::move(segment), number, parameters.line(number)});
+  }
+  std::ranges::stable_sort(given, {}, [](const GivenSegment& g) { return g.segment->segment; });
+  return given;
+}
+
+std::string time_text(double time_s) { return std::to_string(time_s) + " s"; }
+
+/// The segments that the parameters say, each held against the configurations.
+std::vector<PlanSegment> segments_of(const Graph& graph, const Plan& plan) {
+  const auto vertex = [&](std::size_t i) -> const VertexConfiguration& {
+    return configuration(graph, plan.slots[i]);
+  };
+  const std::vector<GivenSegment> given = given_segments(graph.parameters());
+  std::vector<PlanSegment> segments;
+  std::size_t at = 0;
+  for (const GivenSegment& one : given) {
+    const int expected = static_cast<int>(segments.size());
+    if (plan.stances_only) one.fail(" of a plan of stances", "a plan with a motion");
+    if (one.segment->segment < expected) one.fail(" is there twice", "it once");
+    if (one.segment->segment > expected) {
+      one.fail(" without those before it", "a segment " + std::to_string(expected));
+    }
+    const double begin_s = vertex(at).time_s;
+    if (std::abs(one.segment->from_s - begin_s) > kSameTime_s) {
+      one.fail(" begins at " + time_text(one.segment->from_s),
+               (expected == 0 ? "the plan's beginning, " : "the end of the segment before, ") +
+                   time_text(begin_s));
+    }
+    const std::size_t first = at;
+    for (; at + 1 < plan.slots.size() && vertex(at).time_s < one.end_s() - kSameTime_s; ++at) {
+      if (vertex(at).stance_number == one.segment->stance_number) continue;
+      one.fail(" is in stance " + std::to_string(one.segment->stance_number),
+               "the stance of configuration " +
+                   std::to_string(graph.vertex_record(plan.slots[at]).id) + " in it");
+    }
+    if (std::abs(vertex(at).time_s - one.end_s()) > kSameTime_s) {
+      one.fail(" ends at " + time_text(one.end_s()) + ", where no configuration is",
+               "the time of one, as " + time_text(vertex(at).time_s));
+    }
+    segments.push_back({static_cast<int>(first), static_cast<int>(at), one.segment->duration_s,
+                        one.segment->planner});
+  }
+  if (!given.empty() && at + 1 < plan.slots.size()) {
+    given.back().fail(
+        " is the last one and ends at " + time_text(given.back().end_s()),
+        "segments until the plan ends, " + time_text(vertex(plan.slots.size() - 1).time_s));
+  }
+  return segments;
+}
+
+/// Ends the segments where the configurations end.
+void cut_segments(Graph& graph) {
+  double end_s = -std::numeric_limits<double>::infinity();
+  for (int slot = 0; slot < graph.vertex_slots(); ++slot) {
+    if (!graph.vertex_alive(slot) || !is<VertexConfiguration>(graph, slot)) continue;
+    end_s = std::max(end_s, configuration(graph, slot).time_s);
+  }
+  for (const GivenSegment& one : given_segments(graph.parameters())) {
+    if (one.end_s() <= end_s + kSameTime_s) continue;
+    if (one.segment->from_s >= end_s - kSameTime_s) {
+      graph.parameters().remove(one.number);
+      continue;
+    }
+    const auto shorter = std::make_shared<SegmentParameter>(*one.segment);
+    shorter->duration_s = end_s - one.segment->from_s;
+    graph.parameters().replace(one.number, shorter);
+  }
+}
+
 std::string text_of(const ContactParameter& contact) {
   FieldWriter out;
   contact.write(out);
@@ -109,10 +200,24 @@ Plan plan_of(const Graph& graph) {
                                      : nullptr);
   }
   require_wrenches_of_stances(graph, plan);
+  plan.segments = segments_of(graph, plan);
   return plan;
 }
 
+std::vector<int> contacts_at(const std::vector<std::shared_ptr<const StanceParameter>>& stance_from,
+                             std::size_t i) {
+  std::vector<int> numbers;
+  for (const std::size_t step : {i, i == 0 ? i : i - 1}) {
+    if (!stance_from[step]) continue;
+    for (const int number : stance_from[step]->contact_numbers) {
+      if (std::ranges::find(numbers, number) == numbers.end()) numbers.push_back(number);
+    }
+  }
+  return numbers;
+}
+
 void mark_incomplete(Graph& graph) {
+  cut_segments(graph);
   for (const auto& [number, parameter] : graph.parameters().all()) {
     const auto format = std::dynamic_pointer_cast<const PlanParameter>(parameter);
     if (!format) continue;

@@ -13,9 +13,17 @@
 #include <locograph/plugins/contact/stance_parameter.h>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace locograph {
+
+/// A part of a plan in one stance; see PARAMS_SEGMENT.
+struct PlanSegment {
+  int first = 0, last = 0;  ///< of Plan::slots; the next one begins with the last of this
+  double duration_s = 0.0;
+  std::string planner;
+};
 
 struct Plan {
   /// The configuration vertices in order of time; those of a plan of stances as they stand in the
@@ -28,16 +36,25 @@ struct Plan {
   bool stances_only = false;
   bool incomplete = false;  ///< it ends before its goal
   ContactMoves moves;       ///< how its start and goals differ from its scenario's
+  /// From the first configuration to the last; none: the plan does not say.
+  std::vector<PlanSegment> segments;
 };
 
 /// Throws Error, with the line if the graph was read from a file, when it holds no configuration,
-/// no PARAMS_PLAN, several robots, worlds or PARAMS_PLANs, configurations of several robots, and
-/// wrenches at contacts that are not in a stance of their configuration.
+/// no PARAMS_PLAN, several robots, worlds or PARAMS_PLANs, configurations of several robots,
+/// wrenches at contacts that are not in a stance of their configuration, and segments that are not
+/// what the configurations are: one is missing or there twice, begins or ends at another time, or
+/// is in another stance.
 Plan plan_of(const Graph& graph);
 
 Motion motion_of(const Graph& graph, const Plan& plan);
 
-/// Says in its PARAMS_PLAN that the plan ends before its goal.
+/// The contacts of the stances before and after a configuration: what it has to close.
+std::vector<int> contacts_at(const std::vector<std::shared_ptr<const StanceParameter>>& stance_from,
+                             std::size_t i);
+
+/// Says in its PARAMS_PLAN that the plan ends before its goal, and ends its segments where the
+/// configurations end.
 void mark_incomplete(Graph& graph);
 
 /// Numbers of the parameters in a plan file. Contacts begin at kFirstContact; stances follow them.

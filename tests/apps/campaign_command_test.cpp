@@ -1,5 +1,6 @@
 // `campaign`: many seeds of a scenario, each in a process of its own, and the table of them.
 #include <apps/command_runner.h>
+#include <apps/shipped_scenario.h>
 #include <locograph/apps/campaign_table.h>
 #include <locograph/common/error.h>
 
@@ -205,12 +206,14 @@ TEST(CampaignCommand, ABrokenTableIsRefusedWithItsLine) {
     return good + text + '\n';
   };
   broken("seed,time\n1,2\n", 1, "other columns than a campaign's");
+  const std::string older = test::part(good, "", ",judge_time") + '\n';
+  broken(older, 1, "the table of an older version, without segments");
   broken(good + "centauro_drive,,,9\n", 3, "4 fields");
   broken(good + row + '\n', 3, "a second run with seed 0");
   broken(with(",0,true,", ",zero,true,"), 3, "the seed 'zero'");
   broken(with(",0,true,", ",1,perhaps,"), 3, "'perhaps' under solved");
-  broken(good + row + "fast\n", 3, "fast' under judge_time");
-  broken(good + row + ",\n", 3, "17 fields, expected 16 as in the header");
+  broken(good + row + "fast\n", 3, "fast' under atlas_rrt_star_time");
+  broken(good + row + ",\n", 3, "29 fields, expected 28 as in the header");
   broken(with(",0,true,", ",1,true,\""), 3, "a field whose quote is not closed");
   broken(with("centauro_drive,", "\"centauro_drive\"x,"), 3, "'x' behind a closing quote");
 }

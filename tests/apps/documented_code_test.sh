@@ -1,6 +1,7 @@
 #!/bin/bash
-# Code blocks of doc/custom_types.md and doc/custom_constraints.md are code of the examples, which are
-# built and run by other tests: each block stands, line by line, in one of their files.
+# Code blocks of doc/custom_types.md, doc/custom_constraints.md and doc/tutorial.md are code of the
+# examples, which are built and run by other tests: each block stands, line by line, in one of their
+# files.
 #
 #   documented_code_test.sh SOURCE_FOLDER
 
@@ -10,16 +11,17 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 awk -v folder="$work" '
-  /^```(cpp|cmake)$/ { inside = 1; file = folder "/" ++count; next }
+  /^```(cpp|cmake|xml)$/ { inside = 1; file = folder "/" ++count; next }
   /^```$/ { inside = 0; next }
   inside { print > file }
-' "$source"/doc/custom_{types,constraints}.md
+' "$source"/doc/{custom_types,custom_constraints,tutorial}.md
 
 blocks=0
 for block in "$work"/*; do
   blocks=$((blocks + 1))
   found=
-  for example in "$source"/examples/{custom_edge,plugin,custom_constraint}/{*.cpp,CMakeLists.txt}; do
+  for example in "$source"/examples/{custom_edge,plugin,custom_constraint}/{*.cpp,CMakeLists.txt} \
+    "$source"/examples/tutorial/*; do
     text=$(<"$example")
     [[ $text == *"$(<"$block")"* ]] && found=yes
   done
@@ -29,5 +31,5 @@ for block in "$work"/*; do
     exit 1
   fi
 done
-[ "$blocks" -ge 15 ] || { echo "FAILED: only $blocks code blocks found"; exit 1; }
+[ "$blocks" -ge 22 ] || { echo "FAILED: only $blocks code blocks found"; exit 1; }
 echo "$blocks code blocks found in the examples"

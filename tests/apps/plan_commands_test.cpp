@@ -63,7 +63,7 @@ TEST(PlanCommands, PlanPrintsOneJsonObjectWithEveryField) {
   EXPECT_EQ(json["seed"], 7);
   EXPECT_EQ(json["configurations"], 50);
   EXPECT_NEAR(json["duration_s"], 40.0, 1e-9);
-  for (const char* field : {"stances", "vertices_in_tree", "iterations"}) {
+  for (const char* field : {"stances", "vertices_in_tree", "iterations", "segments"}) {
     EXPECT_TRUE(json[field].is_number_integer()) << field;
   }
   for (const char* phase :

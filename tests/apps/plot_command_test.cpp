@@ -79,7 +79,19 @@ TEST(Plot, ConstraintsOfACheckAndAPlanAgainstItsLimits) {
   const std::string lines = plot(runner, "p.g2o");
   EXPECT_TRUE(contains(lines, "joint positions"));
   EXPECT_TRUE(contains(lines, "joint velocities"));
+  EXPECT_TRUE(contains(lines, "joint jerk"));
   EXPECT_TRUE(contains(lines, "base path"));
+}
+
+TEST(Plot, APlanOfStancesHasNoVelocities) {
+  LOCOGRAPH_NEEDS_GNUPLOT();
+  const CommandRunner runner;
+  ASSERT_EQ(runner.run("plan standing_up --stances-only -o s.g2o").exit_code, 0);
+  const std::string svg = plot(runner, "s.g2o");
+  EXPECT_TRUE(contains(svg, "joint positions"));
+  EXPECT_TRUE(contains(svg, "base path"));
+  EXPECT_FALSE(contains(svg, "joint velocities"));
+  EXPECT_FALSE(contains(svg, "joint jerk"));
 }
 
 TEST(Plot, TableOfACampaign) {

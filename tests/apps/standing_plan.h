@@ -89,4 +89,16 @@ struct PlanText {
   }
 };
 
+/// The squat for two seconds in two segments, 0 in stance 6 and 1 in stance 8, of the same
+/// contacts: five configurations, 7 to 11, one every half second.
+inline PlanText standing_segments() {
+  PlanText plan(squat("2 4 5"));
+  plan.parameters.push_back("PARAMS_STANCE 8 2 5 4");
+  plan.parameters.push_back("PARAMS_SEGMENT 20 0 6 0 1 interpolation");
+  plan.parameters.push_back("PARAMS_SEGMENT 21 1 8 1 1 \"by hand\"");
+  plan.repeat_first(5, 0.5);
+  for (std::size_t i = 2; i < 5; ++i) plan.configurations[i].stance = "8";
+  return plan;
+}
+
 }  // namespace locograph

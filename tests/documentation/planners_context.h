@@ -3,6 +3,8 @@
 
 #include <locograph/check/judge.h>
 #include <locograph/core/graph_file.h>
+#include <locograph/planners/offline/motion/motion_graph.h>
+#include <locograph/planners/offline/motion/segment_motion.h>
 #include <locograph/planners/offline/stance/experience.h>
 #include <locograph/planners/offline/stance/guided_tree.h>
 #include <locograph/planners/offline/stance/improve_stances.h>
@@ -14,6 +16,7 @@
 #include <locograph/planners/offline/stance/standing_wheels.h>
 #include <locograph/planners/offline/stance/transition_rows.h>
 #include <locograph/planners/offline/timing/path_timing.h>
+#include <locograph/planners/offline/timing/reach_programme.h>
 #include <locograph/planners/online/refine.h>
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
@@ -124,6 +127,54 @@ extern const std::size_t bound;
 extern const Eigen::Vector3d centre;
 extern const double radius;
 }  // namespace offline_stance_transition_places_h
+namespace offline_motion_motion_graph_h {
+extern const Scenario scenario;
+extern const StanceProblem problem;
+extern const MotionPlan plan;
+}  // namespace offline_motion_motion_graph_h
+namespace offline_motion_motion_planner_h {
+extern const Scenario scenario;
+}
+namespace offline_motion_segment_motion_h {
+extern const StanceProblem problem;
+extern const MotionOptions options;
+extern const Segment segment;
+extern const std::vector<BearingContact> bearing;
+}  // namespace offline_motion_segment_motion_h
+namespace offline_motion_segment_planner_h {
+extern const StanceProblem problem;
+extern const Segment segment;
+}  // namespace offline_motion_segment_planner_h
+namespace offline_motion_segment_space_h {
+extern const std::shared_ptr<const RobotParameter> robot;
+extern const World world;
+extern const Segment segment;
+extern std::vector<Eigen::VectorXd> waypoints;
+}  // namespace offline_motion_segment_space_h
+namespace offline_motion_shorten_way_h {
+extern SegmentSpace space;
+}
+namespace offline_motion_swing_h {
+extern SegmentSpace space;
+}
+namespace offline_timing_balance_rows_h {
+extern const std::vector<BearingContact> bearing;
+extern const std::vector<Eigen::VectorXd> waypoints;
+extern const TimingLimits limits;
+extern const TimingOptions options;
+}  // namespace offline_timing_balance_rows_h
+namespace offline_timing_reach_programme_h {
+extern const Eigen::MatrixXd columns;
+extern const Eigen::VectorXd within, inside, target;
+extern const ReachProgramme::Bounds bounds;
+}  // namespace offline_timing_reach_programme_h
+namespace plan_balance_edges_h {
+extern const std::shared_ptr<const RobotParameter> robot;
+extern const Eigen::VectorXd configuration;
+extern const std::shared_ptr<const StanceParameter> stance;
+extern const StanceWrenches wrenches;
+extern const StanceProblem problem;
+}  // namespace plan_balance_edges_h
 namespace offline_timing_effort_rows_h {
 extern const std::vector<Eigen::VectorXd> waypoints;
 extern const TimingLimits limits;

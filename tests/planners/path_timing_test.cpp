@@ -225,7 +225,8 @@ TEST(PathTiming, KeepsLimitsEverywhereAndIsNearTheOptimumOnRandomPaths) {
 TEST(PathTiming, KeepsLimitsBetweenThePointsOfACoarseGrid) {
   for (unsigned seed = 0; seed < 100; ++seed) {
     const RandomTask task(seed);
-    const PathTiming timing(*task.robot, task.waypoints, task.limits, {.intervals = 1});
+    const TimingOptions options{.intervals = 1, .intervals_per_step = seed % 2 == 0 ? 2 : 16};
+    const PathTiming timing(*task.robot, task.waypoints, task.limits, options);
     const Extremes found = seen(timing.sampled(kMillisecond), task.limits);
     EXPECT_LE(found.velocity, 1.0 + 1e-6) << seed;
     EXPECT_LE(found.acceleration, 1.0 + 1e-6) << seed;
@@ -437,6 +438,44 @@ TEST(PathSpline, IsContinuousToTheSecondDerivativeAndMeetsItsWaypoints) {
   }
 }
 
+/// Largest distance to a circle of radius 1 through which waypoints go, a turn of 1.5 rad in all.
+double largest_distance_to_circle(int waypoints) {
+  const Robot robot = slides(2);
+  std::vector<Eigen::VectorXd> way;
+  for (int i = 0; i < waypoints; ++i) {
+    const double angle = 1.5 * i / (waypoints - 1);
+    way.push_back(numbers({std::cos(angle), std::sin(angle)}));
+  }
+  const PathSpline path(robot, way, Eigen::VectorXd::Ones(robot.tangent_size()));
+  PathPoint point;
+  double result = 0.0;
+  for (int i = 0; i <= 1000; ++i) {
+    path.at(path.length() * i / 1000.0, point);
+    result = std::max(result, std::abs(point.configuration.norm() - 1.0));
+  }
+  return result;
+}
+
+/// An error of second order, as of ends that do not bend, would shrink by 4.
+TEST(PathSpline, FollowsACurveToTheFourthOrderUpToItsEnds) {
+  EXPECT_LT(largest_distance_to_circle(9), 1e-4);
+  EXPECT_LT(largest_distance_to_circle(17), largest_distance_to_circle(9) / 12.0);
+  EXPECT_LT(largest_distance_to_circle(33), largest_distance_to_circle(17) / 12.0);
+}
+
+TEST(PathSpline, IsStraightThroughTwoWaypointsAndAParabolaThroughThree) {
+  const Robot robot = slides(1);
+  PathPoint point;
+  const PathSpline two(robot, {numbers({0}), numbers({2})}, numbers({1}));
+  const PathSpline three(robot, {numbers({0}), numbers({2}), numbers({1})}, numbers({1}));
+  for (const double s : {0.0, 0.7, 2.0, 2.9}) {
+    two.at(s, point);
+    EXPECT_NEAR(point.configuration[0], std::min(s, 2.0), 1e-12);
+    three.at(s, point);
+    EXPECT_NEAR(point.configuration[0], s - (s - 2.0) * s * 2.0 / 3.0, 1e-12);
+  }
+}
+
 /// The judge's own word on velocities and accelerations, whatever it says of the rest.
 TEST(PathTiming, SatisfiesTheJudgeWithAFloatingBase) {
   const auto shared = std::make_shared<const Robot>(slides(2, true));
@@ -529,6 +568,7 @@ TEST(PathTiming, RefusesWhatMakesNoSense) {
   none.velocity.resize(1);
   expect_timing_error("1 limits of velocity, expected 2", time(way, none));
   expect_timing_error("0 intervals", time(way, good, {.intervals = 0}));
+  expect_timing_error("0 intervals", time(way, good, {.intervals_per_step = 0}));
   expect_timing_error("smoothing over", time(way, good, {.smoothing_s = -1.0}));
   expect_timing_error("rows of timing of another number",
                       time(way, good, {}, [](const auto& point) {

@@ -141,6 +141,7 @@ export class Timeline {
       context.globalAlpha = 1;
       this.drawChanges(context, theme, row.name, y);
     });
+    this.markChanges(context, theme, height);
     context.fillStyle = hex(theme.violation);
     for (const { violation, time } of this.marks) {
       if (!violation.violated || time === null) continue;
@@ -154,22 +155,34 @@ export class Timeline {
     }
   }
 
-  /** + and − where a stance of a plan of stances takes a contact or leaves it. */
+  /** A line through all rows where the stance changes along a motion. */
+  private markChanges(context: CanvasRenderingContext2D, theme: Theme, height: number): void {
+    if (this.plan.steps) return;
+    context.fillStyle = hex(theme.grid);
+    for (const { from } of this.stances.slice(1)) {
+      context.fillRect(this.x(this.plan.times[from]) - 0.5, 4, 1, height - 4);
+    }
+  }
+
+  /** + and − where a stance takes a contact or leaves it, as far as there is room. */
   private drawChanges(
     context: CanvasRenderingContext2D,
     theme: Theme,
     name: string,
     y: number,
   ): void {
-    if (!this.plan.steps || this.x(this.plan.start + 1) < ROW_HEIGHT) return;
     context.font = 'bold 11px sans-serif';
     context.textAlign = 'center';
     context.textBaseline = 'middle';
-    this.stances.forEach(({ from }, i) => {
+    this.stances.forEach(({ from, to }, i) => {
+      const begin = this.x(this.plan.times[from]);
+      const width = this.x(this.plan.until(Math.max(to - 1, from))) - begin;
+      if (width < ROW_HEIGHT) return;
       const { added, removed } = this.changes[i];
+      const middle = begin + (this.plan.steps ? width : ROW_HEIGHT) / 2;
       const sign = added.includes(name) ? '+' : removed.includes(name) ? '−' : '';
       context.fillStyle = sign === '+' ? '#ffffff' : hex(theme.violation);
-      context.fillText(sign, this.x(this.plan.times[from] + 0.5), y + (ROW_HEIGHT - 5) / 2);
+      context.fillText(sign, middle, y + (ROW_HEIGHT - 5) / 2);
     });
   }
 

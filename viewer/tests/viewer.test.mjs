@@ -304,6 +304,40 @@ describe('viewer', () => {
       assert.equal((await state()).index, 3);
     }));
 
+  it('marks where a motion changes its stance, and says what that takes and leaves', async () => {
+    const { plan, ...scene } = stancesScene();
+    const { stances_only: _, ...motion } = plan;
+    /** Opacity of the strip between two rows, where configuration 2 of 0…4 is, and beside it. */
+    const strip = (page) =>
+      page.evaluate(() => {
+        const canvas = document.querySelector('.track canvas');
+        const ratio = canvas.height / canvas.clientHeight;
+        const row = canvas.getContext('2d').getImageData(0, Math.round(29.5 * ratio), canvas.width, 1);
+        const around = (x) =>
+          Math.max(...[-1, 0, 1].map((i) => row.data[4 * (Math.round(x * canvas.width) + i) + 3]));
+        return [around(0.5), around(0.6)];
+      });
+    await shown({ ...scene, plan: motion }, {}, async ({ page, state }) => {
+      assert.equal((await state()).configurations, 5);
+      const [at, beside] = await strip(page);
+      assert.ok(at > 100, 'a line');
+      assert.equal(beside, 0);
+      for (const [index, text] of [
+        [1, /^−wheel_1 · configuration 1 .*of 5 · 3 contacts$/],
+        [2, /^\+wheel_1 · configuration 2 .*of 5 · 4 contacts$/],
+      ]) {
+        await page.evaluate((time) => window.locograph.setTime(time), motion.times[index]);
+        await page.waitForFunction(
+          (wanted) => new RegExp(wanted).test(document.querySelector('.where').textContent),
+          text.source,
+        );
+      }
+    });
+    await shown({ ...scene, plan: motion, stances: undefined }, {}, async ({ page }) => {
+      assert.deepEqual(await strip(page), [0, 0]);
+    });
+  });
+
   /** Waits until all pictures in sight are drawn. */
   const pictured = (page, least = 1) =>
     page.waitForFunction((wanted) => {

@@ -39,18 +39,6 @@ bool in_any(const Stances& stances, Predicate&& predicate) {
                      [&](const auto& stance) { return predicate(*stance); });
 }
 
-/// Of the step before and of the step after: what a configuration has to close.
-std::vector<int> contacts_at(const Stances& from, std::size_t i) {
-  std::vector<int> numbers = from[i]->contact_numbers;
-  if (i == 0 || from[i - 1] == from[i]) return numbers;
-  for (const int number : from[i - 1]->contact_numbers) {
-    if (std::find(numbers.begin(), numbers.end(), number) == numbers.end()) {
-      numbers.push_back(number);
-    }
-  }
-  return numbers;
-}
-
 /// Keeps the joints that `turns` picks from turning by more than max_rad over dt_s, or by more than
 /// they do in `planned`, a tangent. Nothing where their velocity limits ask for as much.
 template <class Turns>
@@ -72,7 +60,8 @@ std::optional<EdgeVelocityLimits> step_limit(const Robot& robot, const Eigen::Ve
   return edge;
 }
 
-/// Keeps links apart that are apart in every one of the configurations that the job lets it see.
+}  // namespace
+
 EdgeSelfCollision self_collision_edge(const std::shared_ptr<const RobotParameter>& robot,
                                       const std::vector<Eigen::VectorXd>& configurations,
                                       double margin_m, double weight, const JobControl& job) {
@@ -90,8 +79,6 @@ EdgeSelfCollision self_collision_edge(const std::shared_ptr<const RobotParameter
   }
   return edge;
 }
-
-}  // namespace
 
 bool add_wheeled_plan(Graph& graph, const Motion& motion, const PlanEdgeOptions& options,
                       const JobControl& job) {

@@ -8,6 +8,10 @@
 #include <locograph/check/motion.h>
 #include <locograph/common/job_control.h>
 #include <locograph/core/graph.h>
+#include <locograph/plugins/self_collision/edge_self_collision.h>
+
+#include <memory>
+#include <vector>
 
 namespace locograph {
 
@@ -51,5 +55,11 @@ struct PlanEdgeOptions {
 /// when the job ended before the plan was whole.
 bool add_wheeled_plan(Graph& graph, const Motion& motion, const PlanEdgeOptions& options = {},
                       const JobControl& job = {});
+
+/// Keeps links apart that the edge sees apart in every one of the configurations which the job lets
+/// it look at: others have no weight.
+EdgeSelfCollision self_collision_edge(const std::shared_ptr<const RobotParameter>& robot,
+                                      const std::vector<Eigen::VectorXd>& configurations,
+                                      double margin_m, double weight, const JobControl& job = {});
 
 }  // namespace locograph

@@ -33,7 +33,7 @@ std::string why_not_reached(const StancePlan& plan, const StanceSpace& space,
     reason += "; no posture was found that holds the goal's contacts: " + none_stands;
   }
   if (refused.count > 0) {
-    reason += "; the judge refused " + std::to_string(refused.count) +
+    reason += "; refused: " + std::to_string(refused.count) +
               (refused.count == 1 ? " way to it: " : " ways to it, the last one: ") +
               refused.last_violation;
   }
@@ -42,6 +42,17 @@ std::string why_not_reached(const StancePlan& plan, const StanceSpace& space,
   return reason + "; most often in the way: " + most.what + ", for " + most.end_effector + " (" +
          std::to_string(most.count) + " of " +
          std::to_string(plan.transitions - plan.transitions_found) + " transitions)";
+}
+
+/// See StancePlannerOptions::accept; the change is forbidden.
+std::size_t not_accepted(StanceSpace& space, const StancePlannerOptions& options,
+                         const StancePath& path, std::size_t first) {
+  if (!options.accept) return 0;
+  std::vector<Stance> stances;
+  for (const Footing& footing : path.footings) stances.push_back(space.stance(footing));
+  const std::size_t refused = options.accept(stances, path.configurations, first);
+  if (refused > 0) space.forbid(path.footings.at(refused - 1), path.footings[refused]);
+  return refused;
 }
 
 }  // namespace
@@ -118,15 +129,20 @@ StancePlan plan_stances(const StanceProblem& problem, const StancePlannerOptions
       const JudgedPath judged = judge_path(space, judge, tried);
       plan.judge_s += judging.seconds();
       plan.report = judged.report;
-      if (judged.report.feasible) break;
+      std::size_t refused_change = judged.refused;
+      if (judged.report.feasible) {
+        refused_change = not_accepted(space, options, tried, first);
+        if (refused_change == 0) break;
+      }
       forget_way(plan, first_node);
-      if (judged.refused == 0) {
+      if (refused_change == 0) {
         plan.success = false;
         plan.reason = "refused: " + violation_text(judged.report.worst());
         break;
       }
       ++refused.count;
-      refused.last_violation = violation_text(judged.report.worst());
+      refused.last_violation = judged.report.feasible ? "no motion for one of its stances"
+                                                      : violation_text(judged.report.worst());
     }
     if (!plan.success) break;
     path = std::move(tried);

@@ -72,6 +72,12 @@ struct StancePlannerOptions {
   /// plans; may be empty.
   std::function<void(const TransitionAttempt&)> observe = nullptr;
   bool keep_tree = false;  ///< StancePlan::tree is filled
+  /// Asked of each way to a goal that the judge takes: stances and configurations from the start,
+  /// and the number of changes that were taken before. 0: it will do; else the number of a change
+  /// that will not, which no later way has. By the thread that plans; may be empty.
+  std::function<std::size_t(const std::vector<Stance>&, const std::vector<Eigen::VectorXd>&,
+                            std::size_t first)>
+      accept = nullptr;
 
   bool stopped() const { return stop != nullptr && *stop; }
   bool ended() const { return deadline.passed() || stopped(); }

@@ -62,6 +62,9 @@ StanceProblem problem_of(const Scenario& scenario, const Deadline& deadline) {
   problem.check.known = scenario.end_effectors;
   problem.check.enforce_torque_limits = scenario.enforce_torque_limits;
   problem.check.effort_scale = scenario.effort_scale;
+  problem.check.base_linear_m_s = scenario.limits.base_linear_m_s;
+  problem.check.base_angular_rad_s = scenario.limits.base_angular_rad_s;
+  problem.check.joint_acceleration_rad_s2 = scenario.limits.joint_acceleration_rad_s2;
   return problem;
 }
 

@@ -67,35 +67,45 @@ TransitionPlaces::TransitionPlaces(std::shared_ptr<const RobotParameter> robot, 
   tree_ = BoxTree(bounds);
 }
 
-void TransitionPlaces::set_contacts(std::span<const Contact> closed,
-                                    std::span<const Contact> held) {
+void TransitionPlaces::set_contacts(std::span<const Contact> closed, std::span<const Contact> held,
+                                    std::span<const Contact> near, double near_m) {
   touches_.clear();
   related_ = false;
+  for (const Contact& contact : closed) {
+    const bool is_held =
+        held.empty() || std::ranges::find(held, contact.name(), &Contact::name) != held.end();
+    add_touch(contact, true, is_held, 0.0);
+  }
+  for (const Contact& contact : near) add_touch(contact, false, false, near_m);
+}
+
+void TransitionPlaces::add_touch(const Contact& contact, bool is_closed, bool is_held,
+                                 double above_m) {
   const Robot& model = *robot_->robot;
   const std::vector<int>& body_of = model.tree().body_of_link;
   const std::size_t bounds = robot_->bounds.size();
-  for (const Contact& contact : closed) {
-    const EndEffector& effector = contact.effector;
-    const int link = model.link_index(effector.link);
-    const bool is_held =
-        held.empty() || std::ranges::find(held, contact.name(), &Contact::name) != held.end();
-    Touch touch{contact,
-                contact.normal.normalized(),
-                std::max(kTouchedReach_m, std::hypot(effector.half_x_m, effector.half_y_m)),
-                link,
-                is_held,
-                {},
-                std::vector<bool>(bounds, false)};
-    const int body = body_of[static_cast<std::size_t>(link)];
-    const std::vector<bool> links = touching_links(model, {&contact, 1});
-    for (std::size_t b = 0; b < bounds; ++b) {
-      const std::size_t touching = static_cast<std::size_t>(robot_->bounds[b].link);
-      if (!links[touching]) continue;
-      touch.bounds.push_back(static_cast<int>(b));
-      touch.closed[b] = body_of[touching] == body && effector.kind != ContactKind::kPoint;
-    }
-    touches_.push_back(std::move(touch));
+  const EndEffector& effector = contact.effector;
+  const int link = model.link_index(effector.link);
+  Touch touch{contact,
+              contact.normal.normalized(),
+              std::max(kTouchedReach_m, std::hypot(effector.half_x_m, effector.half_y_m)),
+              link,
+              is_held,
+              is_closed,
+              above_m,
+              {},
+              std::vector<bool>(bounds, false),
+              std::vector<bool>(bounds, false)};
+  const int body = body_of[static_cast<std::size_t>(link)];
+  const std::vector<bool> links = touching_links(model, {&contact, 1});
+  for (std::size_t b = 0; b < bounds; ++b) {
+    const std::size_t touching = static_cast<std::size_t>(robot_->bounds[b].link);
+    if (!links[touching]) continue;
+    touch.bounds.push_back(static_cast<int>(b));
+    touch.fixed[b] = body_of[touching] == body;
+    touch.closed[b] = is_closed && touch.fixed[b] && effector.kind != ContactKind::kPoint;
   }
+  touches_.push_back(std::move(touch));
 }
 
 const std::vector<int>& TransitionPlaces::near(const Eigen::AlignedBox3d& robot) {
@@ -129,8 +139,9 @@ void TransitionPlaces::relate(const Touch& touch) {
       const std::size_t at = i * robot_->bounds.size() + bound;
       relations_[at] = in_plane && touch.closed[bound] ? Relation::kNone : relation;
       if (touch.held) continue;
-      const bool own = robot_->bounds[bound].link == touch.link;
-      deepest_m_[at] = own && in_plane ? 0.0 : -kTouchedAbove_m;
+      const bool own =
+          touch.is_closed ? robot_->bounds[bound].link == touch.link : touch.fixed[bound];
+      deepest_m_[at] = (own && in_plane ? 0.0 : -kTouchedAbove_m) - touch.above_m;
     }
   };
   std::vector<std::size_t> far_faces;
@@ -155,7 +166,8 @@ void TransitionPlaces::relate(const Touch& touch) {
           set(face, Relation::kApart, false);
         }
       }
-    } else if (is_on_bar(bars_[static_cast<std::size_t>(place) - plates_.size()], touch.contact)) {
+    } else if (touch.above_m == 0.0 &&
+               is_on_bar(bars_[static_cast<std::size_t>(place) - plates_.size()], touch.contact)) {
       set(i, Relation::kNone, false);
     }
   }

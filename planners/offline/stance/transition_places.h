@@ -56,8 +56,10 @@ class TransitionPlaces {
 
   TransitionPlaces(std::shared_ptr<const RobotParameter> robot, const World& world);
 
-  /// held: contacts of the smaller stance, see TransitionProblem; empty: all.
-  void set_contacts(std::span<const Contact> closed, std::span<const Contact> held);
+  /// held: contacts of the smaller stance, empty: all; near, near_m: not closed; see
+  /// TransitionProblem.
+  void set_contacts(std::span<const Contact> closed, std::span<const Contact> held,
+                    std::span<const Contact> near = {}, double near_m = 0.0);
   /// Ascending: all that have to do with a robot in this box, and a few more. Valid until the next
   /// call.
   const std::vector<int>& near(const Eigen::AlignedBox3d& robot);
@@ -97,7 +99,10 @@ class TransitionPlaces {
     double reach_m;
     int link;
     bool held;
+    bool is_closed;
+    double above_m;  ///< how far above it links are to be, of contacts that are not closed
     std::vector<int> bounds;
+    std::vector<bool> fixed;  ///< by bound: to what touches
     std::vector<bool>
         closed;  ///< by bound: its place on the plane of the contact is always the same
   };
@@ -105,6 +110,7 @@ class TransitionPlaces {
   bool is_surface(int place) const { return place < static_cast<int>(plates_.size()); }
   bool is_solid(int place) const { return place >= first_solid_; }
   const Box& box(int place) const { return boxes_[static_cast<std::size_t>(place - first_solid_)]; }
+  void add_touch(const Contact& contact, bool is_closed, bool is_held, double above_m);
   void find_relations();
   void relate(const Touch& touch);
   bool in_plane(const Surface& surface, const Touch& touch) const;

@@ -110,19 +110,24 @@ void TransitionRows::set_problem(const TransitionProblem& problem,
   contact_of_row_.clear();
   contact_links_.clear();
   const std::size_t bounds = robot_->bounds.size();
-  places_.set_contacts(problem.closed, problem.held);
+  places_.set_contacts(problem.closed, problem.held, problem.near, problem.near_m);
   exempt_.assign(bounds, false);
+  const auto exempt = [&](const Contact& contact) {
+    const std::vector<bool> links = touching_links(robot(), {&contact, 1});
+    for (std::size_t b = 0; b < bounds; ++b) {
+      if (links[static_cast<std::size_t>(robot_->bounds[b].link)]) exempt_[b] = true;
+    }
+  };
   for (const Contact& contact : problem.closed) {
     const int number = static_cast<int>(closures_.size());
     closures_.emplace_back(robot(), contact);
     contact_names_.push_back(contact.name());
     contact_links_.push_back(closures_.back().link());
     for (int i = 0; i < closures_.back().rows(); ++i) contact_of_row_.push_back(number);
-    const std::vector<bool> links = touching_links(robot(), {&contact, 1});
-    for (std::size_t b = 0; b < bounds; ++b) {
-      if (links[static_cast<std::size_t>(robot_->bounds[b].link)]) exempt_[b] = true;
-    }
+    exempt(contact);
   }
+  // TransitionProblem::near
+  for (const Contact& contact : problem.near) exempt(contact);
   closure_.resize(static_cast<Eigen::Index>(contact_of_row_.size()));
 }
 

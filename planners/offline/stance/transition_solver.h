@@ -63,6 +63,10 @@ struct TransitionProblem {
   /// The contacts of the smaller stance: links of others may touch, and not reach into what they
   /// touch. Empty: those that are closed.
   std::span<const Contact> held = {};
+  /// Contacts that are not closed, but whose links may be near what they touch: of what has just
+  /// been lifted or is about to come down. near_m: how far above it, at least.
+  std::span<const Contact> near = {};
+  double near_m = 0.0;
 };
 
 /// What was violated most where no posture was found.

@@ -12,6 +12,7 @@ namespace {
 constexpr int kDeviationRounds = 40;
 /// Of the base's rotation, at any rate: it keeps the splines of quaternions away from 0.
 constexpr double kMostTurn = 1.0;
+constexpr double kMostStepRatio = 4.0;
 
 std::string waypoint(std::size_t number) { return "waypoint " + std::to_string(number); }
 
@@ -85,20 +86,46 @@ void PathSpline::place_knots() {
   }
 }
 
-/// A natural cubic spline: with h the steps of s and d the slopes of the chords, its second
-/// derivatives m solve h[i-1] m[i-1] + 2 (h[i-1] + h[i]) m[i] + h[i] m[i+1] = 6 (d[i] - d[i-1]).
+/// With h the steps of s and d the slopes of the chords, second derivatives m of a cubic spline
+/// solve h[i-1] m[i-1] + 2 (h[i-1] + h[i]) m[i] + h[i] m[i+1] = 6 (d[i] - d[i-1]). The third
+/// derivative does not jump at the second waypoint, m[0] = m[1] + r (m[1] - m[2]) with r = h[0] /
+/// h[1], which takes m[0] out of the first row, nor at the last but one. A long step beside a short
+/// one would swing out, so r is bounded.
 void PathSpline::solve() {
   const std::size_t n = waypoints_.size();
   bends_.assign(n, Eigen::VectorXd::Zero(robot_->configuration_size()));
+  if (n == 2) return;
   std::vector<double> above(n, 0.0);
   const auto step = [&](std::size_t i) { return knots_[i + 1] - knots_[i]; };
   const auto slope = [&](std::size_t i) { return (waypoints_[i + 1] - waypoints_[i]) / step(i); };
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    const double pivot = 2.0 * (step(i - 1) + step(i)) - step(i - 1) * above[i - 1];
-    above[i] = step(i) / pivot;
-    bends_[i] = (6.0 * (slope(i) - slope(i - 1)) - step(i - 1) * bends_[i - 1]) / pivot;
+  const auto ratio = [](double h, double other) { return std::min(h / other, kMostStepRatio); };
+  if (n == 3) {
+    bends_.assign(n, 2.0 / knots_.back() * (slope(1) - slope(0)));
+    return;
   }
-  for (std::size_t i = n - 1; i-- > 1;) bends_[i] -= above[i] * bends_[i + 1];
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const double h = step(i - 1), next = step(i);
+    double before = h, here = 2.0 * (h + next), after = next;
+    if (i == 1) {
+      here += h * (1.0 + ratio(h, next));
+      after -= h * ratio(h, next);
+    }
+    if (i + 2 == n) {
+      here += next * (1.0 + ratio(next, h));
+      before -= next * ratio(next, h);
+    }
+    const double pivot = here - (i > 1 ? before * above[i - 1] : 0.0);
+    above[i] = after / pivot;
+    bends_[i] = 6.0 * (slope(i) - slope(i - 1));
+    if (i > 1) bends_[i] -= before * bends_[i - 1];
+    bends_[i] /= pivot;
+  }
+  for (std::size_t i = n - 2; i-- > 1;) bends_[i] -= above[i] * bends_[i + 1];
+  const auto beyond = [&](std::size_t i, std::size_t other, double r) {
+    return Eigen::VectorXd(bends_[i] + r * (bends_[i] - bends_[other]));
+  };
+  bends_[0] = beyond(1, 2, ratio(step(0), step(1)));
+  bends_[n - 1] = beyond(n - 2, n - 3, ratio(step(n - 2), step(n - 3)));
 }
 
 /// A cubic is a mean of its four control points in which the inner two weigh 3/4 at most, and the

@@ -5,10 +5,13 @@
 ///     PathPoint point;
 ///     path.at(0.5 * path.length(), point);   // configuration, first and second derivative
 ///
-/// Base position, quaternion and joints are natural cubic splines over s, which goes by the
-/// distance between waypoints; the quaternion is normalised where it is looked at. Two waypoints
-/// make the straight path that the judge takes between two configurations. With Q the quaternion of
-/// the spline, not normalised, and R its rotation, the base turns and moves in its own axes by
+/// Base position, quaternion and joints are cubic splines over s, which goes by the distance
+/// between waypoints; the quaternion is normalised where it is looked at. At the second waypoint
+/// and the last but one even the third derivative is continuous ("not a knot"), so that waypoints h
+/// apart on a smooth curve leave it by no more than O(h^4), at the ends as well. Two waypoints make
+/// the straight path that the judge takes between two configurations, three a parabola. With Q the
+/// quaternion of the spline, not normalised, and R its rotation, the base turns and moves in its
+/// own axes by
 ///   omega = 2 vec(Q* Q') / |Q|^2,   omega' = 2 vec(Q* Q'') / |Q|^2 - 2 omega (Q . Q') / |Q|^2,
 ///   v = R^T p',                     v' = R^T p'' - omega x v,
 /// as vec(Q'* Q') = 0 and a real part of Q* Q' only lengthens Q.

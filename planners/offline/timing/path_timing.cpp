@@ -38,15 +38,25 @@ struct Excess {
 
 }  // namespace
 
+PathSpline timing_path(const Robot& robot, std::vector<Eigen::VectorXd> waypoints,
+                       const TimingLimits& limits, double max_deviation) {
+  return {robot, std::move(waypoints), path_scale(robot, limits), max_deviation};
+}
+
 PathTiming::PathTiming(const Robot& robot, std::vector<Eigen::VectorXd> waypoints,
                        const TimingLimits& limits, const TimingOptions& options,
                        const TimingRowsAt& rows)
-    : path_(robot, std::move(waypoints), path_scale(robot, limits), options.max_deviation),
-      smoothing_s_(options.smoothing_s) {
+    : PathTiming(timing_path(robot, std::move(waypoints), limits, options.max_deviation), limits,
+                 options, rows) {}
+
+PathTiming::PathTiming(PathSpline path, const TimingLimits& limits, const TimingOptions& options,
+                       const TimingRowsAt& rows)
+    : path_(std::move(path)), smoothing_s_(options.smoothing_s) {
   if (!(smoothing_s_ >= 0.0) || std::isinf(smoothing_s_)) {
     throw Error("smoothing over " + std::to_string(smoothing_s_) + " s", "0 or more");
   }
-  std::optional<SpeedProfile> profile = fastest_profile(path_, limits, options.intervals, rows);
+  std::optional<SpeedProfile> profile =
+      fastest_profile(path_, limits, {options.intervals, options.intervals_per_step}, rows);
   if (!profile) return;
   profile_ = std::move(*profile);
   time_s_.assign(1, 0.0);

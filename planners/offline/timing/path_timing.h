@@ -24,7 +24,8 @@
 namespace locograph {
 
 struct TimingOptions {
-  int intervals = 1000;  ///< of the grid of s, at least
+  int intervals = 1000;         ///< of the grid of s, at least
+  int intervals_per_step = 16;  ///< between two waypoints, at least
   /// From the straight way between waypoints, see path_spline.h.
   double max_deviation = std::numeric_limits<double>::infinity();
   double smoothing_s = 0.0;  ///< T; 0: accelerations jump
@@ -41,11 +42,19 @@ struct TimedPoint {
   Eigen::VectorXd configuration, velocity, acceleration;
 };
 
+/// The path that PathTiming makes of waypoints.
+PathSpline timing_path(const Robot& robot, std::vector<Eigen::VectorXd> waypoints,
+                       const TimingLimits& limits,
+                       double max_deviation = std::numeric_limits<double>::infinity());
+
 class PathTiming {
  public:
   /// Throws Error for waypoints, limits, options and rows that make no sense.
   PathTiming(const Robot& robot, std::vector<Eigen::VectorXd> waypoints, const TimingLimits& limits,
              const TimingOptions& options = {}, const TimingRowsAt& rows = {});
+  /// Of a path that is there already, for rows that depend on it; without max_deviation.
+  PathTiming(PathSpline path, const TimingLimits& limits, const TimingOptions& options = {},
+             const TimingRowsAt& rows = {});
 
   /// False when the rows leave no motion from rest to rest; limits alone always leave one.
   bool feasible() const { return feasible_; }

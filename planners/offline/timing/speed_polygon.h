@@ -20,7 +20,12 @@ class SpeedPolygon {
                  {most_here, most_next},
                  {least_here, most_next}} {}
 
+  struct Corner {
+    double here, next;
+  };
+
   bool empty() const { return corners_.empty(); }
+  const std::vector<Corner>& corners() const { return corners_; }
 
   /// Keeps p here + q next <= r (Sutherland & Hodgman 1974).
   void clip(double p, double q, double r) {
@@ -72,9 +77,6 @@ class SpeedPolygon {
   }
 
  private:
-  struct Corner {
-    double here, next;
-  };
   std::vector<Corner> corners_, kept_;
 };
 

@@ -11,7 +11,6 @@ namespace locograph {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-constexpr int kLeastIntervalsPerStep = 16;
 constexpr double kMostTurnPerInterval_rad = 0.02;  // rotations are no quadratics
 
 std::string coordinate_name(const Robot& robot, int k) {
@@ -33,9 +32,10 @@ Value middle(const Value& start, const Value& half_way, const Value& end) {
 
 class Grid {
  public:
-  Grid(const PathSpline& path, const TimingLimits& limits, int intervals, const TimingRowsAt& rows)
+  Grid(const PathSpline& path, const TimingLimits& limits, const GridSize& size,
+       const TimingRowsAt& rows)
       : limits_(limits) {
-    place(path, intervals);
+    place(path, size);
     look(path, rows);
     cap();
   }
@@ -62,13 +62,13 @@ class Grid {
   }
 
  private:
-  void place(const PathSpline& path, int intervals) {
+  void place(const PathSpline& path, const GridSize& size) {
     const std::vector<double>& knots = path.knots();
     for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
       const double h = knots[i + 1] - knots[i];
       const auto turned = static_cast<int>(std::ceil(path.turn_rad(i) / kMostTurnPerInterval_rad));
-      const int parts = std::max({kLeastIntervalsPerStep, turned,
-                                  static_cast<int>(std::ceil(intervals * (h / path.length())))});
+      const auto share = static_cast<int>(std::ceil(size.intervals * (h / path.length())));
+      const int parts = std::max({size.intervals_per_step, turned, share});
       for (int k = 0; k < parts; ++k) s_.push_back(knots[i] + h * k / parts);
     }
     s_.push_back(path.length());
@@ -238,10 +238,12 @@ TimingLimits timing_limits(const Robot& robot, const MotionLimits& limits) {
 }
 
 std::optional<SpeedProfile> fastest_profile(const PathSpline& path, const TimingLimits& limits,
-                                            int intervals, const TimingRowsAt& rows) {
+                                            const GridSize& size, const TimingRowsAt& rows) {
   check_limits(path.robot(), limits);
-  if (intervals < 1) throw Error(std::to_string(intervals) + " intervals", "1 or more");
-  return Grid(path, limits, intervals, rows).fastest();
+  for (const int intervals : {size.intervals, size.intervals_per_step}) {
+    if (intervals < 1) throw Error(std::to_string(intervals) + " intervals", "1 or more");
+  }
+  return Grid(path, limits, size, rows).fastest();
 }
 
 }  // namespace locograph

@@ -2,7 +2,7 @@
 /// The fastest speeds along a path: time-optimal path parametrisation by reachability analysis.
 ///
 ///     TimingLimits limits = timing_limits(robot, scenario.limits);
-///     std::optional<SpeedProfile> profile = fastest_profile(path, limits, 1000);
+///     std::optional<SpeedProfile> profile = fastest_profile(path, limits);
 ///
 /// Pham & Pham 2018, "A new approach to time-optimal path parameterization based on reachability
 /// analysis" (TOPP-RA). With x = (ds/dt)^2 and u = d^2s/dt^2, tangent velocities are q' sqrt(x) and
@@ -48,12 +48,18 @@ struct SpeedProfile {
   std::vector<double> squared;  ///< x there; 0 at both ends only
 };
 
-/// `intervals`: of the grid, at least; each step between waypoints has 16 or more,
-/// one for each 0.02 rad that the base turns. Nothing when
-/// the rows leave no way to move from rest to rest. Throws Error for limits that make no sense,
-/// for a part of the path where nothing that moves has a limit, and for rows that do not match.
+/// Of the grid of s, both at least; a step between waypoints that turns the base has one interval
+/// for each 0.02 rad. Where waypoints are dense, a few per step suffice.
+struct GridSize {
+  int intervals = 1000, intervals_per_step = 16;
+};
+
+/// Nothing when the rows leave no way to move from rest to rest. Throws Error for limits and sizes
+/// that make no sense, for a part of the path where nothing that moves has a limit, and for rows
+/// that do not match.
 std::optional<SpeedProfile> fastest_profile(const PathSpline& path, const TimingLimits& limits,
-                                            int intervals, const TimingRowsAt& rows = {});
+                                            const GridSize& size = {},
+                                            const TimingRowsAt& rows = {});
 
 /// Throws Error naming the limit that makes no sense.
 void check_limits(const Robot& robot, const TimingLimits& limits);

@@ -1,0 +1,262 @@
+#include <locograph/apps/output.h>
+#include <locograph/apps/plan_scenario.h>
+#include <locograph/apps/progress.h>
+#include <locograph/apps/stance_tree_file.h>
+#include <locograph/apps/statistics.h>
+#include <locograph/common/atomic_file.h>
+#include <locograph/common/stop_signals.h>
+#include <locograph/core/graph_file.h>
+#include <locograph/planners/offline/motion/motion_graph.h>
+#include <locograph/planners/offline/motion/motion_planner.h>
+#include <locograph/planners/offline/motion/segment_planner.h>
+#include <locograph/planners/offline/stance/improve_stances.h>
+#include <locograph/planners/offline/stance/stance_graph.h>
+#include <locograph/planners/offline/stance/stance_problem.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace locograph {
+namespace {
+
+/// What became of a contact task.
+struct ContactTaskPlan {
+  /// Without a motion where only stances are asked for; success and reason are those of the whole.
+  MotionPlan motion;
+  std::optional<Graph> graph;  ///< nothing: the time was used up before the search began
+  StartedProblem started;
+  int improved = 0;
+  double total_s = 0.0;
+
+  const StancePlan& stances() const { return motion.stances; }
+};
+
+StancePlannerOptions stance_options(const PlanOptions& options) {
+  StancePlannerOptions asked;
+  asked.seed = options.seed;
+  asked.keep_tree = !options.tree.empty();
+  asked.threads = std::min(options.threads, processor_count());
+  if (options.timeout_s > 0.0) asked.deadline = Deadline::after(options.timeout_s);
+  return asked;
+}
+
+StartedProblem started_problem(const Scenario& scenario, const PlanOptions& options,
+                               const Deadline& deadline) {
+  StartedProblem started =
+      stance_problem(scenario, {.most_m = options.move_contacts_m, .seed = options.seed}, deadline);
+  if (!options.torques.empty()) {
+    started.problem.check.enforce_torque_limits = options.torques == "enforce";
+  }
+  return started;
+}
+
+void plan_stances_only(const Scenario& scenario, const PlanOptions& options,
+                       const StancePlannerOptions& asked, ContactTaskPlan& plan) {
+  const StanceProblem& problem = plan.started.problem;
+  const auto planner = make_stance_planner(options.planner);
+  StancePlan& stances = plan.motion.stances;
+  stances = planner->plan(problem, asked);
+  if (options.improve) {
+    plan.improved = improve_stances(*planner, problem, asked, asked.threads, stances);
+  }
+  plan.motion.success = stances.success;
+  plan.motion.reason = stances.reason;
+  plan.graph = stance_graph(scenario, problem, stances);
+}
+
+void plan_whole_motion(const Scenario& scenario, const PlanOptions& options,
+                       const StancePlannerOptions& asked, ContactTaskPlan& plan) {
+  const StanceProblem& problem = plan.started.problem;
+  plan.motion = plan_motion(
+      problem, asked,
+      {.stance_planner = options.planner, .segment_planners = options.segment_planners});
+  plan.graph = motion_graph(scenario, problem, plan.motion);
+}
+
+/// finish: from when on there is something to keep when it is asked to stop.
+ContactTaskPlan plan_of_task(const Scenario& scenario, const PlanOptions& options,
+                             std::optional<FinishOnSignal>& finish) {
+  const Stopwatch total;
+  ContactTaskPlan plan;
+  std::optional<Progress> progress("preparing " + options.scenario);
+  StancePlannerOptions asked = stance_options(options);
+  try {
+    plan.started = started_problem(scenario, options, asked.deadline);
+  } catch (const OutOfTime& late) {
+    plan.motion.reason = std::string("before the search began, ") + late.what();
+    plan.total_s = total.seconds();
+    return plan;
+  }
+  finish.emplace();
+  asked.stop = &stop_flag();
+  progress.emplace("planning " + options.scenario);
+  if (options.stances_only) {
+    plan_stances_only(scenario, options, asked, plan);
+  } else {
+    plan_whole_motion(scenario, options, asked, plan);
+  }
+  plan.total_s = total.seconds();
+  return plan;
+}
+
+Json failures_json(const StancePlan& plan) {
+  Json all = Json::array();
+  for (const StanceFailure& failure : plan.failures) {
+    all.push_back(
+        {{"end_effector", failure.end_effector}, {"what", failure.what}, {"count", failure.count}});
+  }
+  return all;
+}
+
+/// Of each segment planner how many it solved, and the seconds that these took.
+Json by_planner_json(const std::vector<SegmentRecord>& segments) {
+  Json all = Json::object();
+  for (const std::string& name : segment_planner_names()) {
+    int count = 0;
+    double seconds = 0.0;
+    for (const SegmentRecord& segment : segments) {
+      if (segment.planner != name) continue;
+      ++count;
+      seconds += segment.seconds;
+    }
+    all[name] = {{"count", count}, {"seconds", seconds}};
+  }
+  return all;
+}
+
+/// Length of the path of a segment to that of the straight one.
+Json path_ratio_json(const std::vector<SegmentRecord>& segments) {
+  std::vector<double> ratios;
+  for (const SegmentRecord& segment : segments) {
+    if (segment.straight > 0.0) ratios.push_back(segment.length / segment.straight);
+  }
+  if (ratios.empty()) return {{"median", nullptr}, {"worst", nullptr}};
+  std::sort(ratios.begin(), ratios.end());
+  return {{"median", percentile(ratios, 0.5)}, {"worst", ratios.back()}};
+}
+
+double duration_s(const Motion& motion) {
+  return motion.time_s.empty() ? 0.0 : motion.time_s.back() - motion.time_s.front();
+}
+
+/// The parts of a whole plan do not overlap: the stance planner waits while its way is moved along.
+Json time_json(const PlanOptions& options, const ContactTaskPlan& plan) {
+  const MotionPlan& motion = plan.motion;
+  const StancePlan& stances = plan.stances();
+  double stances_s = stances.total_s, judge_s = stances.judge_s;
+  if (!options.stances_only) {
+    judge_s += motion.judge_s;
+    stances_s = std::max(0.0, stances_s - motion.whole_body_s - motion.timing_s - judge_s);
+  }
+  return {{"stance_planner", stances_s},
+          {"transitions", stances.transitions_s},
+          {"whole_body", motion.whole_body_s},
+          {"timing", motion.timing_s},
+          {"judge", judge_s},
+          {"total", plan.total_s}};
+}
+
+Json answer_json(const PlanOptions& options, const ContactTaskPlan& plan) {
+  const MotionPlan& motion = plan.motion;
+  const StancePlan& stances = plan.stances();
+  const StartedProblem& started = plan.started;
+  Json json = {
+      {"success", motion.success},
+      {"reason", motion.reason},
+      {"seed", options.seed},
+      {"planner", options.planner},
+      {"stances", stances.stances.size()},
+      {"vertices_in_tree", stances.vertices_in_tree},
+      {"iterations", stances.iterations},
+      {"configurations",
+       options.stances_only ? stances.configurations.size() : motion.motion.configurations.size()},
+      {"duration_s", duration_s(motion.motion)},
+      {"segments", motion.segments.size()},
+      {"goals_reached", stances.goals_reached},
+      {"transitions", {{"tried", stances.transitions}, {"found", stances.transitions_found}}},
+      {"start_moved", {{"base_m", started.moved_base_m}, {"joint_rad", started.moved_joint_rad}}},
+      {"failures", failures_json(stances)},
+      {"time", time_json(options, plan)},
+  };
+  if (!options.stances_only) {
+    json["segments_by_planner"] = by_planner_json(motion.segments);
+    json["path_ratio"] = path_ratio_json(motion.segments);
+    json["refused_segments"] = motion.refused_segments;
+  }
+  if (options.improve) json["improved"] = plan.improved;
+  if (options.move_contacts_m > 0.0) {
+    json["moved_contacts"] = {{"up_to_m", options.move_contacts_m},
+                              {"start_draws", started.problem.moves.draws}};
+  }
+  if (!motion.success) {
+    json["best"] = {{"stances", stances.stances.size()},
+                    {"goal_contacts_reached", stances.best_contacts}};
+  }
+  return json;
+}
+
+/// ": 7 by interpolation, 2 by rrt_connect", longer than straight by so much.
+std::string segments_text(const Json& json) {
+  std::string text = counted(json["segments"], "segment", "segments"), separator = ": ";
+  for (const auto& [name, by] : json["segments_by_planner"].items()) {
+    if (by["count"] == 0) continue;
+    text += separator + std::to_string(by["count"].get<int>()) + " by " + name;
+    separator = ", ";
+  }
+  const Json& worst = json["path_ratio"]["worst"];
+  if (!worst.is_null()) {
+    text += "; at worst " + short_number(worst) + " times as long as straight";
+  }
+  return text + '\n';
+}
+
+std::string answer_text(const std::string& scenario, const PlanOptions& options,
+                        const ContactTaskPlan& plan, const Json& json) {
+  std::string text = scenario + ": ";
+  if (options.move_contacts_m > 0.0) {
+    text += "contacts of start and goals are moved by up to " +
+            short_number(options.move_contacts_m) + " m\n" + scenario + ": ";
+  }
+  const StartedProblem& started = plan.started;
+  if (started.moved_base_m > 0.0 || started.moved_joint_rad > 0.0) {
+    text += "the start is not feasible as given; the nearest is " +
+            short_number(started.moved_base_m) + " m and " + short_number(started.moved_joint_rad) +
+            " rad away\n" + scenario + ": ";
+  }
+  text += plan.motion.success ? "" : "no plan: " + plan.motion.reason + "; so far ";
+  text += counted(json["stances"], "stance", "stances") + ", " +
+          counted(json["transitions"]["tried"], "transition", "transitions") + " tried, ";
+  if (!options.stances_only) {
+    text += counted(json["configurations"], "configuration", "configurations") + " of " +
+            short_number(json["duration_s"]) + " s, ";
+  }
+  text += "in " + short_number(plan.total_s) + " s\n";
+  if (!options.stances_only && plan.graph) text += segments_text(json);
+  if (plan.graph) text += "written: " + options.output + '\n';
+  if (options.improve) text += "improved " + counted(plan.improved, "time", "times") + '\n';
+  if (plan.graph && !options.tree.empty()) text += "written: " + options.tree + '\n';
+  return text;
+}
+
+}  // namespace
+
+ExitCode plan_contact_task(const Scenario& scenario, const PlanOptions& options) {
+  std::optional<FinishOnSignal> finish;
+  const ContactTaskPlan plan = plan_of_task(scenario, options, finish);
+  if (plan.graph) write_graph(*plan.graph, options.output);
+  if (plan.graph && !options.tree.empty()) {
+    write_file_atomically(options.tree, stance_tree_text(scenario.name, options.planner,
+                                                         options.seed, plan.stances()));
+  }
+  const Json json = answer_json(options, plan);
+  if (options.json) {
+    print_result(json, true);
+  } else {
+    print_text(answer_text(scenario.name, options, plan, json));
+  }
+  return plan.motion.success ? kDone : kNo;
+}
+
+}  // namespace locograph

@@ -1,0 +1,176 @@
+#include <locograph/apps/trajectory_file.h>
+#include <locograph/apps/trajectory_parts.h>
+#include <locograph/common/suggestion.h>
+#include <locograph/planners/offline/drive/wheeled_plan.h>
+#include <locograph/planners/offline/motion/motion_graph.h>
+#include <locograph/plugins/configuration/plan_parameters.h>
+#include <locograph/plugins/contact/segment_parameter.h>
+
+#include <algorithm>
+#include <array>
+
+namespace locograph {
+namespace {
+
+/// Rolls somewhere, as a drive does: a plan of its own kind.
+bool is_drive(const Plan& plan) {
+  return std::ranges::any_of(plan.stance_from, [](const auto& stance) {
+    return stance && std::ranges::any_of(stance->wheels, [](const auto& w) { return !w.locked; });
+  });
+}
+
+/// The same plan with all the edges of a drive.
+Graph drive_graph(const Graph& read, const Plan& plan) {
+  if (!plan.segments.empty()) {
+    throw Error("a plan on rolling wheels with segments", "no PARAMS_SEGMENT");
+  }
+  Graph graph;
+  graph.parameters().set(kRobotNumber, plan.robot);
+  graph.parameters().set(kWorldNumber,
+                         plan.world ? plan.world : std::make_shared<const WorldParameter>());
+  if (const auto origin = read.parameters().find<ScenarioParameter>()) {
+    graph.parameters().set(kScenarioNumber, origin);
+  }
+  if (const auto contacts = read.parameters().find<ContactsParameter>()) {
+    graph.parameters().set(kContactsNumber, contacts);
+  }
+  add_wheeled_plan(graph, motion_of(read, plan));
+  graph.parameters().replace(kPlanNumber, read.parameters().find<PlanParameter>());
+  return graph;
+}
+
+Eigen::VectorXd step_of(const Robot& robot, const Motion& motion, std::size_t i) {
+  Eigen::VectorXd step(robot.tangent_size());
+  robot.difference(motion.configurations[i].data(), motion.configurations[i + 1].data(),
+                   step.data());
+  return step / (motion.time_s[i + 1] - motion.time_s[i]);
+}
+
+}  // namespace
+
+void require_motion(const PlanFile& file) {
+  if (file.plan.stances_only) {
+    throw Error(file.name, 0, "is a plan of stances, which has no motion", "a whole plan");
+  }
+}
+
+std::vector<std::string> parameter_lines(const Graph& graph, const std::filesystem::path& folder) {
+  constexpr std::array<std::string_view, 8> kTags = {
+      "PARAMS_ROBOT",    "PARAMS_PLAN",    "PARAMS_WORLD",  "PARAMS_SCENARIO",
+      "PARAMS_CONTACTS", "PARAMS_CONTACT", "PARAMS_STANCE", "PARAMS_SEGMENT"};
+  std::vector<std::string> lines;
+  for (const auto& [number, parameter] : graph.parameters().all()) {
+    if (std::ranges::find(kTags, parameter->tag()) == kTags.end()) continue;
+    FieldWriter out(folder);
+    out.tag(parameter->tag());
+    out.integer(number);
+    parameter->write(out);
+    lines.push_back(out.text());
+  }
+  return lines;
+}
+
+MotionDerivatives derivatives_of(const Robot& robot, const Motion& motion) {
+  MotionDerivatives result;
+  const std::size_t count = motion.configurations.size();
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(robot.tangent_size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool first = i == 0, last = i + 1 == count;
+    const double before_s = first ? 0.0 : motion.time_s[i] - motion.time_s[i - 1];
+    const double after_s = last ? 0.0 : motion.time_s[i + 1] - motion.time_s[i];
+    const Eigen::VectorXd before = first ? rest : step_of(robot, motion, i - 1);
+    const Eigen::VectorXd after = last ? rest : step_of(robot, motion, i);
+    const double both_s = before_s + after_s;
+    if (!(both_s > 0.0)) {  // a posture
+      result.velocities.push_back(rest);
+      result.accelerations.push_back(rest);
+      continue;
+    }
+    result.velocities.push_back((before * after_s + after * before_s) / both_s);
+    result.accelerations.push_back(2.0 * (after - before) / both_s);
+  }
+  return result;
+}
+
+std::vector<int> segment_of_each(const Plan& plan) {
+  std::vector<int> each(plan.slots.size(), -1);
+  for (std::size_t j = 0; j < plan.segments.size(); ++j) {
+    const auto begin = each.begin() + plan.segments[j].first;
+    std::fill(begin, each.begin() + plan.segments[j].last + 1, static_cast<int>(j));
+  }
+  return each;
+}
+
+std::vector<int> joint_order(const Robot& robot, const std::vector<std::string>& names,
+                             std::string& what, std::string& expected) {
+  std::vector<std::string> known;
+  for (int i = 0; i < robot.active_joint_count(); ++i) known.push_back(robot.active_joint(i).name);
+  std::vector<int> order;
+  for (const std::string& name : names) {
+    const auto found = std::ranges::find(known, name);
+    order.push_back(static_cast<int>(found - known.begin()));
+    if (found == known.end()) {
+      what = "the joint '" + name + "'";
+      expected = "an active joint of the robot" + did_you_mean(name, known);
+      return {};
+    }
+    if (std::ranges::count(order, order.back()) > 1) {
+      what = "the joint '" + name + "' a second time";
+      expected = "each joint once";
+      return {};
+    }
+  }
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (std::ranges::find(order, static_cast<int>(i)) != order.end()) continue;
+    what = "the joint '" + known[i] + "' is missing";
+    expected = "all " + std::to_string(known.size()) + " active joints of the robot";
+    return {};
+  }
+  return order;
+}
+
+ConfigurationReader::ConfigurationReader(Graph& graph, std::string file)
+    : graph_(graph), where_{std::move(file), 0, {}} {
+  for (const auto& [number, parameter] : graph.parameters().all()) {
+    robot_ = std::dynamic_pointer_cast<const RobotParameter>(parameter);
+    robot_number_ = number;
+    if (robot_) return;
+  }
+  throw Error(where_.file, 0, "names no robot", "a PARAMS_ROBOT");
+}
+
+void ConfigurationReader::add(const std::vector<std::string>& fields, int line) {
+  std::string text = std::to_string(robot_number_);
+  for (const std::string& field : fields) text += ' ' + field;
+  where_.line = line;
+  FieldReader in(text, where_);
+  in.set_parameters(&graph_.parameters());
+  VertexConfiguration vertex;
+  try {
+    vertex.read(in);
+    in.expect_end();
+  } catch (const Error& error) {
+    if (error.line() > 0 || line == 0) throw;
+    throw Error(where_.file, line, error.what(), "");
+  }
+  if (count_ > 0 && !(vertex.time_s > last_s_)) {
+    throw Error(
+        where_.file, line,
+        "the time " + std::to_string(vertex.time_s) + " s after " + std::to_string(last_s_) + " s",
+        "times that increase");
+  }
+  last_s_ = vertex.time_s;
+  const auto id = graph_.add_vertex(count_, std::move(vertex));
+  graph_.set_fixed(id, count_++ == 0);
+}
+
+Graph with_edges(ReadTrajectory trajectory, const std::string& file) {
+  PlanFile plan = plan_in(std::move(trajectory.graph), file);
+  require_motion(plan);
+  if (is_drive(plan.plan)) return drive_graph(plan.graph, plan.plan);
+  const Judging judging = judging_of(plan, {});
+  add_motion_edges(plan.graph, judging.options, trajectory.wrenches);
+  return std::move(plan.graph);
+}
+
+}  // namespace locograph

@@ -1,0 +1,148 @@
+#include <locograph/planners/offline/motion/interpolation.h>
+#include <locograph/planners/offline/motion/swing.h>
+
+#include <algorithm>
+#include <array>
+
+namespace locograph {
+namespace {
+
+/// Neighbours are so near that the way between them, closed, is near the straight one.
+constexpr double kNear = 0.15;
+constexpr int kDeepest = 9;
+/// A configuration half-way may make the way longer, by so much of it and a little.
+constexpr double kLonger = 2.0, kLongerBy = 0.6;
+constexpr int kSmoothings = 4;
+constexpr double kHalf = 0.5;
+constexpr int kMarch = 8;
+/// What lies half-way is no arc: it need not be halved as often.
+constexpr int kMarchDepth = 3;
+/// What swings is not smoothed near its places.
+constexpr double kKept = 0.2;
+
+/// In the order in which they are tried.
+constexpr std::array<ArcOptions, 11> kArcs = {
+    {{.height_m = 0.05},
+     {.height_m = 0.05, .with_axes = false},
+     {.height_m = 0.05, .with_axes = false, .away_m = 0.1},
+     {.height_m = 0.05, .with_axes = false, .away_m = 0.2},
+     {.height_m = 0.012, .with_axes = false, .away_m = 0.12},
+     {.height_m = 0.06, .with_axes = false, .away_m = 0.12, .climb_first = true},
+     {.height_m = 0.012, .with_axes = false, .away_m = 0.2, .climb_first = true},
+     {.height_m = 0.06, .with_axes = false, .climb_first = true},
+     {.height_m = 0.12, .with_axes = false},
+     {.height_m = 0.05, .ends_only = true},
+     {.height_m = 0.04, .with_axes = false, .ends_only = true}}};
+
+struct Knot {
+  double t;
+  Eigen::VectorXd q;
+};
+
+class Interpolation : public SegmentPlanner {
+ public:
+  const std::string& name() const override {
+    static const std::string name = "interpolation";
+    return name;
+  }
+
+  SegmentPath plan(SegmentSpace& space, const SegmentOptions& options) const override {
+    const std::vector<Swing> swings = swings_of(space);
+    SegmentPath path;
+    const Knot begin{0.0, space.segment().from}, end{1.0, space.segment().to};
+    for (const ArcOptions& arc : kArcs) {
+      if (options.deadline.passed()) break;
+      std::vector<Knot> knots = {begin};
+      if (!fill(space, swings, arc, knots, end, 0)) {
+        path.reason = space.why_not();
+        if (swings.empty()) break;
+        if (!march(space, swings, arc, begin, end, knots)) continue;
+      }
+      smooth(space, !swings.empty(), knots);
+      path.found = true;
+      for (Knot& knot : knots) path.waypoints.push_back(std::move(knot.q));
+      break;
+    }
+    return path;
+  }
+
+ private:
+  /// Appends what lies between the last knot and `end`, and `end`.
+  static bool fill(SegmentSpace& space, const std::vector<Swing>& swings, const ArcOptions& arc,
+                   std::vector<Knot>& knots, const Knot& end, int depth) {
+    const Knot begin = knots.back();
+    const double apart = space.distance(begin.q, end.q);
+    const bool swinging = !swings.empty();
+    const bool fine = depth >= (swinging ? 3 : 1);
+    if (fine && apart <= kNear && space.valid_between(begin.q, end.q, 0.5 * kNear, swinging)) {
+      knots.push_back(end);
+      return true;
+    }
+    if (depth >= kDeepest) return false;
+    Knot middle{0.5 * (begin.t + end.t), {}};
+    std::vector<Contact> places;
+    for (const Swing& swing : swings) swing.add_places(space.robot(), middle.t, arc, places);
+    if (!space.solve(space.half_way(begin.q, end.q), places, middle.q)) return false;
+    const double way = space.distance(begin.q, middle.q) + space.distance(middle.q, end.q);
+    if (way > kLonger * apart + kLongerBy) return false;
+    return fill(space, swings, arc, knots, middle, depth + 1) &&
+           fill(space, swings, arc, knots, end, depth + 1);
+  }
+
+  /// From both ends half-way along the arc, each in steps from the one before; then from one to the
+  /// other with what swings held there.
+  static bool march(SegmentSpace& space, const std::vector<Swing>& swings, const ArcOptions& arc,
+                    const Knot& begin, const Knot& end, std::vector<Knot>& knots) {
+    const Eigen::VectorXd aim = space.half_way(begin.q, end.q);
+    knots = {begin};
+    std::vector<Knot> back = {end};
+    if (!step_to(space, swings, arc, aim, knots) || !step_to(space, swings, arc, aim, back)) {
+      return false;
+    }
+    const Knot there = std::move(back.back());
+    back.pop_back();
+    std::vector<Knot> over = {knots.back()};
+    over.back().t = kHalf;
+    if (!fill(space, swings, arc, over, {kHalf, there.q}, kMarchDepth)) return false;
+    knots.insert(knots.end(), over.begin() + 1, over.end());
+    knots.insert(knots.end(), back.rbegin(), back.rend());
+    return true;
+  }
+
+  /// From the only knot, at one end, to half-way, towards `aim`.
+  static bool step_to(SegmentSpace& space, const std::vector<Swing>& swings, const ArcOptions& arc,
+                      const Eigen::VectorXd& aim, std::vector<Knot>& knots) {
+    const double direction = knots.front().t < kHalf ? 1.0 : -1.0;
+    for (int i = 1; i <= kMarch; ++i) {
+      const Knot before = knots.back();
+      Knot next{before.t + direction * kHalf / kMarch, {}};
+      std::vector<Contact> places;
+      for (const Swing& swing : swings) swing.add_places(space.robot(), next.t, arc, places);
+      const double share = 1.0 / (kMarch - i + 1);
+      if (!space.solve(space.half_way(before.q, aim, share), places, next.q) &&
+          !space.solve(before.q, places, next.q)) {
+        return false;
+      }
+      if (!fill(space, swings, arc, knots, next, kMarchDepth)) return false;
+    }
+    return true;
+  }
+
+  static void smooth(SegmentSpace& space, bool swinging, std::vector<Knot>& knots) {
+    for (int pass = 0; pass < kSmoothings; ++pass) {
+      for (std::size_t i = 1; i + 1 < knots.size(); ++i) {
+        if (swinging && (knots[i].t < kKept || knots[i].t > 1.0 - kKept)) continue;
+        const double before = knots[i].t - knots[i - 1].t, after = knots[i + 1].t - knots[i].t;
+        Eigen::VectorXd q = space.half_way(
+            knots[i].q, space.half_way(knots[i - 1].q, knots[i + 1].q, before / (before + after)));
+        if (space.project(q) && space.valid(q, swinging)) knots[i].q = std::move(q);
+      }
+    }
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<SegmentPlanner> make_interpolation() { return std::make_unique<Interpolation>(); }
+
+}  // namespace locograph

@@ -1,0 +1,289 @@
+#include <locograph/check/judge.h>
+#include <locograph/planners/offline/motion/motion_planner.h>
+#include <locograph/planners/offline/motion/segment_motion.h>
+#include <locograph/planners/offline/stance/stance_space.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <optional>
+
+namespace locograph {
+namespace {
+
+/// Of friction, areas and limits of force: what is left unused, as in transitions.
+constexpr double kRegionMargin = 0.1;
+/// A motion that inertia brings out of balance is slowed down by so much, so often.
+constexpr double kSlower = 1.3;
+constexpr int kMostSlower = 6;
+/// So many refused segments make one more of their planners tried.
+constexpr std::size_t kRefusedForMore = 8;
+
+/// What one segment came to be, to be looked up when the stance planner comes back to it.
+struct Solved {
+  Stance before, held, after;
+  Eigen::VectorXd from, to;
+  std::size_t planner = 0;  ///< the first one that has not been refused
+  double slower = 1.0;
+  int slowed = 0;
+  bool judged = false;  ///< and found feasible, by itself
+  SegmentMotion motion;
+};
+
+bool is_of_inertia(const Violation& violation) {
+  return violation.constraint == "static_balance" || violation.constraint == "torque_limits";
+}
+
+bool same(const Stance& a, const Stance& b) {
+  return std::equal(a.contacts.begin(), a.contacts.end(), b.contacts.begin(), b.contacts.end(),
+                    [](const Contact& x, const Contact& y) {
+                      return x.name() == y.name() && x.position == y.position &&
+                             x.normal == y.normal && x.forward == y.forward;
+                    });
+}
+
+/// Contacts of `of` whose end effectors are not in `held`.
+std::vector<Contact> besides(const Stance& of, const Stance& held) {
+  std::vector<Contact> contacts;
+  for (const Contact& contact : of.contacts) {
+    if (std::ranges::find(held.contacts, contact.name(), &Contact::name) == held.contacts.end()) {
+      contacts.push_back(contact);
+    }
+  }
+  return contacts;
+}
+
+using Wrenches = decltype(MotionPlan::wrenches);
+
+class MotionSearch {
+ public:
+  MotionSearch(const StanceProblem& problem, const StancePlannerOptions& stances,
+               const MotionOptions& options, MotionPlan& plan)
+      : problem_(problem),
+        stances_(stances),
+        plan_(plan),
+        space_(problem, stances_),
+        mover_(problem, options),
+        all_planners_(!options.segment_planners.empty()),
+        judge_(problem.robot->robot, problem.world) {}
+
+  /// See StancePlannerOptions::accept.
+  std::size_t accept(const std::vector<Stance>& stances,
+                     const std::vector<Eigen::VectorXd>& configurations, std::size_t first) {
+    const std::size_t count = configurations.size() - 1;
+    ways_.resize(count, nullptr);
+    for (std::size_t j = first; j < count; ++j) {
+      ways_[j] = &solved(stances, configurations, j);
+      if (!ways_[j]->motion.found) return refuse(j);
+    }
+    for (;;) {
+      assemble(stances, configurations);
+      plan_.wrenches.assign(plan_.motion.configurations.size(), {});
+      plan_.report = judged(plan_.motion, &plan_.wrenches);
+      if (plan_.report.feasible) return 0;
+      bool mended = false;
+      for (std::size_t j = first; j < count; ++j) {
+        if (ways_[j]->judged) continue;
+        if (!mend(stances, j, mended)) return refuse(j);
+      }
+      if (!mended) return refuse(segment_of(plan_.report));
+    }
+  }
+
+  /// Without success: as far as segments were found.
+  void assemble(const std::vector<Stance>& stances,
+                const std::vector<Eigen::VectorXd>& configurations) {
+    Motion& motion = plan_.motion;
+    motion = {};
+    motion.stances = stances;
+    plan_.segments.clear();
+    double time_s = 0.0;
+    for (std::size_t j = 0; j < ways_.size() && ways_[j]->motion.found; ++j) {
+      const SegmentMotion& way = ways_[j]->motion;
+      SegmentRecord record;
+      record.stance = static_cast<int>(j);
+      record.first = static_cast<int>(motion.configurations.size());
+      const std::size_t steps = way.configurations.size() - 1;
+      for (std::size_t i = 0; i < steps; ++i) {
+        motion.configurations.push_back(way.configurations[i]);
+        motion.time_s.push_back(time_s + way.duration_s * static_cast<double>(i) /
+                                             static_cast<double>(steps));
+        motion.stance_from.push_back(record.stance);
+      }
+      time_s += way.duration_s;
+      record.last = static_cast<int>(motion.configurations.size());
+      record.duration_s = way.duration_s;
+      record.planner = way.planner;
+      record.seconds = way.path_s;
+      record.timing_s = way.timing_s;
+      record.length = way.length;
+      record.straight = way.straight;
+      plan_.segments.push_back(std::move(record));
+    }
+    const std::size_t done = plan_.segments.size();
+    motion.stances.resize(done + 1);
+    motion.configurations.push_back(configurations[done]);
+    motion.time_s.push_back(time_s);
+    motion.stance_from.push_back(static_cast<int>(done));
+  }
+
+  void keep(std::size_t segments) { ways_.resize(std::min(segments, ways_.size())); }
+
+ private:
+  std::size_t refuse(std::size_t segment) {
+    ++plan_.refused_segments;
+    return segment + 1;
+  }
+
+  Solved& solved(const std::vector<Stance>& stances,
+                 const std::vector<Eigen::VectorXd>& configurations, std::size_t j) {
+    const Stance none;
+    const Stance& before = j == 0 ? none : stances[j - 1];
+    for (const auto& known : known_) {
+      if (known->from == configurations[j] && known->to == configurations[j + 1] &&
+          same(known->held, stances[j]) && same(known->after, stances[j + 1]) &&
+          same(known->before, before)) {
+        return *known;
+      }
+    }
+    auto fresh = std::make_unique<Solved>();
+    fresh->before = before;
+    fresh->held = stances[j];
+    fresh->after = stances[j + 1];
+    fresh->from = configurations[j];
+    fresh->to = configurations[j + 1];
+    move(*fresh);
+    return *known_.emplace_back(std::move(fresh));
+  }
+
+  void move(Solved& solved) {
+    std::vector<BearingContact> bearing;
+    for (const int number : space_.footing(solved.held)) {
+      if (number != kFree) bearing.push_back(space_.place(number).bearing);
+    }
+    const double mass_kg = problem_.robot->robot->total_mass();
+    const BalanceRegion region = balance_region(mass_kg, bearing, kRegionMargin);
+    std::optional<TorqueProgramme> torques;
+    if (problem_.check.enforce_torque_limits) {
+      torques.emplace(*problem_.robot->robot, bearing, problem_.check.effort_scale, kRegionMargin);
+    }
+    Segment segment;
+    segment.held = solved.held.contacts;
+    segment.balance = &region;
+    segment.torques = torques ? &*torques : nullptr;
+    segment.left = besides(solved.before, solved.held);
+    segment.reached = besides(solved.after, solved.held);
+    segment.from = solved.from;
+    segment.to = solved.to;
+    solved.motion = mover_.move(segment, bearing, solved.planner, allowed(), solved.slower,
+                                {.seed = stances_.seed, .deadline = stances_.deadline});
+    plan_.whole_body_s += solved.motion.path_s;
+    plan_.timing_s += solved.motion.timing_s;
+  }
+
+  /// Planners of segments that are tried: another way through other stances is cheaper than the
+  /// dear ones, as long as there are others.
+  std::size_t allowed() const {
+    const std::size_t refused = static_cast<std::size_t>(plan_.refused_segments);
+    const std::size_t some = 1 + refused / kRefusedForMore;
+    return all_planners_ ? mover_.planners() : std::min(some, mover_.planners());
+  }
+
+  CheckReport judged(const Motion& motion, Wrenches* wrenches = nullptr) {
+    const Stopwatch watch;
+    CheckOptions asked = problem_.check;
+    asked.threads = stances_.threads;
+    if (wrenches != nullptr) {
+      asked.on_balance = [wrenches](int vertex, const BalanceCertificate& certificate) {
+        const auto& found = certificate.wrenches;
+        (*wrenches)[static_cast<std::size_t>(vertex)].assign(found.begin(), found.end());
+      };
+    }
+    CheckReport report = judge_.check(motion, asked);
+    plan_.judge_s += watch.seconds();
+    return report;
+  }
+
+  /// Where a whole motion is refused whose segments hold by themselves.
+  std::size_t segment_of(const CheckReport& report) const {
+    const std::vector<const Violation*> violated = report.violated();
+    const int vertex = violated.empty() ? 0 : violated.front()->at_vertex;
+    std::size_t j = 0;
+    while (j + 1 < plan_.segments.size() && plan_.segments[j].last <= vertex) ++j;
+    return j;
+  }
+
+  /// Judges a segment by itself, and moves it again until it holds: slower, or by the next planner.
+  /// False: it cannot be moved otherwise.
+  bool mend(const std::vector<Stance>& stances, std::size_t j, bool& mended) {
+    Solved& solved = *ways_[j];
+    for (;;) {
+      const SegmentMotion& way = solved.motion;
+      Motion alone;
+      alone.stances = {stances[j], stances[j + 1]};
+      alone.configurations = way.configurations;
+      const std::size_t last = way.configurations.size() - 1;
+      for (std::size_t i = 0; i <= last; ++i) {
+        alone.time_s.push_back(way.duration_s * static_cast<double>(i) / static_cast<double>(last));
+        alone.stance_from.push_back(i < last ? 0 : 1);
+      }
+      const CheckReport report = judged(alone);
+      solved.judged = report.feasible;
+      if (report.feasible) return true;
+      mended = true;
+      const std::vector<const Violation*> violated = report.violated();
+      const bool inertia =
+          std::ranges::all_of(violated, [](const Violation* v) { return is_of_inertia(*v); });
+      if (inertia && solved.slowed < kMostSlower) {
+        ++solved.slowed;
+        solved.slower *= kSlower;
+      } else {
+        solved.planner = mover_.number_of(way.planner) + 1;
+        solved.slower = 1.0;
+        solved.slowed = 0;
+      }
+      if (solved.planner < allowed()) move(solved);
+      if (solved.planner >= allowed() || !solved.motion.found) {
+        solved.motion.found = false;
+        solved.motion.reason = "refused: " + violation_text(report.worst());
+        return false;
+      }
+    }
+  }
+
+  const StanceProblem& problem_;
+  const StancePlannerOptions stances_;
+  MotionPlan& plan_;
+  StanceSpace space_;
+  SegmentMover mover_;
+  bool all_planners_;  ///< from the first segment on
+  Judge judge_;
+  std::vector<std::unique_ptr<Solved>> known_;
+  std::vector<Solved*> ways_;
+};
+
+}  // namespace
+
+MotionPlan plan_motion(const StanceProblem& problem, const StancePlannerOptions& stances,
+                       const MotionOptions& options) {
+  const Stopwatch watch;
+  MotionPlan plan;
+  MotionSearch search(problem, stances, options, plan);
+  StancePlannerOptions asked = stances;
+  asked.accept = [&](const auto& of, const auto& configurations, std::size_t first) {
+    return search.accept(of, configurations, first);
+  };
+  plan.stances = make_stance_planner(options.stance_planner)->plan(problem, asked);
+  plan.success = plan.stances.success;
+  plan.reason = plan.stances.reason;
+  if (!plan.success) {
+    plan.wrenches.clear();
+    plan.report = {};
+    search.keep(plan.stances.configurations.size() - 1);
+    search.assemble(plan.stances.stances, plan.stances.configurations);
+  }
+  plan.total_s = watch.seconds();
+  return plan;
+}
+
+}  // namespace locograph

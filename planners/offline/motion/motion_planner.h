@@ -1,0 +1,64 @@
+#pragma once
+/// A whole motion for a contact task: stances, a path in each, and when.
+///
+///     const StanceProblem problem = stance_problem(scenario).problem;
+///     const MotionPlan plan = plan_motion(problem, {.seed = 7});
+///     if (plan.success) write_graph(motion_graph(scenario, problem, plan), "plan.g2o");
+///
+/// Each stance that the stance planner finds is a segment: a path between the configurations in
+/// which it begins and ends (segment_planner.h), with the fastest timing from rest to rest
+/// (timing/path_timing.h). A segment that no planner solves is told to the stance planner, which
+/// does not go that way again. The whole motion is judged (check/judge.h) before it counts.
+
+#include <locograph/check/check_report.h>
+#include <locograph/check/motion.h>
+#include <locograph/planners/offline/stance/stance_planner.h>
+
+#include <string>
+#include <vector>
+
+namespace locograph {
+
+struct MotionOptions {
+  std::string stance_planner = "guided";  ///< see stance_planner.h
+  /// Names of segment planners in the order in which they are tried; empty: all.
+  std::vector<std::string> segment_planners = {};
+  double step_s = 0.02;       ///< between configurations of the plan, at most
+  double smoothing_s = 0.04;  ///< of accelerations, see path_timing.h
+  double lift_off_m = 0.035;  ///< along normals, before and after a swing
+  /// Where the scenario has no limit of accelerations [rad/s^2, m/s^2 of prismatic joints].
+  double joint_acceleration_rad_s2 = 10.0;
+};
+
+/// What became of one stance of the plan.
+struct SegmentRecord {
+  int stance = 0;           ///< of Motion::stances
+  int first = 0, last = 0;  ///< vertices of the motion
+  double duration_s = 0.0;
+  std::string planner;   ///< that solved it
+  double seconds = 0.0;  ///< all planners that tried
+  double timing_s = 0.0;
+  double length = 0.0,
+         straight = 0.0;  ///< of the path and of the straight way, SegmentSpace::distance
+};
+
+struct MotionPlan {
+  bool success = false;
+  std::string reason;
+  StancePlan stances;
+  /// Without success as far as it got: the segments up to the first that has none.
+  Motion motion;
+  std::vector<SegmentRecord> segments;
+  /// Of each configuration, and each contact of the stance it is left in, as
+  /// BalanceCertificate::wrenches; empty where nothing was judged.
+  std::vector<std::vector<Eigen::Matrix<double, 6, 1>>> wrenches;
+  CheckReport report;        ///< of the motion
+  int refused_segments = 0;  ///< told to the stance planner
+  double whole_body_s = 0.0, timing_s = 0.0, judge_s = 0.0, total_s = 0.0;
+};
+
+/// StancePlannerOptions::accept is used, and must be empty.
+MotionPlan plan_motion(const StanceProblem& problem, const StancePlannerOptions& stances,
+                       const MotionOptions& options = {});
+
+}  // namespace locograph

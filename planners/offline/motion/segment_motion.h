@@ -1,0 +1,72 @@
+#pragma once
+/// The motion within one stance: a path by the first planner that finds one, and its timing.
+///
+///     SegmentMover mover(problem, options);
+///     const SegmentMotion motion = mover.move(segment, bearing, 0, 1, 1.0, {.seed = 7});
+///     if (motion.found) std::cout << motion.configurations.size() << " configurations\n";
+///
+/// The waypoints of a path become a spline through few of them: where it is off the contacts or
+/// does not hold, more are added. It is timed from rest to rest (timing/path_timing.h) and sampled
+/// evenly. The outcome depends on the arguments alone. One for each thread.
+
+#include <locograph/planners/offline/motion/motion_planner.h>
+#include <locograph/planners/offline/motion/segment_planner.h>
+#include <locograph/planners/offline/timing/path_timing.h>
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace locograph {
+
+struct SegmentMotion {
+  bool found = false;
+  std::string planner;                          ///< that found the path
+  std::string reason;                           ///< why there is none: of each planner
+  std::vector<Eigen::VectorXd> configurations;  ///< equispaced in time, both ends included
+  double duration_s = 0.0;
+  double length = 0.0, straight = 0.0;  ///< SegmentSpace::distance, of the path and of its ends
+  double path_s = 0.0, timing_s = 0.0;  ///< what it took
+};
+
+class SegmentMover {
+ public:
+  /// Throws Error for unknown names of planners, and as SegmentSpace does.
+  SegmentMover(const StanceProblem& problem, const MotionOptions& options);
+
+  /// bearing: the contacts that are held, with their areas. first, end: numbers of the segment
+  /// planners that are tried. slower: the motion takes so many times as long, at least 1.
+  SegmentMotion move(const Segment& segment, std::span<const BearingContact> bearing,
+                     std::size_t first, std::size_t end, double slower,
+                     const SegmentOptions& options);
+  std::size_t planners() const { return planners_.size(); }
+  /// Of a planner by its name.
+  std::size_t number_of(const std::string& planner) const;
+
+ private:
+  /// A configuration of a way, so far from where it begins.
+  struct Node {
+    double at;
+    Eigen::VectorXd q;
+  };
+
+  /// A spline through as few configurations of a way as keep it closed and valid.
+  PathSpline close(std::vector<Eigen::VectorXd> waypoints);
+  Node on_way(const std::vector<Node>& way, double at);
+  /// What the spline has to go through as well between nodes i - 1 and i; nothing: it holds.
+  std::optional<Node> missing(const PathSpline& path, std::size_t i, const std::vector<Node>& way,
+                              const std::vector<Node>& nodes);
+  bool time(const PathSpline& path, std::span<const BearingContact> bearing, double slower,
+            SegmentMotion& motion);
+  void hold_wheels(std::vector<Eigen::VectorXd>& configurations);
+
+  const StanceProblem& problem_;
+  const MotionOptions& options_;
+  SegmentSpace space_;
+  TimingLimits limits_;
+  std::vector<std::unique_ptr<SegmentPlanner>> planners_;
+};
+
+}  // namespace locograph

@@ -1,0 +1,121 @@
+#include <locograph/planners/offline/motion/swing.h>
+
+#include <algorithm>
+
+namespace locograph {
+namespace {
+
+/// Moves along normals take so much of a segment.
+constexpr double kEnds = 0.3;
+
+/// 0 before `begin`, 1 after `end`, smooth between.
+double rise(double t, double begin, double end) {
+  const double x = std::clamp((t - begin) / (end - begin), 0.0, 1.0);
+  return x * x * (3.0 - 2.0 * x);
+}
+
+/// 0 at 0, 1 after `end`, at once: nothing grazes the ground.
+double lift(double t, double end) {
+  const double x = std::clamp(t / end, 0.0, 1.0);
+  return x * (2.0 - x);
+}
+
+Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const Eigen::Vector3d& by) {
+  Eigen::Isometry3d result = pose;
+  result.translation() += by;
+  return result;
+}
+
+}  // namespace
+
+/// Horizontal, from the higher of both towards the lower one; towards the robot where they lie one
+/// above the other.
+Eigen::Vector3d Swing::away(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const {
+  constexpr double kAbove_m = 0.03;
+  Eigen::Vector3d way = b.z() > a.z() ? a - b : b - a;
+  way.z() = 0.0;
+  if (way.norm() < kAbove_m) {
+    way = base - 0.5 * (a + b);
+    way.z() = 0.0;
+  }
+  return way.stableNormalized();
+}
+
+void Swing::add_places(const Robot& robot, double t, const ArcOptions& options,
+                       std::vector<Contact>& places) const {
+  const auto add = [&](const Contact& contact, const Eigen::Isometry3d& pose, bool with_axes) {
+    places.push_back(contact_in_air(robot, contact, pose, with_axes));
+  };
+  const bool both = left != nullptr && reached != nullptr;
+  const bool plain = !options.climb_first && options.away_m == 0.0;
+  if (options.ends_only || (!both && plain)) {
+    // Height along the normal only, and nothing in between.
+    if (left != nullptr && t <= kEnds) {
+      const double up = options.height_m * lift(t, kEnds);
+      add(*left, moved(from, up * left->normal.normalized()), options.with_axes);
+    }
+    if (reached != nullptr && t >= 1.0 - kEnds) {
+      const double up = options.height_m * lift(1.0 - t, kEnds);
+      add(*reached, moved(to, up * reached->normal.normalized()), options.with_axes);
+    }
+    return;
+  }
+  const Contact& contact = left != nullptr ? *left : *reached;
+  const auto up = [](const Contact* at) {
+    return at != nullptr ? Eigen::Vector3d(at->normal.normalized()) : Eigen::Vector3d::Zero();
+  };
+  const Eigen::Vector3d up_from = up(left), up_to = up(reached);
+  const Eigen::Vector3d climbing = reached != nullptr ? up_to : up_from;
+  const Eigen::Vector3d point = contact.effector.point;
+  const Eigen::Vector3d a = from * point, b = to * point;
+  const bool stepped = options.climb_first;
+  const double over = stepped ? rise(t, 0.35, 0.8) : rise(t, 0.15, 0.85);
+  const double lifted = lift(t, 0.35), high = lift(1.0 - t, 0.35);
+  // What is higher at the end is climbed first, what is lower comes down last.
+  double climb = climbing.dot(b - a);
+  if (!stepped && climb < 0.0) climb = 0.0;
+  const Eigen::Vector3d across = b - a - climb * climbing;
+  const double climbed = climb > 0.0 ? rise(t, 0.0, stepped ? 0.4 : 0.6) : rise(t, 0.6, 1.0);
+  const double bulge = options.away_m * rise(t, 0.0, 0.35) * rise(1.0 - t, 0.0, 0.35);
+  const Eigen::Vector3d at =
+      a + over * across + climbed * climb * climbing + bulge * away(a, b) +
+      options.height_m * ((1.0 - over) * lifted * up_from + over * high * up_to);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = Eigen::Quaterniond(from.linear())
+                      .slerp(over, Eigen::Quaterniond(to.linear()))
+                      .toRotationMatrix();
+  pose.translation() = at - pose.linear() * point;
+  Contact between = contact;
+  const Eigen::Vector3d normal = (1.0 - over) * up_from + over * up_to;
+  if (normal.norm() > 1e-3) between.normal = normal.normalized();
+  add(between, pose, options.with_axes);
+}
+
+std::vector<Swing> swings_of(SegmentSpace& space) {
+  const Segment& segment = space.segment();
+  std::vector<Swing> swings;
+  for (const Contact& contact : segment.left) swings.emplace_back().left = &contact;
+  for (const Contact& contact : segment.reached) {
+    const auto found = std::find_if(swings.begin(), swings.end(), [&](const Swing& swing) {
+      return swing.left != nullptr && swing.left->name() == contact.name();
+    });
+    if (found != swings.end()) {
+      found->reached = &contact;
+    } else {
+      swings.emplace_back().reached = &contact;
+    }
+  }
+  RobotState from(space.robot()), to(space.robot());
+  from.update(segment.from.data());
+  to.update(segment.to.data());
+  for (Swing& swing : swings) {
+    const Contact& contact = swing.left != nullptr ? *swing.left : *swing.reached;
+    const int link = space.robot().link_index(contact.effector.link);
+    swing.from = from.world_from_link(link);
+    swing.to = to.world_from_link(link);
+    swing.base = 0.5 * (segment.from.head<3>() + segment.to.head<3>());
+  }
+  return swings;
+}
+
+}  // namespace locograph

@@ -1,0 +1,154 @@
+// A whole motion as a graph: what `plan` writes of it.
+#include <gtest/gtest.h>
+#include <locograph/check/balance_certificate.h>
+#include <locograph/core/graph_file.h>
+#include <locograph/planners/offline/motion/motion_graph.h>
+#include <locograph/planners/plan/plan.h>
+#include <locograph/plugins/contact/edge_contact.h>
+#include <locograph/plugins/robot_types.h>
+#include <locograph/plugins/self_collision/edge_self_collision.h>
+#include <locograph/plugins/static_balance/edge_balance.h>
+#include <locograph/plugins/static_balance/vertex_wrenches.h>
+
+#include "planners/stance_tasks.h"
+
+namespace locograph::test {
+namespace {
+
+/// COMAN+ stays at its start: in all contacts, then without the left hand, one second each.
+class MotionGraph : public testing::Test {
+ protected:
+  static constexpr int kCount = 11, kChange = 5;
+
+  MotionGraph() : scenario(changed_scenario("standing_up", {})) {
+    problem = stance_problem(scenario).problem;
+    problem.moves = {.most_m = 0.02, .seed = 3, .draws = 1};
+    plan.success = true;
+    Motion& motion = plan.motion;
+    motion.stances = {problem.start, without_contact(problem.start, "left_hand")};
+    for (int i = 0; i < kCount; ++i) {
+      motion.time_s.push_back(0.2 * i);
+      motion.configurations.push_back(problem.start_configuration);
+      motion.stance_from.push_back(i < kChange ? 0 : 1);
+      const Stance& stance = motion.stances[static_cast<std::size_t>(motion.stance_from.back())];
+      const BalanceCertificate certificate =
+          certify_balance(*problem.robot->robot, problem.start_configuration, stance.contacts, {});
+      plan.wrenches.emplace_back(certificate.wrenches.begin(), certificate.wrenches.end());
+    }
+    for (int j = 0; j < 2; ++j) {
+      SegmentRecord& segment = plan.segments.emplace_back();
+      segment.stance = j;
+      segment.first = j * kChange;
+      segment.last = (j + 1) * kChange;
+      segment.duration_s = 1.0;
+      segment.planner = "interpolation";
+    }
+  }
+
+  static TypeRegistry types() {
+    TypeRegistry registry;
+    add_robot_types(registry);
+    return registry;
+  }
+
+  Scenario scenario;
+  StanceProblem problem;
+  MotionPlan plan;
+};
+
+TEST_F(MotionGraph, SaysAllThatThePlanKnows) {
+  const std::string text = write_graph_text(motion_graph(scenario, problem, plan));
+  const Graph graph = read_graph_text(text, "plan.g2o", ".", types());
+  const Plan read = plan_of(graph);
+  EXPECT_FALSE(read.incomplete);
+  EXPECT_EQ(read.moves.most_m, 0.02);
+  ASSERT_EQ(read.segments.size(), 2U);
+  EXPECT_EQ(read.segments[0].last, kChange);
+  EXPECT_EQ(read.segments[1].first, kChange);
+  EXPECT_EQ(read.segments[1].last, kCount - 1);
+  EXPECT_EQ(read.segments[1].duration_s, 1.0);
+  EXPECT_EQ(read.segments[1].planner, "interpolation");
+  const Motion motion = motion_of(graph, read);
+  EXPECT_EQ(motion.time_s, plan.motion.time_s);
+  EXPECT_EQ(motion.stance_from, plan.motion.stance_from);
+  for (std::size_t i = 0; i < motion.configurations.size(); ++i) {
+    EXPECT_TRUE(motion.configurations[i] == plan.motion.configurations[i]) << i;
+  }
+  EXPECT_TRUE(graph.vertex_record(read.slots.front()).fixed);
+  EXPECT_FALSE(graph.vertex_record(read.slots.back()).fixed);
+  // Again the same bytes: weights, too, whatever way they are written.
+  EXPECT_EQ(write_graph_text(graph), text);
+}
+
+TEST_F(MotionGraph, BothStancesHoldWhereTheyChange) {
+  const Graph graph = motion_graph(scenario, problem, plan);
+  const std::size_t all = plan.motion.stances[0].contacts.size();
+  const Plan read = plan_of(graph);
+  std::vector<std::size_t> contacts(static_cast<std::size_t>(kCount));
+  for (const EdgeContact& edge : graph.edges_of<EdgeContact>()) {
+    const auto at = std::ranges::find(read.slots, edge.vertices[0]);
+    ++contacts[static_cast<std::size_t>(at - read.slots.begin())];
+  }
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    EXPECT_EQ(contacts[i], i <= kChange ? all : all - 1) << i;
+  }
+}
+
+TEST_F(MotionGraph, WrenchesBalanceEachConfigurationWhereTheyAreKnown) {
+  const Graph graph = motion_graph(scenario, problem, plan);
+  EXPECT_EQ(graph.vertices_of<VertexWrenches>().size(), static_cast<std::size_t>(kCount));
+  for (const VertexWrenches& wrenches : graph.vertices_of<VertexWrenches>()) {
+    EXPECT_GT(wrenches.state.norm(), 100.0);
+  }
+  plan.wrenches.clear();
+  const Graph without = motion_graph(scenario, problem, plan);
+  EXPECT_TRUE(without.vertices_of<VertexWrenches>().empty());
+  EXPECT_TRUE(without.edges_of<EdgeBalance>().empty());
+}
+
+TEST_F(MotionGraph, LinksThatLookTooNearHaveNoWeight) {
+  const Graph graph = motion_graph(scenario, problem, plan);
+  ASSERT_EQ(graph.edges_of<EdgeSelfCollision>().size(), static_cast<std::size_t>(kCount));
+  const EdgeSelfCollision& edge = graph.edges_of<EdgeSelfCollision>().front();
+  ConfigurationState state(problem.robot);
+  state.update(problem.start_configuration.data());
+  EdgeSelfCollision weighted = edge;
+  weighted.weights.setOnes();
+  Eigen::VectorXd lack(edge.weights.size());
+  weighted.error(state, lack);
+  for (Eigen::Index p = 0; p < lack.size(); ++p) {
+    EXPECT_EQ(edge.weights[p] > 0.0, lack[p] == 0.0) << p;
+  }
+}
+
+TEST_F(MotionGraph, TakesSomeThousandCharactersForEachConfiguration) {
+  const double text =
+      static_cast<double>(write_graph_text(motion_graph(scenario, problem, plan)).size());
+  EXPECT_LT(text / kCount, 4000.0);
+}
+
+TEST_F(MotionGraph, APlanThatIsCutEndsItsSegments) {
+  Graph graph = motion_graph(scenario, problem, plan);
+  for (int i = 8; i < kCount; ++i) graph.remove_vertex(graph.slot_of(i));
+  EXPECT_THROW(plan_of(graph), Error);
+  mark_incomplete(graph);
+  Plan read = plan_of(graph);
+  ASSERT_EQ(read.segments.size(), 2U);
+  EXPECT_EQ(read.segments[1].last, 7);
+  EXPECT_NEAR(read.segments[1].duration_s, 0.4, 1e-12);
+  for (int i = kChange + 1; i < 8; ++i) graph.remove_vertex(graph.slot_of(i));
+  mark_incomplete(graph);
+  read = plan_of(graph);
+  ASSERT_EQ(read.segments.size(), 1U);
+  EXPECT_EQ(read.segments[0].last, kChange);
+}
+
+TEST_F(MotionGraph, RefusesAMotionThatItCannotSay) {
+  plan.motion.stance_from[3] = -1;
+  EXPECT_THROW(motion_graph(scenario, problem, plan), Error);
+  plan.motion = {};
+  EXPECT_THROW(motion_graph(scenario, problem, plan), Error);
+}
+
+}  // namespace
+}  // namespace locograph::test
