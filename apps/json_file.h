@@ -23,6 +23,9 @@ Json read_json(const std::filesystem::path& file, const std::string& expected);
 /// The same of a text; file: for errors.
 Json parse_json(const std::string& text, const std::string& file, const std::string& expected);
 
+/// The lines where the elements of a list of the outermost object begin, by its name; fewer where
+/// there is none.
+std::vector<int> json_lines(const std::string& text, const std::string& list);
 /// The line where a value of a text that is JSON begins, by the names and numbers on the way to it;
 /// where there is none of them, the line where what would hold it ends.
 int json_line(const std::string& text, const std::vector<std::string>& path);

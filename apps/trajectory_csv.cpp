@@ -111,6 +111,10 @@ ReadTrajectory read_trajectory_csv(const std::string& file, const TypeRegistry& 
       reader.fail(row->line, std::to_string(row->fields.size()) + " fields",
                   std::to_string(head->fields.size()) + ", one for each column");
     }
+    for (const std::string& field : row->fields) {
+      if (!field.empty() && field.find_first_of(" \t") == std::string::npos) continue;
+      reader.fail(row->line, "'" + field + "' in a column", "one number");
+    }
     std::vector<std::string> fields = {row->fields[0], row->fields[2]};
     for (const std::size_t column : columns) fields.push_back(row->fields[column]);
     configurations.add(fields, row->line);

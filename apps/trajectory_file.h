@@ -8,8 +8,8 @@
 ///
 /// Described in doc/files.md. All that a plan says is there, but for its edges: its parameters in
 /// the words of a graph file, and of each configuration time, stance and numbers, to the last bit.
-/// What can be worked out of these (velocities, schedule of contacts, segments) is there for who
-/// reads the file; what is read back and says otherwise is refused.
+/// What can be worked out of these is there for who reads the file: a schedule of contacts and
+/// segments that say otherwise are refused, velocities, accelerations and twists are not read.
 
 #include <locograph/apps/plan_file.h>
 #include <locograph/planners/plan/balance_edges.h>

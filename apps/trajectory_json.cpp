@@ -137,6 +137,7 @@ class JsonPlan {
   }
 
   const Json& root() const { return root_; }
+  const std::string& text() const { return text_; }
   int line(const Path& path) const { return json_line(text_, path); }
 
   [[noreturn]] void fail(const Path& path, const std::string& what,
@@ -216,6 +217,7 @@ class JsonPlan {
 /// The parameters as the lines of a graph file, each in the line where it stands.
 std::string parameters_text(const JsonPlan& json) {
   const Json& list = json.list("parameters");
+  const std::vector<int> lines = json_lines(json.text(), "parameters");
   std::string text;
   int line = 1;
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -224,7 +226,8 @@ std::string parameters_text(const JsonPlan& json) {
     if (!words.starts_with("PARAMS_") || words.find_first_of("\r\n") != std::string::npos) {
       json.fail(path, "is no parameter", "a line 'PARAMS_…' of a graph file");
     }
-    for (const int here = json.line(path); line < here; ++line) text += '\n';
+    const int here = i < lines.size() ? lines[i] : 0;
+    for (; line < here; ++line) text += '\n';
     text += words + '\n';
     ++line;
   }

@@ -52,6 +52,14 @@ void require_motion(const PlanFile& file) {
   if (file.plan.stances_only) {
     throw Error(file.name, 0, "is a plan of stances, which has no motion", "a whole plan");
   }
+  const auto time_s = [&file](std::size_t i) {
+    return file.graph.vertex(VertexId<VertexConfiguration>{file.plan.slots[i]}).time_s;
+  };
+  for (std::size_t i = 1; i < file.plan.slots.size(); ++i) {
+    if (time_s(i) > time_s(i - 1)) continue;
+    throw Error(file.name, 0, "two configurations at " + std::to_string(time_s(i)) + " s",
+                "times that increase");
+  }
 }
 
 std::vector<std::string> parameter_lines(const Graph& graph, const std::filesystem::path& folder) {

@@ -147,7 +147,9 @@ BalanceFindings::Margin BalanceWorker::judge(const Spot& spot, BalanceFindings::
     const bool told = enough_is_known_of_torques(bounds);
     if (told && enough_is_known_of_margin(bounds) && (spot.half || !context_.options.on_balance))
       return {bounds.margin_at_least, false};
-    if (told) options.least_torques = torques = false;
+    if (told) torques = false;
+    // Their wrenches are wanted at every vertex, and those of the largest margin will do.
+    if (told && context_.options.on_balance) options.least_torques = false;
   }
   BalanceFinding found = programme(spot, options, torques);
   const BalanceFindings::Margin margin{found.certificate.margin, true};

@@ -62,7 +62,7 @@ class BalanceWorker {
  public:
   BalanceWorker(CheckContext& context, const MotionRates& rates);
 
-  /// Vertices from first to before last, with wrenches found at one before and at `ahead`. What is
+  /// Vertices from first to before last, with wrenches found at one before and at `last`. What is
   /// found is added, also where it is already known: beyond `found.known` it goes by that only.
   void judge_vertices(std::size_t first, std::size_t last, BalanceFindings& found);
   /// Steps likewise, with what was found at their vertices.

@@ -113,6 +113,13 @@ void NearbyBalance::apply(const RobotState& state, const std::vector<Wrench>& wr
 NearbyBalance::Left NearbyBalance::correct(const RobotState& state, const BalanceOptions& options,
                                            std::vector<Wrench> wrenches) {
   Left left;
+  // What bears otherwise here than where they were found bears nothing of that.
+  std::vector<Wrench> kept(wrenches.size(), Wrench::Zero());
+  for (const auto& [place, component] : columns_) {
+    const auto number = static_cast<std::size_t>(place);
+    kept[number][component] = wrenches[number][component];
+  }
+  wrenches = std::move(kept);
   apply(state, wrenches);
   const Eigen::Matrix<double, 6, 6> squares = rows_ * rows_.transpose();
   const Wrench multipliers = squares.ldlt().solve(torques_.head<6>());

@@ -128,6 +128,9 @@ std::vector<PlanSegment> segments_of(const Graph& graph, const Plan& plan) {
       one.fail(" ends at " + time_text(one.end_s()) + ", where no configuration is",
                "the time of one, as " + time_text(vertex(at).time_s));
     }
+    if (at == first && plan.slots.size() > 1) {
+      one.fail(" takes no time", "configurations from its beginning to its end");
+    }
     segments.push_back({static_cast<int>(first), static_cast<int>(at), one.segment->duration_s,
                         one.segment->planner});
   }

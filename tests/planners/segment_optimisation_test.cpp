@@ -35,39 +35,6 @@ double optimised_length(const SegmentSpace& space, const SegmentPath& path) {
   return sum;
 }
 
-/// COMAN+ on its left foot; the right one steps forward.
-std::unique_ptr<test::SegmentProblem> step_forward_problem() {
-  StanceProblem task = test::stance_task("slanted_wall");
-  auto problem = std::make_unique<test::SegmentProblem>();
-  problem->robot = task.robot;
-  problem->world.surfaces = {ground()};
-  const Contact left = test::contact_of(task.start, "left_foot");
-  const Contact before = test::contact_of(task.start, "right_foot");
-  Contact after = before;
-  after.position.x() += 0.12;
-  const std::vector<BearingContact> bearing = {{left}};
-  problem->region = balance_region(task.robot->robot->total_mass(), bearing, 0.1);
-  Segment& segment = problem->segment;
-  segment.held = {left};
-  segment.balance = &problem->region;
-  segment.left = {before};
-  segment.reached = {after};
-  segment.from = segment.to = task.start_configuration;
-  SegmentSpace space(problem->robot, problem->world);
-  space.set_segment(segment);
-  const auto stand = [&](const Contact& contact, Eigen::VectorXd& q) {
-    if (!space.solve(task.start_configuration, std::vector<Contact>{contact}, q)) {
-      throw std::runtime_error(space.why_not());
-    }
-  };
-  Eigen::VectorXd from, to;
-  stand(before, from);
-  stand(after, to);
-  segment.from = from;
-  segment.to = to;
-  return problem;
-}
-
 TEST(SegmentOptimisation, GoesStraightWhereNothingIsInTheWay) {
   const auto problem = test::segment_problem("board");
   problem->world.solids.clear();
@@ -98,7 +65,7 @@ TEST(SegmentOptimisation, GoesOutOfOneWindowAndInAtTheOther) {
 }
 
 TEST(SegmentOptimisation, WhatSwingsFollowsAnArc) {
-  const auto problem = step_forward_problem();
+  const auto problem = test::step_forward_problem();
   SegmentSpace space(problem->robot, problem->world);
   space.set_segment(problem->segment);
   const SegmentPath path = make_optimisation()->plan(space, {});

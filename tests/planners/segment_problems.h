@@ -118,4 +118,37 @@ inline std::unique_ptr<SegmentProblem> segment_problem(const std::string& name) 
   return problem;
 }
 
+/// COMAN+ on its left foot; the right one steps forward, by 0.12 m.
+inline std::unique_ptr<SegmentProblem> step_forward_problem() {
+  StanceProblem task = stance_task("slanted_wall");
+  auto problem = std::make_unique<SegmentProblem>();
+  problem->robot = task.robot;
+  problem->world.surfaces = {ground()};
+  const Contact left = contact_of(task.start, "left_foot");
+  const Contact before = contact_of(task.start, "right_foot");
+  Contact after = before;
+  after.position.x() += 0.12;
+  const std::vector<BearingContact> bearing = {{left}};
+  problem->region = balance_region(task.robot->robot->total_mass(), bearing, 0.1);
+  Segment& segment = problem->segment;
+  segment.held = {left};
+  segment.balance = &problem->region;
+  segment.left = {before};
+  segment.reached = {after};
+  segment.from = segment.to = task.start_configuration;
+  SegmentSpace space(problem->robot, problem->world);
+  space.set_segment(segment);
+  const auto stand = [&](const Contact& contact, Eigen::VectorXd& q) {
+    if (!space.solve(task.start_configuration, std::vector<Contact>{contact}, q)) {
+      throw std::runtime_error(space.why_not());
+    }
+  };
+  Eigen::VectorXd from, to;
+  stand(before, from);
+  stand(after, to);
+  segment.from = from;
+  segment.to = to;
+  return problem;
+}
+
 }  // namespace locograph::test

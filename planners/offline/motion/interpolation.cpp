@@ -20,19 +20,26 @@ constexpr int kMarchDepth = 3;
 /// What swings is not smoothed near its places.
 constexpr double kKept = 0.2;
 
-/// In the order in which they are tried.
-constexpr std::array<ArcOptions, 11> kArcs = {
+/// In the order in which they are tried, those first on which nothing is in the way.
+constexpr std::array<ArcOptions, 15> kArcs = {
     {{.height_m = 0.05},
      {.height_m = 0.05, .with_axes = false},
      {.height_m = 0.05, .with_axes = false, .away_m = 0.1},
+     {.height_m = 0.05, .with_axes = false, .away_m = 0.15},
      {.height_m = 0.05, .with_axes = false, .away_m = 0.2},
+     {.height_m = 0.05, .with_axes = false, .away_m = 0.28},
      {.height_m = 0.012, .with_axes = false, .away_m = 0.12},
-     {.height_m = 0.06, .with_axes = false, .away_m = 0.12, .climb_first = true},
-     {.height_m = 0.012, .with_axes = false, .away_m = 0.2, .climb_first = true},
+     {.height_m = 0.06, .with_axes = false, .away_m = 0.1, .climb_first = true},
+     {.height_m = 0.06, .with_axes = false, .away_m = 0.16, .climb_first = true},
+     {.height_m = 0.012, .with_axes = false, .away_m = 0.14, .climb_first = true},
+     {.height_m = 0.012, .with_axes = false, .away_m = 0.22, .climb_first = true},
      {.height_m = 0.06, .with_axes = false, .climb_first = true},
      {.height_m = 0.12, .with_axes = false},
      {.height_m = 0.05, .ends_only = true},
      {.height_m = 0.04, .with_axes = false, .ends_only = true}}};
+/// Of arcs with something in the way, which a link that turns may pass.
+constexpr int kMostBlocked = 3;
+constexpr int kLooks = 16;
 
 struct Knot {
   double t;
@@ -50,12 +57,12 @@ class Interpolation : public SegmentPlanner {
     const std::vector<Swing> swings = swings_of(space);
     SegmentPath path;
     const Knot begin{0.0, space.segment().from}, end{1.0, space.segment().to};
-    for (const ArcOptions& arc : kArcs) {
+    for (const ArcOptions& arc : arcs_for(space, swings)) {
       if (options.deadline.passed()) break;
       std::vector<Knot> knots = {begin};
       if (!fill(space, swings, arc, knots, end, 0)) {
-        path.reason = space.why_not();
-        if (swings.empty()) break;
+        path.reason = space.why_not().empty() ? "no short way leads half-way" : space.why_not();
+        if (swings.empty()) continue;
         if (!march(space, swings, arc, begin, end, knots)) continue;
       }
       smooth(space, !swings.empty(), knots);
@@ -67,6 +74,38 @@ class Interpolation : public SegmentPlanner {
   }
 
  private:
+  /// The arcs to try, in their order.
+  static std::vector<ArcOptions> arcs_for(SegmentSpace& space, const std::vector<Swing>& swings) {
+    if (swings.empty()) return {kArcs.front()};
+    std::vector<ArcOptions> clear, blocked, free;
+    for (const ArcOptions& arc : kArcs) {
+      bool on_arc = false, in_the_way = false;
+      for (const Swing& swing : swings) {
+        if (!swing.follows_arc(arc)) continue;
+        on_arc = true;
+        for (int i = 1; i < kLooks && !in_the_way; ++i) {
+          const Eigen::Isometry3d pose = swing.pose(static_cast<double>(i) / kLooks, arc);
+          in_the_way = space.room_of(swing.contact(), pose) < 0.0;
+        }
+      }
+      (!on_arc ? free : in_the_way ? blocked : clear).push_back(arc);
+    }
+    if (static_cast<int>(blocked.size()) > kMostBlocked) blocked.resize(kMostBlocked);
+    // What is only lifted or only put down is free in between, at first.
+    const bool one_end = std::ranges::any_of(swings, [](const Swing& swing) {
+      return swing.left == nullptr || swing.reached == nullptr;
+    });
+    std::vector<ArcOptions> all;
+    const auto append = [&all](const std::vector<ArcOptions>& some) {
+      all.insert(all.end(), some.begin(), some.end());
+    };
+    if (one_end) append(free);
+    append(clear);
+    append(blocked);
+    if (!one_end) append(free);
+    return all;
+  }
+
   /// Appends what lies between the last knot and `end`, and `end`.
   static bool fill(SegmentSpace& space, const std::vector<Swing>& swings, const ArcOptions& arc,
                    std::vector<Knot>& knots, const Knot& end, int depth) {
@@ -82,7 +121,11 @@ class Interpolation : public SegmentPlanner {
     Knot middle{0.5 * (begin.t + end.t), {}};
     std::vector<Contact> places;
     for (const Swing& swing : swings) swing.add_places(space.robot(), middle.t, arc, places);
-    if (!space.solve(space.half_way(begin.q, end.q), places, middle.q)) return false;
+    const Eigen::VectorXd straight = space.half_way(begin.q, end.q);
+    middle.q = straight;
+    const bool closed =
+        places.empty() && space.project(middle.q) && space.valid(middle.q, swinging);
+    if (!closed && !space.solve(straight, places, middle.q)) return false;
     const double way = space.distance(begin.q, middle.q) + space.distance(middle.q, end.q);
     if (way > kLonger * apart + kLongerBy) return false;
     return fill(space, swings, arc, knots, middle, depth + 1) &&

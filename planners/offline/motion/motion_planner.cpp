@@ -17,7 +17,9 @@ constexpr double kRegionMargin = 0.1;
 constexpr double kSlower = 1.3;
 constexpr int kMostSlower = 6;
 /// So many refused segments make one more of their planners tried.
-constexpr std::size_t kRefusedForMore = 8;
+constexpr std::size_t kRefusedForMore = 5;
+/// Of random trees, for the same reason.
+constexpr int kFewStates = 4000;
 
 /// What one segment came to be, to be looked up when the stance planner comes back to it.
 struct Solved {
@@ -86,7 +88,7 @@ class MotionSearch {
         if (ways_[j]->judged) continue;
         if (!mend(stances, j, mended)) return refuse(j);
       }
-      if (!mended) return refuse(segment_of(plan_.report));
+      if (!mended) return refuse(std::max(first, segment_of(plan_.report)));
     }
   }
 
@@ -175,8 +177,11 @@ class MotionSearch {
     segment.reached = besides(solved.after, solved.held);
     segment.from = solved.from;
     segment.to = solved.to;
-    solved.motion = mover_.move(segment, bearing, solved.planner, allowed(), solved.slower,
-                                {.seed = stances_.seed, .deadline = stances_.deadline});
+    SegmentOptions asked;
+    asked.seed = stances_.seed;
+    asked.deadline = stances_.deadline;
+    if (!all_planners_) asked.max_states = kFewStates;
+    solved.motion = mover_.move(segment, bearing, solved.planner, allowed(), solved.slower, asked);
     plan_.whole_body_s += solved.motion.path_s;
     plan_.timing_s += solved.motion.timing_s;
   }

@@ -22,7 +22,7 @@ namespace locograph {
 using Waypoints = std::vector<Eigen::VectorXd>;
 
 /// Between configurations that trees look at [m, rad].
-inline constexpr double kTreeStep = 0.05;
+inline constexpr double kTreeStep = 0.03;
 
 /// Of the two quaternions of a rotation the one nearer to that of `near`, a configuration or
 /// coordinates.

@@ -62,7 +62,7 @@ SegmentMotion SegmentMover::move(const Segment& segment, std::span<const Bearing
   const Stopwatch watch;
   space_.set_segment(segment);
   motion.straight = space_.distance(segment.from, segment.to);
-  if (motion.straight < kNoWay) {
+  if (motion.straight <= kNoWay) {
     motion.found = true;
     motion.planner = planners_.front()->name();
     motion.configurations = {segment.from, segment.to};

@@ -13,14 +13,14 @@ constexpr double kProjected = 1e-9;  // m, rad
 constexpr int kMostProjections = 12;
 constexpr double kLongestProjection = 0.3;
 /// Between configurations that were found with all of their margins, so much of them is asked for.
-constexpr double kShareOfMargins = 0.25;
+constexpr double kShareOfMargins = 0.5;
 constexpr double kRowsTolerance = 1e-4;  // m, rad
 constexpr double kJointRoom_rad = 1e-3;
 /// Half-way configurations that are brought back may be so much further away than straight ones.
 constexpr double kMostBent = 0.75;
 /// What is further away than this is as good as anywhere; how far links move for each radian,
 /// about; and steps that are never looked between.
-constexpr double kMostRoom_m = 0.03, kReach_m = 0.6, kLeastStep = 0.012;
+constexpr double kMostRoom_m = 0.03, kReach_m = 0.6, kLeastStep = 0.008;
 constexpr int kLiftSteps = 3;
 constexpr double kAlmost = 0.006;  // m, rad
 /// What is further from its place is not near it: other links, and other sides of what is touched,
@@ -84,6 +84,7 @@ void SegmentSpace::set_segment(const Segment& segment) {
   near_ = segment.left;
   near_.insert(near_.end(), segment.reached.begin(), segment.reached.end());
   rows_for_.reset();
+  why_not_.clear();
   lifted_ = {segment.from};
   landing_ = {segment.to};
 }
@@ -177,7 +178,12 @@ const TransitionRows& SegmentSpace::rows_at(const Eigen::VectorXd& q, bool swing
 
 bool SegmentSpace::valid(const Eigen::VectorXd& q, bool swinging) {
   const TransitionRows::Row* worst = nullptr;
+  room_m_ = kMostRoom_m;
   for (const TransitionRows::Row& row : rows_at(q, swinging).rows()) {
+    if (row.kind == TransitionFailure::kSelf || row.kind == TransitionFailure::kSurface ||
+        row.kind == TransitionFailure::kObstacle) {
+      room_m_ = std::min(room_m_, row.value);
+    }
     if (row.value < -kRowsTolerance && (worst == nullptr || row.value < worst->value)) worst = &row;
   }
   if (worst != nullptr) why_not_ = rows_.text(*worst);
@@ -227,6 +233,12 @@ bool SegmentSpace::room_between(const Eigen::VectorXd& a, double room_a, const E
   const double room = room_m_;
   return room_between(a, room_a, middle, room, step_rad, swinging) &&
          room_between(middle, room, b, room_b, step_rad, swinging);
+}
+
+double SegmentSpace::room_of(const Contact& contact, const Eigen::Isometry3d& world_from_link) {
+  const std::vector<Contact> there = {contact_in_air(robot(), contact, world_from_link, false)};
+  set_rows(true, what_is_near(segment_->from, there));
+  return rows_.link_room(robot().link_index(contact.effector.link), world_from_link);
 }
 
 bool SegmentSpace::solve(const Eigen::VectorXd& start, std::span<const Contact> also,

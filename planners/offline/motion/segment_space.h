@@ -85,6 +85,10 @@ class SegmentSpace {
   Eigen::VectorXd half_way(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
                            double fraction = 0.5) const;
 
+  /// How far what is fixed to a contact's link is from all that it does not touch there, with the
+  /// link in this pose; at most 0.1 m.
+  double room_of(const Contact& contact, const Eigen::Isometry3d& world_from_link);
+
   /// A configuration near `start` that is closed and valid, by the solver of transitions;
   /// `also`: contacts that are closed besides those that are held, as places of what swings.
   bool solve(const Eigen::VectorXd& start, std::span<const Contact> also, Eigen::VectorXd& q);

@@ -20,6 +20,16 @@ double lift(double t, double end) {
   return x * (2.0 - x);
 }
 
+/// How far over it is, of 1.
+double way_over(double t, const ArcOptions& options) {
+  return options.climb_first ? rise(t, 0.35, 0.8) : rise(t, 0.15, 0.85);
+}
+
+/// The normal of a contact; zero where there is none.
+Eigen::Vector3d up(const Contact* at) {
+  return at != nullptr ? Eigen::Vector3d(at->normal.normalized()) : Eigen::Vector3d::Zero();
+}
+
 Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const Eigen::Vector3d& by) {
   Eigen::Isometry3d result = pose;
   result.translation() += by;
@@ -46,9 +56,7 @@ void Swing::add_places(const Robot& robot, double t, const ArcOptions& options,
   const auto add = [&](const Contact& contact, const Eigen::Isometry3d& pose, bool with_axes) {
     places.push_back(contact_in_air(robot, contact, pose, with_axes));
   };
-  const bool both = left != nullptr && reached != nullptr;
-  const bool plain = !options.climb_first && options.away_m == 0.0;
-  if (options.ends_only || (!both && plain)) {
+  if (!follows_arc(options)) {
     // Height along the normal only, and nothing in between.
     if (left != nullptr && t <= kEnds) {
       const double up = options.height_m * lift(t, kEnds);
@@ -60,22 +68,31 @@ void Swing::add_places(const Robot& robot, double t, const ArcOptions& options,
     }
     return;
   }
-  const Contact& contact = left != nullptr ? *left : *reached;
-  const auto up = [](const Contact* at) {
-    return at != nullptr ? Eigen::Vector3d(at->normal.normalized()) : Eigen::Vector3d::Zero();
-  };
+  Contact between = contact();
+  const double over = way_over(t, options);
+  const Eigen::Vector3d normal = (1.0 - over) * up(left) + over * up(reached);
+  if (normal.norm() > 1e-3) between.normal = normal.normalized();
+  add(between, pose(t, options), options.with_axes);
+}
+
+bool Swing::follows_arc(const ArcOptions& options) const {
+  const bool both = left != nullptr && reached != nullptr;
+  return !options.ends_only && (both || options.climb_first || options.away_m != 0.0);
+}
+
+Eigen::Isometry3d Swing::pose(double t, const ArcOptions& options) const {
   const Eigen::Vector3d up_from = up(left), up_to = up(reached);
   const Eigen::Vector3d climbing = reached != nullptr ? up_to : up_from;
-  const Eigen::Vector3d point = contact.effector.point;
+  const Eigen::Vector3d point = contact().effector.point;
   const Eigen::Vector3d a = from * point, b = to * point;
-  const bool stepped = options.climb_first;
-  const double over = stepped ? rise(t, 0.35, 0.8) : rise(t, 0.15, 0.85);
+  const double over = way_over(t, options);
   const double lifted = lift(t, 0.35), high = lift(1.0 - t, 0.35);
   // What is higher at the end is climbed first, what is lower comes down last.
   double climb = climbing.dot(b - a);
-  if (!stepped && climb < 0.0) climb = 0.0;
+  if (!options.climb_first && climb < 0.0) climb = 0.0;
   const Eigen::Vector3d across = b - a - climb * climbing;
-  const double climbed = climb > 0.0 ? rise(t, 0.0, stepped ? 0.4 : 0.6) : rise(t, 0.6, 1.0);
+  const double climbed =
+      climb > 0.0 ? rise(t, 0.0, options.climb_first ? 0.4 : 0.6) : rise(t, 0.6, 1.0);
   const double bulge = options.away_m * rise(t, 0.0, 0.35) * rise(1.0 - t, 0.0, 0.35);
   const Eigen::Vector3d at =
       a + over * across + climbed * climb * climbing + bulge * away(a, b) +
@@ -85,10 +102,7 @@ void Swing::add_places(const Robot& robot, double t, const ArcOptions& options,
                       .slerp(over, Eigen::Quaterniond(to.linear()))
                       .toRotationMatrix();
   pose.translation() = at - pose.linear() * point;
-  Contact between = contact;
-  const Eigen::Vector3d normal = (1.0 - over) * up_from + over * up_to;
-  if (normal.norm() > 1e-3) between.normal = normal.normalized();
-  add(between, pose, options.with_axes);
+  return pose;
 }
 
 std::vector<Swing> swings_of(SegmentSpace& space) {

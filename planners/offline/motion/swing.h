@@ -29,6 +29,13 @@ struct Swing {
   void add_places(const Robot& robot, double t, const ArcOptions& options,
                   std::vector<Contact>& places) const;
 
+  /// The link is held on the arc all along; else it is free in the middle.
+  bool follows_arc(const ArcOptions& options) const;
+  /// Of the link, on the arc.
+  Eigen::Isometry3d pose(double t, const ArcOptions& options) const;
+  /// The one that is left, else the one that is reached.
+  const Contact& contact() const { return left != nullptr ? *left : *reached; }
+  /// Horizontal, see ArcOptions::away_m.
   Eigen::Vector3d away(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
 
   /// Null: it comes from, or stays, off the ground.

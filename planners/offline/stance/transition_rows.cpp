@@ -1,5 +1,6 @@
 #include <locograph/planners/offline/stance/transition_rows.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
+#include <locograph/robots/kinematic_tree.h>
 #include <locograph/world/distance_view.h>
 #include <locograph/world/link_solid.h>
 #include <locograph/world/obstacle_way.h>
@@ -249,6 +250,38 @@ void TransitionRows::add_places() {
         keep_shallow(near[i], b, places_.deepest_m(i, b));
     }
   }
+}
+
+double TransitionRows::link_room(int link, const Eigen::Isometry3d& world_from_link) {
+  constexpr double kAround_m = 0.5;
+  const std::vector<int>& body_of = robot().tree().body_of_link;
+  const std::vector<int>& near = places_.near(box_around(world_from_link.translation(), kAround_m));
+  const Eigen::Isometry3d own = state_.kinematics.world_from_link(link).inverse();
+  double room = kBandSurface_m;
+  for (std::size_t b = 0; b < robot_->bounds.size(); ++b) {
+    const RobotParameter::LinkBound& bound = robot_->bounds[b];
+    if (body_of[static_cast<std::size_t>(bound.link)] != body_of[static_cast<std::size_t>(link)]) {
+      continue;
+    }
+    const Eigen::Isometry3d pose =
+        world_from_link * (own * state_.kinematics.world_from_link(bound.link));
+    const Eigen::Vector3d centre = pose * bound.center;
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      const TransitionPlaces::Relation relation = places_.relation(i, b);
+      if (relation == TransitionPlaces::Relation::kNone) continue;
+      if (relation == TransitionPlaces::Relation::kTouches) {
+        const auto depth = places_.depth(near[i], static_cast<int>(b), pose, room);
+        if (depth) room = std::min(room, depth->value + places_.deepest_m(i, b));
+        continue;
+      }
+      if (places_.is_far(near[i], centre, bound.radius, room)) continue;
+      for (int k = bound.begin; k < bound.end; ++k) {
+        const CollisionSphere& sphere = robot_->spheres[static_cast<std::size_t>(k)];
+        room = std::min(room, places_.distance(near[i], pose * sphere.center, sphere.radius).value);
+      }
+    }
+  }
+  return room;
 }
 
 void TransitionRows::keep_apart(int place, std::size_t b) {

@@ -46,6 +46,10 @@ class TransitionRows {
   const ConfigurationState& state() const { return state_; }
   const Robot& robot() const { return state_.model(); }
 
+  /// How far what is fixed to a link is from surfaces, bars and solids where the link is elsewhere
+  /// than in a configuration; at most kBandSurface_m; negative: in one of them.
+  double link_room(int link, const Eigen::Isometry3d& world_from_link);
+
   /// Closure alone, into `error`; leaves closure() as it is.
   void closure_at(const Eigen::VectorXd& q, Eigen::VectorXd& error);
 

@@ -1,0 +1,348 @@
+// Whole motions: stances, paths and times, judged here by other means than the planner's.
+#include <gtest/gtest.h>
+#include <locograph/common/error.h>
+#include <locograph/planners/offline/motion/motion_planner.h>
+#include <locograph/robots/dynamics.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <optional>
+#include <string>
+
+#include "common/sanitized.h"
+#include "planners/stance_tasks.h"
+
+namespace locograph::motion_planner_test {
+namespace {
+
+const StanceProblem& standing_up() {
+  static const StanceProblem task = test::stance_task("standing_up");
+  return task;
+}
+
+MotionPlan plan_of(std::uint64_t seed, int threads, const MotionOptions& options = {}) {
+  StancePlannerOptions stances;
+  stances.seed = seed;
+  stances.threads = threads;
+  return plan_motion(standing_up(), stances, options);
+}
+
+constexpr std::size_t kSeeds = test::kSanitized ? 1 : 2;
+
+const MotionPlan& plan_of_seed(std::size_t seed) {
+  static std::array<std::optional<MotionPlan>, kSeeds> plans;
+  if (!plans[seed]) plans[seed] = plan_of(seed, 1);
+  return *plans[seed];
+}
+
+/// Rates at which a motion changes from a configuration to the next: of the base in the world,
+/// along its own axes, and of the joints.
+struct StepRates {
+  Eigen::Vector3d linear, angular;
+  Eigen::VectorXd joints;
+};
+
+StepRates rates_of(const Robot& robot, const Motion& motion, std::size_t step) {
+  const Eigen::VectorXd &a = motion.configurations[step], &b = motion.configurations[step + 1];
+  const double duration_s = motion.time_s[step + 1] - motion.time_s[step];
+  const Eigen::Quaterniond from(a[6], a[3], a[4], a[5]), to(b[6], b[3], b[4], b[5]);
+  const Eigen::AngleAxisd turn(from.conjugate() * to);
+  const int joints = robot.active_joint_count();
+  return {.linear = (b.head<3>() - a.head<3>()) / duration_s,
+          .angular = turn.angle() * turn.axis() / duration_s,
+          .joints = (b.tail(joints) - a.tail(joints)) / duration_s};
+}
+
+class MotionPlanTest : public testing::TestWithParam<std::size_t> {
+ protected:
+  MotionPlanTest()
+      : plan(plan_of_seed(GetParam())), motion(plan.motion), robot(*standing_up().robot->robot) {}
+
+  void SetUp() override { ASSERT_TRUE(plan.success) << plan.reason; }
+
+  /// Of joints, from vertex `step` to the next.
+  Eigen::VectorXd joint_rates(int step) const {
+    return rates_of(robot, motion, static_cast<std::size_t>(step)).joints;
+  }
+
+  const MotionPlan& plan;
+  const Motion& motion;
+  const Robot& robot;
+};
+
+TEST_P(MotionPlanTest, ComesFromTheStartToTheGoalAndIsJudgedFeasible) {
+  EXPECT_TRUE(plan.report.feasible);
+  EXPECT_EQ(motion.configurations.front(), standing_up().start_configuration);
+  ASSERT_EQ(motion.stances.size(), plan.stances.stances.size());
+  const auto stands_at = [](const Stance& stance, const Stance& wanted) {
+    return std::ranges::all_of(wanted.contacts, [&](const Contact& contact) {
+      return std::ranges::any_of(stance.contacts, [&](const Contact& other) {
+        return other.name() == contact.name() && (other.position - contact.position).norm() < 1e-9;
+      });
+    });
+  };
+  EXPECT_TRUE(stands_at(motion.stances.front(), standing_up().start));
+  EXPECT_TRUE(stands_at(motion.stances.back(), standing_up().goals.back()));
+}
+
+TEST_P(MotionPlanTest, EachStanceIsASegmentAndEachChangeIsATransition) {
+  ASSERT_EQ(plan.segments.size() + 1, motion.stances.size());
+  int vertex = 0;
+  for (std::size_t j = 0; j < plan.segments.size(); ++j) {
+    const SegmentRecord& segment = plan.segments[j];
+    EXPECT_EQ(segment.stance, static_cast<int>(j));
+    EXPECT_EQ(segment.first, vertex);
+    EXPECT_GT(segment.last, segment.first);
+    for (; vertex < segment.last; ++vertex) {
+      EXPECT_EQ(motion.stance_from[static_cast<std::size_t>(vertex)], segment.stance);
+    }
+    const auto first = static_cast<std::size_t>(segment.first);
+    const auto last = static_cast<std::size_t>(segment.last);
+    EXPECT_EQ(motion.configurations[first], plan.stances.configurations[j]);
+    EXPECT_EQ(motion.configurations[last], plan.stances.configurations[j + 1]);
+    EXPECT_NEAR(motion.time_s[last] - motion.time_s[first], segment.duration_s, 1e-9);
+    EXPECT_FALSE(segment.planner.empty());
+    EXPECT_GE(segment.length, 0.999 * segment.straight);
+  }
+  EXPECT_EQ(vertex, static_cast<int>(motion.configurations.size()) - 1);
+  EXPECT_EQ(motion.stance_from.back(), static_cast<int>(motion.stances.size()) - 1);
+}
+
+TEST_P(MotionPlanTest, TimesIncreaseEvenlyInSegments) {
+  const MotionOptions options;
+  EXPECT_EQ(motion.time_s.front(), 0.0);
+  for (const SegmentRecord& segment : plan.segments) {
+    const double step_s = segment.duration_s / (segment.last - segment.first);
+    EXPECT_GT(step_s, 0.0);
+    EXPECT_LE(step_s, options.step_s + 1e-12);
+    for (int i = segment.first; i < segment.last; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      EXPECT_NEAR(motion.time_s[at + 1] - motion.time_s[at], step_s, 1e-9) << i;
+    }
+  }
+}
+
+TEST_P(MotionPlanTest, RestsWhereStancesChangeAndNowhereElse) {
+  for (const SegmentRecord& segment : plan.segments) {
+    if (segment.straight < 1e-6) continue;
+    double fastest = 0.0, slowest = 1e9;
+    const int steps = segment.last - segment.first;
+    for (int i = segment.first; i < segment.last; ++i) {
+      const double rate = joint_rates(i).norm();
+      fastest = std::max(fastest, rate);
+      const int from_end = std::min(i - segment.first, segment.last - 1 - i);
+      if (10 * from_end > steps) slowest = std::min(slowest, rate);
+    }
+    EXPECT_LT(joint_rates(segment.first).norm(), 0.1 * fastest) << segment.stance;
+    EXPECT_LT(joint_rates(segment.last - 1).norm(), 0.1 * fastest) << segment.stance;
+    EXPECT_GT(slowest, 0.02 * fastest) << segment.stance;
+  }
+}
+
+TEST_P(MotionPlanTest, JointsKeepToTheirLimits) {
+  const MotionOptions options;
+  for (const SegmentRecord& segment : plan.segments) {
+    const double step_s = segment.duration_s / (segment.last - segment.first);
+    // Nothing moves before the segment and after it.
+    Eigen::VectorXd before = Eigen::VectorXd::Zero(robot.active_joint_count());
+    for (int i = segment.first; i <= segment.last; ++i) {
+      const Eigen::VectorXd rates =
+          i < segment.last ? joint_rates(i) : Eigen::VectorXd::Zero(robot.active_joint_count());
+      const Eigen::VectorXd acceleration = (rates - before) / step_s;
+      const Eigen::VectorXd& q = motion.configurations[static_cast<std::size_t>(i)];
+      for (int j = 0; j < robot.active_joint_count(); ++j) {
+        const Joint& joint = robot.active_joint(j);
+        const double at = q[robot.base_configuration_size() + j];
+        EXPECT_GE(at, joint.lower - 1e-6) << joint.name;
+        EXPECT_LE(at, joint.upper + 1e-6) << joint.name;
+        EXPECT_LE(std::abs(rates[j]), joint.max_velocity * (1.0 + 1e-6)) << joint.name;
+        EXPECT_LE(std::abs(acceleration[j]), options.joint_acceleration_rad_s2 * 1.02)
+            << joint.name << " at " << i;
+      }
+      before = rates;
+    }
+  }
+}
+
+/// A jump from full acceleration to full braking within a step would be twice the limit.
+TEST_P(MotionPlanTest, AccelerationsOfJointsDoNotJump) {
+  const MotionOptions options;
+  const double most =
+      2.0 * options.joint_acceleration_rad_s2 * options.step_s / options.smoothing_s;
+  double largest = 0.0;
+  for (const SegmentRecord& segment : plan.segments) {
+    const double step_s = segment.duration_s / (segment.last - segment.first);
+    for (int i = segment.first; i + 2 < segment.last; ++i) {
+      const Eigen::VectorXd change =
+          (joint_rates(i + 2) - 2.0 * joint_rates(i + 1) + joint_rates(i)) / step_s;
+      largest = std::max(largest, change.cwiseAbs().maxCoeff());
+    }
+  }
+  EXPECT_LT(largest, most);
+  EXPECT_GT(largest, 0.05 * most) << "nothing moves";
+}
+
+TEST_P(MotionPlanTest, ContactsHoldBetweenVertices) {
+  MotionSampler sampler(robot, motion);
+  std::vector<Eigen::Isometry3d> poses;
+  double most_m = 0.0, most_rad = 0.0;
+  for (int i = 0; i + 1 < static_cast<int>(motion.configurations.size()); ++i) {
+    const int stance = motion.stance_from[static_cast<std::size_t>(i)];
+    for (const double fraction : {0.0, 0.3, 0.5, 0.8}) {
+      sampler.link_poses(i, fraction, poses);
+      for (const Contact& contact : motion.stances[static_cast<std::size_t>(stance)].contacts) {
+        const EndEffector& effector = contact.effector;
+        const Eigen::Isometry3d& link =
+            poses[static_cast<std::size_t>(robot.link_index(effector.link))];
+        const bool sole = effector.kind == ContactKind::kSurface;
+        const double radius_m = sole ? 0.0 : effector.radius_m;
+        const Eigen::Vector3d place =
+            contact.position + radius_m * contact.normal.stableNormalized();
+        most_m = std::max(most_m, (link * effector.point - place).norm());
+        if (!sole) continue;
+        const Eigen::Matrix3d axes = link.linear() * axes_in_link(effector);
+        most_rad = std::max(most_rad, angle_between(axes.col(2), contact.normal));
+      }
+    }
+  }
+  EXPECT_LT(most_m, 1e-3);
+  EXPECT_LT(most_rad, 5e-3);
+}
+
+/// At every vertex whose steps are as long: forces on the base, gravity and inertia included.
+TEST_P(MotionPlanTest, WrenchesBalanceGravityAndInertia) {
+  ASSERT_EQ(plan.wrenches.size(), motion.configurations.size());
+  RobotDynamics dynamics(robot);
+  RobotState state(robot);
+  const double weight_N = robot.total_mass() * standard_gravity().norm();
+  const int size = robot.tangent_size();
+  Eigen::VectorXd velocity(size), acceleration(size), asked(size);
+  double inertia = 0.0;
+  for (std::size_t i = 0; i < motion.configurations.size(); ++i) {
+    const auto stance = static_cast<std::size_t>(motion.stance_from[i]);
+    const std::vector<Contact>& contacts = motion.stances[stance].contacts;
+    ASSERT_EQ(plan.wrenches[i].size(), contacts.size()) << i;
+    if (i == 0 || i + 1 == motion.configurations.size()) continue;
+    const double before_s = motion.time_s[i] - motion.time_s[i - 1];
+    const double after_s = motion.time_s[i + 1] - motion.time_s[i];
+    if (std::abs(before_s - after_s) > 1e-9) continue;
+    state.update(motion.configurations[i].data());
+    const Eigen::Isometry3d base = state.world_from_link(0);
+    const Eigen::Matrix3d to_base = base.linear().transpose();
+    const StepRates a = rates_of(robot, motion, i - 1), b = rates_of(robot, motion, i);
+    const Eigen::Vector3d linear = to_base * (0.5 * (a.linear + b.linear));
+    const Eigen::Vector3d angular = 0.5 * (a.angular + b.angular);
+    velocity << linear, angular, 0.5 * (a.joints + b.joints);
+    acceleration << to_base * (b.linear - a.linear) / after_s - angular.cross(linear),
+        (b.angular - a.angular) / after_s, (b.joints - a.joints) / after_s;
+    dynamics.inverse_dynamics(state, velocity, acceleration, {}, asked);
+    Eigen::Vector3d force = -base.linear() * asked.head<3>();
+    Eigen::Vector3d moment = -base.linear() * asked.segment<3>(3);
+    inertia = std::max(inertia, (force - robot.total_mass() * standard_gravity()).norm());
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+      const Eigen::Matrix3d axes = axes_in_world(contacts[k]);
+      const Eigen::Vector3d pushes = axes * plan.wrenches[i][k].head<3>();
+      force += pushes;
+      moment += axes * plan.wrenches[i][k].tail<3>() +
+                (contacts[k].position - base.translation()).cross(pushes);
+    }
+    EXPECT_LT(force.norm(), 1e-3 * weight_N) << i;
+    EXPECT_LT(moment.norm(), 1e-3 * weight_N) << i;
+  }
+  EXPECT_GT(inertia, 0.01 * weight_N) << "it is not at rest all the time";
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, MotionPlanTest, testing::Range(std::size_t{0}, kSeeds));
+
+TEST(MotionPlannerTest, GivesTheSameBitsWithAnyNumberOfThreads) {
+  const MotionPlan &one = plan_of_seed(0), two = plan_of(0, 2);
+  ASSERT_TRUE(two.success) << two.reason;
+  EXPECT_EQ(two.motion.time_s, one.motion.time_s);
+  EXPECT_EQ(two.motion.stance_from, one.motion.stance_from);
+  EXPECT_EQ(two.refused_segments, one.refused_segments);
+  ASSERT_EQ(two.motion.configurations.size(), one.motion.configurations.size());
+  for (std::size_t i = 0; i < one.motion.configurations.size(); ++i) {
+    const Eigen::VectorXd &a = one.motion.configurations[i], &b = two.motion.configurations[i];
+    const std::size_t bytes = static_cast<std::size_t>(a.size()) * sizeof(double);
+    EXPECT_EQ(std::memcmp(a.data(), b.data(), bytes), 0) << i;
+  }
+  EXPECT_EQ(two.wrenches, one.wrenches);
+}
+
+TEST(MotionPlannerTest, SaysWhyThereIsNoMotionAndGivesWhatThereIs) {
+  StancePlannerOptions stances;
+  stances.max_transitions = 1;
+  const MotionPlan plan = plan_motion(standing_up(), stances);
+  EXPECT_FALSE(plan.success);
+  EXPECT_FALSE(plan.reason.empty());
+  EXPECT_TRUE(plan.segments.empty());
+  ASSERT_EQ(plan.motion.configurations.size(), 1U);
+  EXPECT_EQ(plan.motion.configurations[0], standing_up().start_configuration);
+  EXPECT_EQ(plan.motion.stances.size(), 1U);
+}
+
+TEST(MotionPlannerTest, RefusesASegmentPlannerThatNobodyKnows) {
+  try {
+    plan_of(0, 1, {.segment_planners = {"interpolation", "guessing"}});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("guessing"), std::string::npos) << error.what();
+  }
+}
+
+/// What plan_motion() does with a segment that has no path.
+TEST(AcceptedStancesTest, NoLaterWayHasAChangeThatIsRefused) {
+  struct Change {
+    Stance from, to;
+  };
+  const auto same = [](const Stance& a, const Stance& b) {
+    return std::ranges::is_permutation(
+        a.contacts, b.contacts, [](const Contact& x, const Contact& y) {
+          return x.name() == y.name() && (x.position - y.position).norm() < 1e-9;
+        });
+  };
+  std::vector<Change> refused;
+  int asked = 0;
+  StancePlannerOptions options;
+  options.accept = [&](const std::vector<Stance>& stances, const auto& configurations,
+                       std::size_t first) -> std::size_t {
+    ++asked;
+    EXPECT_EQ(stances.size(), configurations.size());
+    EXPECT_EQ(first, 0U);
+    for (std::size_t i = 1; i < stances.size(); ++i) {
+      for (const Change& change : refused) {
+        EXPECT_FALSE(same(stances[i - 1], change.from) && same(stances[i], change.to)) << i;
+      }
+    }
+    if (asked > 2) return 0;
+    const std::size_t number = asked == 1 ? 1 : stances.size() - 1;
+    refused.push_back({stances[number - 1], stances[number]});
+    return number;
+  };
+  const StancePlan plan = make_stance_planner("guided")->plan(standing_up(), options);
+  EXPECT_EQ(asked, 3);
+  ASSERT_TRUE(plan.success) << plan.reason;
+  for (std::size_t i = 1; i < plan.stances.size(); ++i) {
+    for (const Change& change : refused) {
+      EXPECT_FALSE(same(plan.stances[i - 1], change.from) && same(plan.stances[i], change.to));
+    }
+  }
+}
+
+TEST(AcceptedStancesTest, AllThatIsRefusedLeavesNoPlan) {
+  int asked = 0;
+  StancePlannerOptions options;
+  options.max_transitions = 200;
+  options.accept = [&](const auto& stances, const auto&, std::size_t) {
+    ++asked;
+    return stances.size() - 1;
+  };
+  const StancePlan plan = make_stance_planner("guided")->plan(standing_up(), options);
+  EXPECT_GT(asked, 0);
+  EXPECT_FALSE(plan.success);
+  EXPECT_FALSE(plan.reason.empty());
+}
+
+}  // namespace
+}  // namespace locograph::motion_planner_test
