@@ -283,6 +283,8 @@ std::vector<double> times_of(const JsonPlan& json, const Json& points) {
   return times;
 }
 
+constexpr double kMostWrench = 1e9;  // N, N m
+
 /// Wrenches of each point, none where the file has none.
 std::vector<StanceWrenches> wrenches_of(const JsonPlan& json, const PlanFile& plan) {
   std::vector<StanceWrenches> all;
@@ -291,11 +293,19 @@ std::vector<StanceWrenches> wrenches_of(const JsonPlan& json, const PlanFile& pl
   for (std::size_t i = 0; i < list.size(); ++i) {
     StanceWrenches& here = all.emplace_back();
     if (list[i].is_null() || !plan.plan.stance_from[i]) continue;
-    for (const Contact& contact : plan.plan.stance_from[i]->stance.contacts) {
+    const Path path = {"wrenches", std::to_string(i)};
+    const std::vector<Contact>& contacts = plan.plan.stance_from[i]->stance.contacts;
+    for (const auto& [name, ignored] : list[i].items()) {
+      if (std::ranges::find(contacts, name, &Contact::name) != contacts.end()) continue;
+      json.fail(path, "has '" + name + "', which is no contact of its stance", "its contacts");
+    }
+    for (const Contact& contact : contacts) {
       here.push_back(Eigen::Matrix<double, 6, 1>::Zero());
       if (!contact.bears_load) continue;
-      const std::vector<double> given =
-          json.numbers(list[i], contact.name(), {"wrenches", std::to_string(i)}, 6);
+      const std::vector<double> given = json.numbers(list[i], contact.name(), path, 6);
+      for (const double value : given) {
+        if (std::abs(value) > kMostWrench) json.fail(path, "is beyond all forces", "up to 1e9");
+      }
       std::ranges::copy(given, here.back().begin());
     }
   }

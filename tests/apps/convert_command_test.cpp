@@ -207,6 +207,8 @@ TEST(ConvertCommand, RefusesTablesThatAreWrongWithTheirLine) {
                           "the time 1.000000 s after 1.500000 s, expected times that increase");
   runner.expect_bad_table(replaced(table, row, "\n0.5,1,6,"), line(2), "segment '1', expected '0'");
   runner.expect_bad_table(replaced(table, row, "\n0.5,0,60,"), line(2), "unknown parameter 60");
+  runner.expect_bad_table(replaced(table, row, "\n0.5 6,0,,"), line(2),
+                          "'0.5 6' in a column, expected one number");
   runner.expect_bad_table(replaced(table, "base_z", "height"), line(0), "column 6 is not 'base_z'");
   const std::size_t last = table.find('\n', table.find("time_s")), comma = table.rfind(',', last);
   const std::string joint = table.substr(comma + 1, last - comma - 1);
@@ -261,6 +263,13 @@ TEST(ConvertCommand, RefusesJsonThatIsWrongOrContradictsItself) {
       "contacts[0] is not what points and parameters say");
   runner.expect_bad_json(changed([](auto& j) { j["segments"][1]["duration_s"] = 0.5; }),
                          "segments[1] is not what points and parameters say");
+  runner.expect_bad_json(changed([](auto& j) {
+                           j["wrenches"] = std::vector<nlohmann::json>(j["points"].size());
+                           j["wrenches"][1]["ghost"] = std::vector<double>(6, 0.0);
+                         }),
+                         "wrenches[1] has 'ghost', which is no contact of its stance");
+  runner.expect_bad_json("{\"points\": " + std::string(100000, '['),
+                         "lists and objects lie too deep in each other");
   // A number instead of the second point.
   const std::size_t second = text.find("\n{\"positions\"", text.find("\n{\"positions\"") + 1);
   runner.write("bad.json", text.substr(0, second) + "\n7" + text.substr(text.find(",\n", second)));
@@ -295,6 +304,13 @@ TEST(ConvertCommand, WhatItDoesNotConvert) {
   runner.write("stances.g2o", stances.text());
   expect_refusal(runner.run("convert stances.g2o -o x.csv"), "stances.g2o",
                  "is a plan of stances, which has no motion");
+  PlanText at_once = standing_segments();
+  std::erase_if(at_once.parameters,
+                [](const std::string& line) { return line.starts_with("PARAMS_SEGMENT"); });
+  at_once.configurations[3].time_s = at_once.configurations[2].time_s;
+  runner.write("at_once.g2o", at_once.text());
+  expect_refusal(runner.run("convert at_once.g2o -o x.json"), "at_once.g2o",
+                 "expected times that increase");
 }
 
 }  // namespace

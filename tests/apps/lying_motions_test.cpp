@@ -99,6 +99,14 @@ TEST(LyingMotion, ASegmentIsInAnotherStanceThanItsConfigurations) {
   expect_no_plan(plan, "PARAMS_SEGMENT 21", "PARAMS_CONTACT");
 }
 
+TEST(LyingMotion, ASegmentTakesNoTime) {
+  PlanText plan = standing_segments();
+  replace_line(plan, "PARAMS_SEGMENT 21", "PARAMS_SEGMENT 21 1 6 0 1 x");
+  replace_line(plan, "PARAMS_SEGMENT 20", "PARAMS_SEGMENT 20 0 8 0 1e-9 lie");
+  plan.parameters.push_back("PARAMS_SEGMENT 22 2 8 1 1 x");
+  expect_no_plan(plan, "PARAMS_SEGMENT 20", "segment 0 takes no time");
+}
+
 TEST(LyingMotion, APlanOfStancesHasSegments) {
   PlanText plan = standing_segments();
   replace_line(plan, "PARAMS_PLAN", "PARAMS_PLAN 1 2 stances_only");
