@@ -56,54 +56,65 @@ class Interpolation : public SegmentPlanner {
   SegmentPath plan(SegmentSpace& space, const SegmentOptions& options) const override {
     const std::vector<Swing> swings = swings_of(space);
     SegmentPath path;
-    const Knot begin{0.0, space.segment().from}, end{1.0, space.segment().to};
-    for (const ArcOptions& arc : arcs_for(space, swings)) {
-      if (options.deadline.passed()) break;
-      std::vector<Knot> knots = {begin};
-      if (!fill(space, swings, arc, knots, end, 0)) {
-        path.reason = space.why_not().empty() ? "no short way leads half-way" : space.why_not();
-        if (swings.empty()) continue;
-        if (!march(space, swings, arc, begin, end, knots)) continue;
-      }
-      smooth(space, !swings.empty(), knots);
-      path.found = true;
-      for (Knot& knot : knots) path.waypoints.push_back(std::move(knot.q));
-      break;
+    const auto try_arc = [&](const ArcOptions& arc) {
+      path.found = !options.deadline.passed() && follow(space, swings, arc, path);
+      return path.found;
+    };
+    if (swings.empty()) {
+      try_arc(kArcs.front());
+      return path;
     }
+    std::vector<ArcOptions> blocked, free;
+    for (const ArcOptions& arc : kArcs) {
+      const auto on_arc = [&arc](const Swing& swing) { return swing.follows_arc(arc); };
+      if (std::ranges::none_of(swings, on_arc)) free.push_back(arc);
+    }
+    // What is only lifted or only put down is free in between, at first.
+    const bool free_first = std::ranges::any_of(swings, [](const Swing& swing) {
+      return swing.left == nullptr || swing.reached == nullptr;
+    });
+    if (free_first && std::ranges::any_of(free, try_arc)) return path;
+    for (const ArcOptions& arc : kArcs) {
+      const auto on_arc = [&arc](const Swing& swing) { return swing.follows_arc(arc); };
+      if (std::ranges::none_of(swings, on_arc)) continue;
+      if (is_blocked(space, swings, arc)) {
+        blocked.push_back(arc);
+      } else if (try_arc(arc)) {
+        return path;
+      }
+    }
+    if (static_cast<int>(blocked.size()) > kMostBlocked) blocked.resize(kMostBlocked);
+    if (std::ranges::any_of(blocked, try_arc) || free_first) return path;
+    std::ranges::any_of(free, try_arc);
     return path;
   }
 
  private:
-  /// The arcs to try, in their order.
-  static std::vector<ArcOptions> arcs_for(SegmentSpace& space, const std::vector<Swing>& swings) {
-    if (swings.empty()) return {kArcs.front()};
-    std::vector<ArcOptions> clear, blocked, free;
-    for (const ArcOptions& arc : kArcs) {
-      bool on_arc = false, in_the_way = false;
-      for (const Swing& swing : swings) {
-        if (!swing.follows_arc(arc)) continue;
-        on_arc = true;
-        for (int i = 1; i < kLooks && !in_the_way; ++i) {
-          const Eigen::Isometry3d pose = swing.pose(static_cast<double>(i) / kLooks, arc);
-          in_the_way = space.room_of(swing.contact(), pose) < 0.0;
-        }
-      }
-      (!on_arc ? free : in_the_way ? blocked : clear).push_back(arc);
+  /// The path along an arc into `path`, or why there is none.
+  static bool follow(SegmentSpace& space, const std::vector<Swing>& swings, const ArcOptions& arc,
+                     SegmentPath& path) {
+    const Knot begin{0.0, space.segment().from}, end{1.0, space.segment().to};
+    std::vector<Knot> knots = {begin};
+    if (!fill(space, swings, arc, knots, end, 0)) {
+      path.reason = space.why_not().empty() ? "no short way leads half-way" : space.why_not();
+      if (swings.empty() || !march(space, swings, arc, begin, end, knots)) return false;
     }
-    if (static_cast<int>(blocked.size()) > kMostBlocked) blocked.resize(kMostBlocked);
-    // What is only lifted or only put down is free in between, at first.
-    const bool one_end = std::ranges::any_of(swings, [](const Swing& swing) {
-      return swing.left == nullptr || swing.reached == nullptr;
+    smooth(space, !swings.empty(), knots);
+    for (Knot& knot : knots) path.waypoints.push_back(std::move(knot.q));
+    return true;
+  }
+
+  /// Something is in the way of a link on its arc, if it turns evenly.
+  static bool is_blocked(SegmentSpace& space, const std::vector<Swing>& swings,
+                         const ArcOptions& arc) {
+    return std::ranges::any_of(swings, [&](const Swing& swing) {
+      if (!swing.follows_arc(arc)) return false;
+      for (int i = 1; i < kLooks; ++i) {
+        const Eigen::Isometry3d pose = swing.pose(static_cast<double>(i) / kLooks, arc);
+        if (space.room_of(swing.contact(), pose) < 0.0) return true;
+      }
+      return false;
     });
-    std::vector<ArcOptions> all;
-    const auto append = [&all](const std::vector<ArcOptions>& some) {
-      all.insert(all.end(), some.begin(), some.end());
-    };
-    if (one_end) append(free);
-    append(clear);
-    append(blocked);
-    if (!one_end) append(free);
-    return all;
   }
 
   /// Appends what lies between the last knot and `end`, and `end`.

@@ -1,5 +1,6 @@
 #include <locograph/planners/offline/drive/wheeled_plan.h>
 #include <locograph/planners/offline/motion/motion_graph.h>
+#include <locograph/planners/offline/stance/stance_graph.h>
 #include <locograph/planners/plan/plan.h>
 #include <locograph/plugins/acceleration_limits/edge_acceleration_limits.h>
 #include <locograph/plugins/contact/edge_contact.h>
@@ -100,18 +101,8 @@ Graph motion_graph(const Scenario& scenario, const StanceProblem& problem, const
   const Motion& motion = plan.motion;
   if (motion.configurations.empty()) throw Error("a motion without configurations", "one or more");
   Graph graph;
-  graph.parameters().set(kRobotNumber, problem.robot);
-  const auto world = std::make_shared<WorldParameter>();
-  world->set_files(scenario.map, scenario.obstacles);
-  graph.parameters().set(kWorldNumber, world);
-  const auto origin = std::make_shared<ScenarioParameter>();
-  origin->scenario = scenario.source;
-  graph.parameters().set(kScenarioNumber, origin);
-  const std::vector<int> numbers = add_stances(graph, problem.robot, motion.stances);
-  const auto format = std::make_shared<PlanParameter>();
-  format->incomplete = !plan.success;
-  format->moves = problem.moves;
-  graph.parameters().replace(kPlanNumber, format);
+  const std::vector<int> numbers =
+      add_task(graph, scenario, problem, motion.stances, {.incomplete = !plan.success});
   int number = graph.parameters().all().rbegin()->first;
   for (std::size_t j = 0; j < plan.segments.size(); ++j) {
     const SegmentRecord& record = plan.segments[j];

@@ -4,7 +4,6 @@
 #include <locograph/planners/offline/stance/stance_space.h>
 
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <optional>
 

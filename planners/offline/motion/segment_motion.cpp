@@ -59,7 +59,6 @@ SegmentMotion SegmentMover::move(const Segment& segment, std::span<const Bearing
                                  std::size_t first, std::size_t end, double slower,
                                  const SegmentOptions& options) {
   SegmentMotion motion;
-  const Stopwatch watch;
   space_.set_segment(segment);
   motion.straight = space_.distance(segment.from, segment.to);
   if (motion.straight <= kNoWay) {

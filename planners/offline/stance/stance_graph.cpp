@@ -23,9 +23,8 @@ std::size_t larger_stance(const StancePlan& plan, std::size_t i) {
 
 }  // namespace
 
-Graph stance_graph(const Scenario& scenario, const StanceProblem& problem, const StancePlan& plan) {
-  Graph graph;
-  const Robot& model = *problem.robot->robot;
+std::vector<int> add_task(Graph& graph, const Scenario& scenario, const StanceProblem& problem,
+                          const std::vector<Stance>& stances, const TaskPlanKind& kind) {
   graph.parameters().set(kRobotNumber, problem.robot);
   const auto world = std::make_shared<WorldParameter>();
   world->set_files(scenario.map, scenario.obstacles);
@@ -33,12 +32,20 @@ Graph stance_graph(const Scenario& scenario, const StanceProblem& problem, const
   const auto origin = std::make_shared<ScenarioParameter>();
   origin->scenario = scenario.source;
   graph.parameters().set(kScenarioNumber, origin);
-  const std::vector<int> numbers = add_stances(graph, problem.robot, plan.stances);
+  std::vector<int> numbers = add_stances(graph, problem.robot, stances);
   const auto format = std::make_shared<PlanParameter>();
-  format->stances_only = true;
-  format->incomplete = !plan.success;
+  format->stances_only = kind.stances_only;
+  format->incomplete = kind.incomplete;
   format->moves = problem.moves;
   graph.parameters().replace(kPlanNumber, format);
+  return numbers;
+}
+
+Graph stance_graph(const Scenario& scenario, const StanceProblem& problem, const StancePlan& plan) {
+  Graph graph;
+  const Robot& model = *problem.robot->robot;
+  const std::vector<int> numbers = add_task(graph, scenario, problem, plan.stances,
+                                            {.stances_only = true, .incomplete = !plan.success});
 
   const int count = static_cast<int>(plan.configurations.size());
   BalanceOptions balance;

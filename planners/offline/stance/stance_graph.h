@@ -15,6 +15,17 @@
 
 namespace locograph {
 
+/// What a plan says of itself (PARAMS_PLAN).
+struct TaskPlanKind {
+  bool stances_only = false;
+  bool incomplete = false;  ///< it ends before its goal
+};
+
+/// Adds the parameters of a plan for a contact task: robot, world, scenario, the plan itself and
+/// its stances, whose numbers are returned.
+std::vector<int> add_task(Graph& graph, const Scenario& scenario, const StanceProblem& problem,
+                          const std::vector<Stance>& stances, const TaskPlanKind& kind);
+
 /// The plan is marked incomplete where it has no success.
 Graph stance_graph(const Scenario& scenario, const StanceProblem& problem, const StancePlan& plan);
 
