@@ -305,7 +305,7 @@ TEST(AcceptedStancesTest, NoLaterWayHasAChangeThatIsRefused) {
   std::vector<Change> refused;
   int asked = 0;
   StancePlannerOptions options;
-  options.accept = [&](const std::vector<Stance>& stances, const auto& configurations,
+  options.accept = [&](const std::vector<Stance>& stances, auto& configurations,
                        std::size_t first) -> std::size_t {
     ++asked;
     EXPECT_EQ(stances.size(), configurations.size());
@@ -334,7 +334,7 @@ TEST(AcceptedStancesTest, AllThatIsRefusedLeavesNoPlan) {
   int asked = 0;
   StancePlannerOptions options;
   options.max_transitions = 200;
-  options.accept = [&](const auto& stances, const auto&, std::size_t) {
+  options.accept = [&](const auto& stances, auto&, std::size_t) {
     ++asked;
     return stances.size() - 1;
   };

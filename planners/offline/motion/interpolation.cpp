@@ -21,10 +21,14 @@ constexpr int kMarchDepth = 3;
 constexpr double kKept = 0.2;
 
 /// In the order in which they are tried, those first on which nothing is in the way.
-constexpr std::array<ArcOptions, 15> kArcs = {
+constexpr std::array<ArcOptions, 21> kArcs = {
     {{.height_m = 0.05},
      {.height_m = 0.05, .with_axes = false},
      {.height_m = 0.05, .with_axes = false, .away_m = 0.1},
+     {.height_m = 0.05, .away_m = 0.15},
+     {.height_m = 0.06, .away_m = 0.1, .climb_first = true},
+     {.height_m = 0.06, .away_m = 0.16, .climb_first = true},
+     {.height_m = 0.012, .away_m = 0.14, .climb_first = true},
      {.height_m = 0.05, .with_axes = false, .away_m = 0.15},
      {.height_m = 0.05, .with_axes = false, .away_m = 0.2},
      {.height_m = 0.05, .with_axes = false, .away_m = 0.28},
@@ -35,6 +39,8 @@ constexpr std::array<ArcOptions, 15> kArcs = {
      {.height_m = 0.012, .with_axes = false, .away_m = 0.22, .climb_first = true},
      {.height_m = 0.06, .with_axes = false, .climb_first = true},
      {.height_m = 0.12, .with_axes = false},
+     {.height_m = 0.03, .with_axes = false, .up_m = 0.1},
+     {.height_m = 0.02, .with_axes = false, .up_m = 0.2},
      {.height_m = 0.05, .ends_only = true},
      {.height_m = 0.04, .with_axes = false, .ends_only = true}}};
 /// Of arcs with something in the way, which a link that turns may pass.
@@ -82,6 +88,15 @@ class Interpolation : public SegmentPlanner {
       } else if (try_arc(arc)) {
         return path;
       }
+    }
+    // No ball passes by turning.
+    const bool turns = std::ranges::any_of(swings, [](const Swing& swing) {
+      return swing.contact().effector.kind == ContactKind::kSurface;
+    });
+    path.no_arc = blocked.size() + free.size() == kArcs.size() && !turns && !free_first;
+    if (path.no_arc) {
+      path.reason = "what swings has no way past what is between its places";
+      return path;
     }
     if (static_cast<int>(blocked.size()) > kMostBlocked) blocked.resize(kMostBlocked);
     if (std::ranges::any_of(blocked, try_arc) || free_first) return path;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace locograph {
 namespace {
@@ -25,7 +26,7 @@ struct Solved {
   Stance before, held, after;
   Eigen::VectorXd from, to;
   std::size_t planner = 0;  ///< the first one that has not been refused
-  double slower = 1.0;
+  SegmentPace pace;
   int slowed = 0;
   bool judged = false;  ///< and found feasible, by itself
   SegmentMotion motion;
@@ -70,24 +71,34 @@ class MotionSearch {
 
   /// See StancePlannerOptions::accept.
   std::size_t accept(const std::vector<Stance>& stances,
-                     const std::vector<Eigen::VectorXd>& configurations, std::size_t first) {
+                     std::vector<Eigen::VectorXd>& configurations, std::size_t first) {
     const std::size_t count = configurations.size() - 1;
     ways_.resize(count, nullptr);
     for (std::size_t j = first; j < count; ++j) {
-      ways_[j] = &solved(stances, configurations, j);
-      if (!ways_[j]->motion.found) return refuse(j);
+      if (!found_at(stances, configurations, j) &&
+          !move_postures(stances, configurations, first, j)) {
+        return refuse(j);
+      }
     }
-    for (;;) {
+    for (bool whole = false;; whole = true) {
       assemble(stances, configurations);
       plan_.wrenches.assign(plan_.motion.configurations.size(), {});
       plan_.report = judged(plan_.motion, &plan_.wrenches);
       if (plan_.report.feasible) return 0;
+      // At first those only that the report names: of each constraint one.
+      std::vector<bool> named(count, whole);
+      for (const Violation* violation : plan_.report.violated()) {
+        named[segment_of(*violation)] = true;
+      }
       bool mended = false;
       for (std::size_t j = first; j < count; ++j) {
-        if (ways_[j]->judged) continue;
+        if (ways_[j]->judged || !named[j]) continue;
         if (!mend(stances, j, mended)) return refuse(j);
       }
-      if (!mended) return refuse(std::max(first, segment_of(plan_.report)));
+      if (!mended && whole) {
+        const std::vector<const Violation*> violated = plan_.report.violated();
+        return refuse(violated.empty() ? first : std::max(first, segment_of(*violated.front())));
+      }
     }
   }
 
@@ -128,12 +139,50 @@ class MotionSearch {
     motion.stance_from.push_back(static_cast<int>(done));
   }
 
+  /// Why the last one was refused; empty: none was.
+  const std::string& refused_reason() const { return refused_reason_; }
+
   void keep(std::size_t segments) { ways_.resize(std::min(segments, ways_.size())); }
 
  private:
   std::size_t refuse(std::size_t segment) {
     ++plan_.refused_segments;
+    refused_reason_ = ways_[segment]->motion.reason;
     return segment + 1;
+  }
+
+  /// Other postures at an end of segment j, near the one at its other end: where free arms are on
+  /// different sides of a bar there is no short way. False: none makes it found; nothing is
+  /// changed.
+  bool move_postures(const std::vector<Stance>& stances,
+                     std::vector<Eigen::VectorXd>& configurations, std::size_t first,
+                     std::size_t j) {
+    if (ways_[j]->motion.no_arc) return false;
+    const auto footing = [&](std::size_t i) { return space_.footing(stances[i]); };
+    const auto found_with = [&](std::size_t i, const StanceSpace::Attempt& other) {
+      if (!other.found) return false;
+      const Eigen::VectorXd before = std::exchange(configurations[i], other.configuration);
+      const bool found = found_at(stances, configurations, j) &&
+                         (i > j || found_at(stances, configurations, j - 1));
+      if (!found) configurations[i] = before;
+      return found;
+    };
+    const Eigen::VectorXd begin = configurations[j], end = configurations[j + 1];
+    const bool moved =
+        found_with(j + 1, space_.try_nearby(footing(j), footing(j + 1), begin)) ||
+        (j > first && (found_with(j, space_.try_nearby(footing(j - 1), footing(j), end)) ||
+                       found_with(j, space_.try_transition(footing(j - 1), footing(j), end, 0))));
+    if (!moved) {
+      found_at(stances, configurations, j);
+      if (j > first) found_at(stances, configurations, j - 1);
+    }
+    return moved;
+  }
+
+  bool found_at(const std::vector<Stance>& stances,
+                const std::vector<Eigen::VectorXd>& configurations, std::size_t j) {
+    ways_[j] = &solved(stances, configurations, j);
+    return ways_[j]->motion.found;
   }
 
   Solved& solved(const std::vector<Stance>& stances,
@@ -158,6 +207,25 @@ class MotionSearch {
   }
 
   void move(Solved& solved) {
+    SegmentOptions asked;
+    asked.seed = stances_.seed;
+    asked.deadline = stances_.deadline;
+    if (!all_planners_) asked.max_states = kFewStates;
+    solved.motion = {};
+    on_segment(solved, [&](const Segment& segment, std::span<const BearingContact> bearing) {
+      solved.motion = mover_.move(segment, bearing, solved.planner, allowed(), asked);
+    });
+  }
+
+  void retime(Solved& solved) {
+    on_segment(solved, [&](const Segment& segment, std::span<const BearingContact> bearing) {
+      mover_.retime(segment, bearing, solved.pace, solved.motion);
+    });
+  }
+
+  /// Calls f with the segment and its contacts.
+  template <class F>
+  void on_segment(Solved& solved, const F& f) {
     std::vector<BearingContact> bearing;
     for (const int number : space_.footing(solved.held)) {
       if (number != kFree) bearing.push_back(space_.place(number).bearing);
@@ -176,11 +244,9 @@ class MotionSearch {
     segment.reached = besides(solved.after, solved.held);
     segment.from = solved.from;
     segment.to = solved.to;
-    SegmentOptions asked;
-    asked.seed = stances_.seed;
-    asked.deadline = stances_.deadline;
-    if (!all_planners_) asked.max_states = kFewStates;
-    solved.motion = mover_.move(segment, bearing, solved.planner, allowed(), solved.slower, asked);
+    plan_.whole_body_s -= solved.motion.path_s;
+    plan_.timing_s -= solved.motion.timing_s;
+    f(segment, bearing);
     plan_.whole_body_s += solved.motion.path_s;
     plan_.timing_s += solved.motion.timing_s;
   }
@@ -208,12 +274,9 @@ class MotionSearch {
     return report;
   }
 
-  /// Where a whole motion is refused whose segments hold by themselves.
-  std::size_t segment_of(const CheckReport& report) const {
-    const std::vector<const Violation*> violated = report.violated();
-    const int vertex = violated.empty() ? 0 : violated.front()->at_vertex;
+  std::size_t segment_of(const Violation& violation) const {
     std::size_t j = 0;
-    while (j + 1 < plan_.segments.size() && plan_.segments[j].last <= vertex) ++j;
+    while (j + 1 < plan_.segments.size() && plan_.segments[j].last <= violation.at_vertex) ++j;
     return j;
   }
 
@@ -240,13 +303,17 @@ class MotionSearch {
           std::ranges::all_of(violated, [](const Violation* v) { return is_of_inertia(*v); });
       if (inertia && solved.slowed < kMostSlower) {
         ++solved.slowed;
-        solved.slower *= kSlower;
+        solved.pace.slower *= kSlower;
+        retime(solved);
+      } else if (!inertia && !solved.pace.finer) {
+        solved.pace.finer = true;
+        retime(solved);
       } else {
         solved.planner = mover_.number_of(way.planner) + 1;
-        solved.slower = 1.0;
+        solved.pace = {};
         solved.slowed = 0;
+        if (solved.planner < allowed()) move(solved);
       }
-      if (solved.planner < allowed()) move(solved);
       if (solved.planner >= allowed() || !solved.motion.found) {
         solved.motion.found = false;
         solved.motion.reason = "refused: " + violation_text(report.worst());
@@ -264,6 +331,7 @@ class MotionSearch {
   Judge judge_;
   std::vector<std::unique_ptr<Solved>> known_;
   std::vector<Solved*> ways_;
+  std::string refused_reason_;
 };
 
 }  // namespace
@@ -274,13 +342,16 @@ MotionPlan plan_motion(const StanceProblem& problem, const StancePlannerOptions&
   MotionPlan plan;
   MotionSearch search(problem, stances, options, plan);
   StancePlannerOptions asked = stances;
-  asked.accept = [&](const auto& of, const auto& configurations, std::size_t first) {
+  asked.accept = [&](const auto& of, auto& configurations, std::size_t first) {
     return search.accept(of, configurations, first);
   };
   plan.stances = make_stance_planner(options.stance_planner)->plan(problem, asked);
   plan.success = plan.stances.success;
   plan.reason = plan.stances.reason;
   if (!plan.success) {
+    if (!search.refused_reason().empty()) {
+      plan.reason += "; the last motion that was not found: " + search.refused_reason();
+    }
     plan.wrenches.clear();
     plan.report = {};
     search.keep(plan.stances.configurations.size() - 1);

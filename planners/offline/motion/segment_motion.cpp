@@ -16,6 +16,7 @@ constexpr int kMostRounds = 8;
 /// Between the first waypoints of a spline, and where no more are added [as
 /// SegmentSpace::distance].
 constexpr double kSparse = 0.35, kDense = 0.02;
+constexpr std::size_t kFiner = 4;
 constexpr double kSlowly = 2.0;
 constexpr int kMostBroughtBack = 4;
 constexpr int kOffGround = 3;  ///< more in the first and the last part
@@ -56,7 +57,7 @@ SegmentMover::SegmentMover(const StanceProblem& problem, const MotionOptions& op
 }
 
 SegmentMotion SegmentMover::move(const Segment& segment, std::span<const BearingContact> bearing,
-                                 std::size_t first, std::size_t end, double slower,
+                                 std::size_t first, std::size_t end,
                                  const SegmentOptions& options) {
   SegmentMotion motion;
   space_.set_segment(segment);
@@ -64,7 +65,7 @@ SegmentMotion SegmentMover::move(const Segment& segment, std::span<const Bearing
   if (motion.straight <= kNoWay) {
     motion.found = true;
     motion.planner = planners_.front()->name();
-    motion.configurations = {segment.from, segment.to};
+    motion.waypoints = motion.configurations = {segment.from, segment.to};
     motion.duration_s = options_.step_s;
     return motion;
   }
@@ -72,18 +73,34 @@ SegmentMotion SegmentMover::move(const Segment& segment, std::span<const Bearing
     if (options.deadline.passed()) break;
     const Stopwatch searching;
     SegmentPath path = planners_[i]->plan(space_, options);
-    std::optional<PathSpline> closed;
-    if (path.found) closed = close(std::move(path.waypoints));
     motion.path_s += searching.seconds();
-    const Stopwatch timing;
-    motion.found = closed && time(*closed, bearing, slower, motion);
-    motion.timing_s += timing.seconds();
     motion.planner = planners_[i]->name();
+    motion.no_arc = motion.no_arc || path.no_arc;
+    if (path.found) {
+      motion.waypoints = std::move(path.waypoints);
+      shape(bearing, {}, motion);
+    }
     if (motion.found) break;
     if (path.found) path.reason = "no timing keeps it in balance";
     motion.reason += (motion.reason.empty() ? "" : "; ") + motion.planner + ": " + path.reason;
   }
   return motion;
+}
+
+void SegmentMover::retime(const Segment& segment, std::span<const BearingContact> bearing,
+                          const SegmentPace& pace, SegmentMotion& motion) {
+  space_.set_segment(segment);
+  shape(bearing, pace, motion);
+}
+
+void SegmentMover::shape(std::span<const BearingContact> bearing, const SegmentPace& pace,
+                         SegmentMotion& motion) {
+  const Stopwatch closing;
+  const PathSpline closed = close(motion.waypoints, pace.finer);
+  motion.path_s += closing.seconds();
+  const Stopwatch timing;
+  motion.found = time(closed, bearing, pace.slower, motion);
+  motion.timing_s += timing.seconds();
 }
 
 std::size_t SegmentMover::number_of(const std::string& planner) const {
@@ -92,15 +109,16 @@ std::size_t SegmentMover::number_of(const std::string& planner) const {
   return i;
 }
 
-PathSpline SegmentMover::close(std::vector<Eigen::VectorXd> waypoints) {
-  std::vector<Node> way = {{0.0, std::move(waypoints.front())}};
+PathSpline SegmentMover::close(const std::vector<Eigen::VectorXd>& waypoints, bool finer) {
+  std::vector<Node> way = {{0.0, waypoints.front()}};
   for (std::size_t i = 1; i < waypoints.size(); ++i) {
     const double apart = space_.distance(way.back().q, waypoints[i]);
-    if (apart > kNoWay) way.push_back({way.back().at + apart, std::move(waypoints[i])});
+    if (apart > kNoWay) way.push_back({way.back().at + apart, waypoints[i]});
   }
   const Segment& segment = space_.segment();
   const double length = way.back().at;
   const auto parts =
+      (finer ? kFiner : 1) *
       std::max<std::size_t>(3, static_cast<std::size_t>(std::ceil(length / kSparse)));
   std::vector<Node> nodes = {on_way(way, 0.0)};
   // What lifts off and touches down keeps to its way there.

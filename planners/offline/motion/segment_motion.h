@@ -2,7 +2,7 @@
 /// The motion within one stance: a path by the first planner that finds one, and its timing.
 ///
 ///     SegmentMover mover(problem, options);
-///     const SegmentMotion motion = mover.move(segment, bearing, 0, 1, 1.0, {.seed = 7});
+///     const SegmentMotion motion = mover.move(segment, bearing, 0, 1, {.seed = 7});
 ///     if (motion.found) std::cout << motion.configurations.size() << " configurations\n";
 ///
 /// The waypoints of a path become a spline through few of them: where it is off the contacts or
@@ -21,10 +21,18 @@
 
 namespace locograph {
 
+/// How a path becomes a motion.
+struct SegmentPace {
+  double slower = 1.0;  ///< the motion takes so many times as long, at least 1
+  bool finer = false;   ///< the spline keeps closer to the path
+};
+
 struct SegmentMotion {
   bool found = false;
   std::string planner;                          ///< that found the path
   std::string reason;                           ///< why there is none: of each planner
+  bool no_arc = false;                          ///< see SegmentPath
+  std::vector<Eigen::VectorXd> waypoints;       ///< of the path
   std::vector<Eigen::VectorXd> configurations;  ///< equispaced in time, both ends included
   double duration_s = 0.0;
   double length = 0.0, straight = 0.0;  ///< SegmentSpace::distance, of the path and of its ends
@@ -37,10 +45,12 @@ class SegmentMover {
   SegmentMover(const StanceProblem& problem, const MotionOptions& options);
 
   /// bearing: the contacts that are held, with their areas. first, end: numbers of the segment
-  /// planners that are tried. slower: the motion takes so many times as long, at least 1.
+  /// planners that are tried.
   SegmentMotion move(const Segment& segment, std::span<const BearingContact> bearing,
-                     std::size_t first, std::size_t end, double slower,
-                     const SegmentOptions& options);
+                     std::size_t first, std::size_t end, const SegmentOptions& options);
+  /// The same path at another pace. Not found: its timing is not.
+  void retime(const Segment& segment, std::span<const BearingContact> bearing,
+              const SegmentPace& pace, SegmentMotion& motion);
   std::size_t planners() const { return planners_.size(); }
   /// Of a planner by its name.
   std::size_t number_of(const std::string& planner) const;
@@ -53,11 +63,14 @@ class SegmentMover {
   };
 
   /// A spline through as few configurations of a way as keep it closed and valid.
-  PathSpline close(std::vector<Eigen::VectorXd> waypoints);
+  PathSpline close(const std::vector<Eigen::VectorXd>& waypoints, bool finer);
   Node on_way(const std::vector<Node>& way, double at);
   /// What the spline has to go through as well between nodes i - 1 and i; nothing: it holds.
   std::optional<Node> missing(const PathSpline& path, std::size_t i, const std::vector<Node>& way,
                               const std::vector<Node>& nodes);
+  /// Gives a motion with waypoints all the rest.
+  void shape(std::span<const BearingContact> bearing, const SegmentPace& pace,
+             SegmentMotion& motion);
   bool time(const PathSpline& path, std::span<const BearingContact> bearing, double slower,
             SegmentMotion& motion);
   void hold_wheels(std::vector<Eigen::VectorXd>& configurations);

@@ -42,6 +42,8 @@ struct SegmentPath {
   /// the way between two neighbours, brought back to the contacts, is valid.
   std::vector<Eigen::VectorXd> waypoints = {};
   std::string reason = {};
+  /// Not found, and no other posture would help: what swings is in the way of something itself.
+  bool no_arc = false;
   /// Of random trees [as SegmentSpace::distance]: of the first way between from() and to(), and of
   /// the way once the tree ended, before straight ways took the place of its parts.
   double first_length = 0.0, tree_length = 0.0;

@@ -26,6 +26,8 @@ constexpr double kAlmost = 0.006;  // m, rad
 /// What is further from its place is not near it: other links, and other sides of what is touched,
 /// keep away as from anything else.
 constexpr double kNear_m = 0.1, kBelow_m = 2e-3;
+/// Of what swings, above what it leaves: rows that hold to kRowsTolerance keep it out of it.
+constexpr double kOff_m = 2e-4;
 
 TransitionOptions margins_between() {
   TransitionOptions options;
@@ -166,7 +168,7 @@ void SegmentSpace::set_rows(bool swinging, const std::vector<bool>& which) {
   problem.balance = segment_->balance;
   problem.torques = segment_->torques;
   problem.near = near;
-  problem.near_m = swinging ? 0.0 : 0.25 * lift_off_m_;
+  problem.near_m = swinging ? kOff_m : 0.25 * lift_off_m_;
   rows_.set_problem(problem, margins_between());
 }
 

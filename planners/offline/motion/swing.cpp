@@ -77,7 +77,8 @@ void Swing::add_places(const Robot& robot, double t, const ArcOptions& options,
 
 bool Swing::follows_arc(const ArcOptions& options) const {
   const bool both = left != nullptr && reached != nullptr;
-  return !options.ends_only && (both || options.climb_first || options.away_m != 0.0);
+  return !options.ends_only &&
+         (both || options.climb_first || options.away_m != 0.0 || options.up_m != 0.0);
 }
 
 Eigen::Isometry3d Swing::pose(double t, const ArcOptions& options) const {
@@ -93,9 +94,10 @@ Eigen::Isometry3d Swing::pose(double t, const ArcOptions& options) const {
   const Eigen::Vector3d across = b - a - climb * climbing;
   const double climbed =
       climb > 0.0 ? rise(t, 0.0, options.climb_first ? 0.4 : 0.6) : rise(t, 0.6, 1.0);
-  const double bulge = options.away_m * rise(t, 0.0, 0.35) * rise(1.0 - t, 0.0, 0.35);
+  const double bulge = rise(t, 0.0, 0.35) * rise(1.0 - t, 0.0, 0.35);
   const Eigen::Vector3d at =
-      a + over * across + climbed * climb * climbing + bulge * away(a, b) +
+      a + over * across + climbed * climb * climbing +
+      bulge * (options.away_m * away(a, b) + options.up_m * Eigen::Vector3d::UnitZ()) +
       options.height_m * ((1.0 - over) * lifted * up_from + over * high * up_to);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = Eigen::Quaterniond(from.linear())

@@ -20,6 +20,7 @@ struct ArcOptions {
   double height_m = 0.05;    ///< above the line between both places, along normals
   bool with_axes = true;     ///< soles turn evenly from one place to the other
   double away_m = 0.0;       ///< half-way, away from the higher place: round its edge
+  double up_m = 0.0;         ///< half-way, straight up: over what lies between
   bool climb_first = false;  ///< up before over, over before down; else both at once
   bool ends_only = false;    ///< only the moves along normals
 };

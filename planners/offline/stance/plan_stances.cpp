@@ -45,8 +45,8 @@ std::string why_not_reached(const StancePlan& plan, const StanceSpace& space,
 }
 
 /// See StancePlannerOptions::accept; the change is forbidden.
-std::size_t not_accepted(StanceSpace& space, const StancePlannerOptions& options,
-                         const StancePath& path, std::size_t first) {
+std::size_t not_accepted(StanceSpace& space, const StancePlannerOptions& options, StancePath& path,
+                         std::size_t first) {
   if (!options.accept) return 0;
   std::vector<Stance> stances;
   for (const Footing& footing : path.footings) stances.push_back(space.stance(footing));

@@ -73,9 +73,11 @@ struct StancePlannerOptions {
   std::function<void(const TransitionAttempt&)> observe = nullptr;
   bool keep_tree = false;  ///< StancePlan::tree is filled
   /// Asked of each way to a goal that the judge takes: stances and configurations from the start,
-  /// and the number of changes that were taken before. 0: it will do; else the number of a change
-  /// that will not, which no later way has. By the thread that plans; may be empty.
-  std::function<std::size_t(const std::vector<Stance>&, const std::vector<Eigen::VectorXd>&,
+  /// and the number of changes that were taken before. It may put other configurations in the place
+  /// of those behind them, as good for the same changes, which the plan then has. 0: it will do;
+  /// else the number of a change that will not, which no later way has. By the thread that plans;
+  /// may be empty.
+  std::function<std::size_t(const std::vector<Stance>&, std::vector<Eigen::VectorXd>&,
                             std::size_t first)>
       accept = nullptr;
 

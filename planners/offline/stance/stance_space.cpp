@@ -351,6 +351,13 @@ StanceSpace::Attempt StanceSpace::try_harder(const Footing& from, const Footing&
   return change(task_of(from, to, start, options_.seed, options));
 }
 
+StanceSpace::Attempt StanceSpace::try_nearby(const Footing& from, const Footing& to,
+                                             const Eigen::VectorXd& start) {
+  TransitionTask task = task_of(from, to, start, options_.seed, {});
+  task.preferred = start;
+  return change(task);
+}
+
 void StanceSpace::expect(const std::vector<std::vector<Expected>>& chains) {
   if (threads() < 2) return;
   std::vector<TransitionAhead::Expected> tasks;

@@ -65,6 +65,8 @@ class StanceSpace {
                          int restarts);
   /// The same again, and nothing of it kept: with wider margins.
   Attempt try_harder(const Footing& from, const Footing& to, const Eigen::VectorXd& start);
+  /// A posture for the same as near `start` as can be; nothing of it is kept.
+  Attempt try_nearby(const Footing& from, const Footing& to, const Eigen::VectorXd& start);
   /// A posture in one stance, near `start`; further attempts have other seeds and wider margins.
   Attempt stand(const Stance& stance, const Eigen::VectorXd& start, int attempt);
   /// The transition is not to be found again: the judge refused it.

@@ -8,13 +8,17 @@ namespace {
 /// Of friction, areas and limits of force: what is left unused.
 constexpr double kRegionMargin = 0.1;
 
+bool same_bits(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return a.size() == b.size() &&
+         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+}
+
 }  // namespace
 
 bool same_task(const TransitionTask& a, const TransitionTask& b) {
   return a.larger == b.larger && a.smaller == b.smaller && a.seed == b.seed &&
-         a.options == b.options && a.start.size() == b.start.size() &&
-         std::memcmp(a.start.data(), b.start.data(),
-                     static_cast<std::size_t>(a.start.size()) * sizeof(double)) == 0;
+         a.options == b.options && same_bits(a.start, b.start) &&
+         same_bits(a.preferred, b.preferred);
 }
 
 const BalanceRegion& BalanceRegions::of(const Footing& footing,
@@ -43,7 +47,7 @@ TransitionResult TaskSolver::solve(const TransitionTask& task) {
   problem.held = task.held;
   problem.balance = &regions_.of(task.smaller, task.bearing);
   problem.start = task.start;
-  problem.preferred = problem_.start_configuration;
+  problem.preferred = task.preferred.size() > 0 ? task.preferred : problem_.start_configuration;
   problem.seed = task.seed;
   TransitionResult result = solver_.solve(problem, task.options);
   if (result.found && problem_.check.enforce_torque_limits) ease_torques(task, problem, result);

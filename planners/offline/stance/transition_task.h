@@ -24,6 +24,7 @@ struct TransitionTask {
   std::vector<Contact> held = {};            ///< of the smaller one
   std::vector<BearingContact> bearing = {};  ///< of the smaller one
   Eigen::VectorXd start = {};
+  Eigen::VectorXd preferred = {};  ///< empty: where the problem starts
   std::uint64_t seed = 0;
   TransitionOptions options = {};
 };
