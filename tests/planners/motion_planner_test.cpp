@@ -1,7 +1,10 @@
 // Whole motions: stances, paths and times, judged here by other means than the planner's.
 #include <gtest/gtest.h>
+#include <locograph/check/judge.h>
 #include <locograph/common/error.h>
 #include <locograph/planners/offline/motion/motion_planner.h>
+#include <locograph/planners/offline/motion/segment_motion.h>
+#include <locograph/planners/offline/stance/stance_space.h>
 #include <locograph/robots/dynamics.h>
 
 #include <algorithm>
@@ -11,6 +14,7 @@
 #include <string>
 
 #include "common/sanitized.h"
+#include "planners/segment_problems.h"
 #include "planners/stance_tasks.h"
 
 namespace locograph::motion_planner_test {
@@ -342,6 +346,86 @@ TEST(AcceptedStancesTest, AllThatIsRefusedLeavesNoPlan) {
   EXPECT_GT(asked, 0);
   EXPECT_FALSE(plan.success);
   EXPECT_FALSE(plan.reason.empty());
+}
+
+TEST(AcceptedStancesTest, OtherConfigurationsTakeTheirPlace) {
+  Eigen::VectorXd other;
+  StancePlannerOptions options;
+  options.accept = [&](const auto&, auto& configurations, std::size_t) -> std::size_t {
+    other = configurations.back();
+    other.tail<1>()[0] += 1e-4;
+    configurations.back() = other;
+    return 0;
+  };
+  const StancePlan plan = make_stance_planner("guided")->plan(standing_up(), options);
+  ASSERT_TRUE(plan.success) << plan.reason;
+  EXPECT_EQ(plan.configurations.back(), other);
+}
+
+/// The right arm of COMAN+ is where nothing asks it to be.
+TEST(NearbyPosturesTest, FreeArmsStayWhereTheyAre) {
+  const StanceProblem task = test::stance_task("slanted_wall");
+  const StancePlannerOptions options;
+  StanceSpace space(task, options);
+  const Footing both = space.footing(task.start);
+  const Footing one = space.footing(test::without_contact(task.start, "right_foot"));
+  const Robot& robot = *task.robot->robot;
+  int elbow = -1;
+  for (int i = 0; i < robot.active_joint_count(); ++i) {
+    if (robot.active_joint(i).name == "RElbj") elbow = robot.base_configuration_size() + i;
+  }
+  ASSERT_GE(elbow, 0);
+  Eigen::VectorXd start = task.start_configuration;
+  start[elbow] -= 0.4;
+  const StanceSpace::Attempt near = space.try_nearby(both, one, start);
+  const StanceSpace::Attempt usual = space.try_transition(both, one, start, 0);
+  ASSERT_TRUE(near.found) << near.reason;
+  ASSERT_TRUE(usual.found) << usual.reason;
+  EXPECT_LT(std::abs(near.configuration[elbow] - start[elbow]), 0.02);
+  EXPECT_GT(std::abs(usual.configuration[elbow] - start[elbow]), 0.1);
+  const Judge judge(task.robot->robot, task.world);
+  CheckOptions asked = task.check;
+  asked.enforce_torque_limits = false;
+  EXPECT_TRUE(judge
+                  .check(stances_motion({space.stance(both), space.stance(one)},
+                                        {near.configuration, near.configuration}),
+                         asked)
+                  .feasible);
+}
+
+/// A path is kept when it is timed again.
+TEST(SegmentMoverTest, TheSamePathAtAnotherPace) {
+  const auto step = test::step_forward_problem();
+  StanceProblem task = test::stance_task("slanted_wall");
+  task.world = step->world;
+  const MotionOptions options;
+  SegmentMover mover(task, options);
+  const std::vector<BearingContact> bearing = {{step->segment.held[0]}};
+  const SegmentMotion fast = mover.move(step->segment, bearing, 0, 1, {});
+  ASSERT_TRUE(fast.found) << fast.reason;
+  SegmentMotion slow = fast;
+  mover.retime(step->segment, bearing, {.slower = 2.0}, slow);
+  ASSERT_TRUE(slow.found);
+  EXPECT_NEAR(slow.duration_s, 2.0 * fast.duration_s, 1e-9);
+  EXPECT_NEAR(slow.length, fast.length, 1e-2 * fast.length);
+  SegmentMotion fine = fast;
+  mover.retime(step->segment, bearing, {.finer = true}, fine);
+  ASSERT_TRUE(fine.found);
+  for (const SegmentMotion* motion : {&slow, &fine}) {
+    EXPECT_EQ(motion->planner, fast.planner);
+    EXPECT_EQ(motion->configurations.front(), step->segment.from);
+    EXPECT_EQ(motion->configurations.back(), step->segment.to);
+  }
+  // As close to the path as its waypoints are.
+  SegmentSpace space(task.robot, task.world);
+  space.set_segment(step->segment);
+  for (const Eigen::VectorXd& q : fine.configurations) {
+    double least = 1.0;
+    for (const Eigen::VectorXd& waypoint : fast.waypoints) {
+      least = std::min(least, space.distance(q, waypoint));
+    }
+    EXPECT_LT(least, 0.15);
+  }
 }
 
 }  // namespace

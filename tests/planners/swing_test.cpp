@@ -103,6 +103,15 @@ TEST_F(SwingTest, BulgesToTheSideThatIsAskedFor) {
   EXPECT_NEAR(bulge.x(), 0.1, 1e-9);
 }
 
+TEST_F(SwingTest, GoesUpOverWhatLiesBetween) {
+  const ArcOptions arc{.up_m = 0.2};
+  EXPECT_TRUE(swing.follows_arc(arc));
+  const Eigen::Vector3d higher = place(0.5, arc) - place(0.5, {});
+  EXPECT_LT((higher - Eigen::Vector3d(0.0, 0.0, 0.2)).norm(), 1e-9);
+  EXPECT_LT((place(0.0, arc) - before.position).norm(), 1e-12);
+  EXPECT_LT((place(1.0, arc) - after.position).norm(), 1e-12);
+}
+
 TEST_F(SwingTest, MovesAlongNormalsOnlyWhereNoMoreIsAskedFor) {
   const ArcOptions arc{.ends_only = true};
   for (const double t : {0.4, 0.5, 0.6}) EXPECT_TRUE(places(t, arc).empty()) << t;

@@ -2,6 +2,7 @@
 #include <locograph/planners/offline/motion/motion_planner.h>
 #include <locograph/planners/offline/motion/segment_motion.h>
 #include <locograph/planners/offline/stance/stance_space.h>
+#include <locograph/planners/offline/stance/standing_wheels.h>
 
 #include <algorithm>
 #include <memory>
@@ -161,10 +162,14 @@ class MotionSearch {
     const auto footing = [&](std::size_t i) { return space_.footing(stances[i]); };
     const auto found_with = [&](std::size_t i, const StanceSpace::Attempt& other) {
       if (!other.found) return false;
-      const Eigen::VectorXd before = std::exchange(configurations[i], other.configuration);
+      StancePath path{{}, configurations};
+      for (std::size_t k = 0; k < stances.size(); ++k) path.footings.push_back(footing(k));
+      path.configurations[i] = other.configuration;
+      hold_wheels(space_, path, i);
+      std::swap(configurations, path.configurations);
       const bool found = found_at(stances, configurations, j) &&
                          (i > j || found_at(stances, configurations, j - 1));
-      if (!found) configurations[i] = before;
+      if (!found) std::swap(configurations, path.configurations);
       return found;
     };
     const Eigen::VectorXd begin = configurations[j], end = configurations[j + 1];

@@ -24,12 +24,12 @@ std::vector<StandingWheel> wheels_that_turn(const StanceProblem& problem) {
 
 }  // namespace
 
-void hold_wheels(const StanceSpace& space, StancePath& path) {
+void hold_wheels(const StanceSpace& space, StancePath& path, std::size_t first) {
   const Robot& robot = *space.problem().robot->robot;
   const std::vector<StandingWheel> wheels = wheels_that_turn(space.problem());
   if (wheels.empty()) return;
   RobotState before(robot), after(robot);
-  for (std::size_t i = 1; i < path.footings.size(); ++i) {
+  for (std::size_t i = first; i < path.footings.size(); ++i) {
     before.update(path.configurations[i - 1].data());
     after.update(path.configurations[i].data());
     for (const auto& [effector, wheel] : wheels) {

@@ -11,8 +11,8 @@
 
 namespace locograph {
 
-/// Sets the joints of wheels from the first change on: of those in contact before a change, so that
-/// they do not turn on the ground; others stay as they are.
-void hold_wheels(const StanceSpace& space, StancePath& path);
+/// Sets the joints of wheels from change number `first` on: of those in contact before a change, so
+/// that they do not turn on the ground; others stay as they are.
+void hold_wheels(const StanceSpace& space, StancePath& path, std::size_t first = 1);
 
 }  // namespace locograph
