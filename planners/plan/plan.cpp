@@ -202,6 +202,10 @@ Plan plan_of(const Graph& graph) {
     plan.stance_from.push_back(known ? parameters.get<StanceParameter>(vertex.stance_number)
                                      : nullptr);
   }
+  for (int slot = 0; slot < graph.vertex_slots(); ++slot) {
+    plan.states_wrenches =
+        plan.states_wrenches || (graph.vertex_alive(slot) && is<VertexWrenches>(graph, slot));
+  }
   require_wrenches_of_stances(graph, plan);
   plan.segments = segments_of(graph, plan);
   return plan;

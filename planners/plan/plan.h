@@ -34,8 +34,9 @@ struct Plan {
   /// Of each configuration the stance that is held from it to the next one; null: not known.
   std::vector<std::shared_ptr<const StanceParameter>> stance_from;
   bool stances_only = false;
-  bool incomplete = false;  ///< it ends before its goal
-  ContactMoves moves;       ///< how its start and goals differ from its scenario's
+  bool incomplete = false;       ///< it ends before its goal
+  bool states_wrenches = false;  ///< it has some
+  ContactMoves moves;            ///< how its start and goals differ from its scenario's
   /// From the first configuration to the last; none: the plan does not say.
   std::vector<PlanSegment> segments;
 };

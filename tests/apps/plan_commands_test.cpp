@@ -122,6 +122,20 @@ TEST(PlanCommands, CheckListsEveryConstraintAlsoThoseThatHold) {
   }
 }
 
+TEST(PlanCommands, CheckSaysThatTheWrenchesOfAPlanAreNotWhatItJudges) {
+  const CommandRunner runner;
+  runner.write("none.g2o", squat("2 4 5"));
+  runner.write("zero.g2o", squat("2 4 5") + "VERTEX_WRENCHES 20 2 4 5 0 0 0 0 0 0 0 0 0 0 0 0\n");
+  const std::string text = "the plan's wrenches: the judge found its own";
+  const auto trusted = [&](const std::string& file) {
+    const nlohmann::json all = runner.run("check " + file + " --json").json()["trusted"];
+    return std::count(all.begin(), all.end(), text);
+  };
+  EXPECT_EQ(trusted("none.g2o"), 0);
+  EXPECT_EQ(trusted("zero.g2o"), 1);
+  EXPECT_NE(runner.run("check zero.g2o").out.find(text), std::string::npos);
+}
+
 TEST(PlanCommands, CheckJudgesBalanceAndTorquesOnTheStanceOfAPlan) {
   const CommandRunner runner;
   runner.write("both.g2o", squat("2 4 5"));
