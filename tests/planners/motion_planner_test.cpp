@@ -393,6 +393,32 @@ TEST(NearbyPosturesTest, FreeArmsStayWhereTheyAre) {
                   .feasible);
 }
 
+/// Stones of Go2 whose sides are 6 cm apart.
+TEST(PlacesForMotionsTest, NoneIsInAGapThatABallCannotComeOutOf) {
+  const StanceProblem task = test::stance_task("stepping_stones");
+  const auto found = std::ranges::find(task.end_effectors, "front_right_foot", &EndEffector::name);
+  ASSERT_NE(found, task.end_effectors.end());
+  const int foot = static_cast<int>(found - task.end_effectors.begin());
+  const auto places = [&](bool for_motions) {
+    StancePlannerOptions options;
+    if (for_motions)
+      options.accept = [](const auto&, auto&, std::size_t) { return std::size_t{0}; };
+    StanceSpace space(task, options);
+    int sides = 0, tops = 0;
+    for (const int number : space.places_near(foot, {0.65, -0.15, 0.0}, 0.12)) {
+      const Contact& contact = space.place(number).bearing.contact;
+      const Eigen::Vector3d &at = contact.position, &normal = contact.normal;
+      if (std::abs(normal.x()) > 0.9 && std::abs(at.z()) < 0.02) ++sides;
+      if (normal.z() > 0.9) ++tops;
+    }
+    return std::pair(sides, tops);
+  };
+  const auto [sides, tops] = places(false);
+  EXPECT_GT(sides, 0);
+  EXPECT_GT(tops, 0);
+  EXPECT_EQ(places(true), std::pair(0, tops));
+}
+
 /// A path is kept when it is timed again.
 TEST(SegmentMoverTest, TheSamePathAtAnotherPace) {
   const auto step = test::step_forward_problem();

@@ -96,10 +96,12 @@ class MotionSearch {
         if (ways_[j]->judged || !named[j]) continue;
         if (!mend(stances, j, mended)) return refuse(j);
       }
-      if (!mended && whole) {
-        const std::vector<const Violation*> violated = plan_.report.violated();
-        return refuse(violated.empty() ? first : std::max(first, segment_of(*violated.front())));
-      }
+      if (mended || slow_down(first)) continue;
+      if (!whole) continue;
+      const std::vector<const Violation*> violated = plan_.report.violated();
+      const std::size_t j = violated.empty() ? first : segment_of(*violated.front());
+      ways_[j]->motion.reason = "refused: " + violation_text(plan_.report.worst());
+      return refuse(std::max(first, j));
     }
   }
 
@@ -285,6 +287,34 @@ class MotionSearch {
     return j;
   }
 
+  /// Segments that hold by themselves, from rest to rest, and not one after the other: where one
+  /// brakes and the next one starts, inertia of both counts. False: that is not it, or they are
+  /// slow already.
+  bool slow_down(std::size_t first) {
+    const std::vector<const Violation*> violated = plan_.report.violated();
+    if (!std::ranges::all_of(violated, [](const Violation* v) { return is_of_inertia(*v); })) {
+      return false;
+    }
+    bool slowed = false;
+    for (const Violation* violation : violated) {
+      const std::size_t j = segment_of(*violation);
+      const bool at_change = j > 0 && plan_.segments[j].first == violation->at_vertex;
+      for (std::size_t i = at_change ? j - 1 : j; i <= j; ++i) {
+        if (i >= first && slow_down(*ways_[i])) slowed = true;
+      }
+    }
+    return slowed;
+  }
+
+  bool slow_down(Solved& solved) {
+    if (solved.slowed >= kMostSlower) return false;
+    ++solved.slowed;
+    solved.pace.slower *= kSlower;
+    solved.judged = false;
+    retime(solved);
+    return true;
+  }
+
   /// Judges a segment by itself, and moves it again until it holds: slower, or by the next planner.
   /// False: it cannot be moved otherwise.
   bool mend(const std::vector<Stance>& stances, std::size_t j, bool& mended) {
@@ -306,10 +336,8 @@ class MotionSearch {
       const std::vector<const Violation*> violated = report.violated();
       const bool inertia =
           std::ranges::all_of(violated, [](const Violation* v) { return is_of_inertia(*v); });
-      if (inertia && solved.slowed < kMostSlower) {
-        ++solved.slowed;
-        solved.pace.slower *= kSlower;
-        retime(solved);
+      if (inertia && slow_down(solved)) {
+        // Judged again.
       } else if (!inertia && !solved.pace.finer) {
         solved.pace.finer = true;
         retime(solved);

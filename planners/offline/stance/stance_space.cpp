@@ -13,6 +13,8 @@ constexpr double kSamePlane_m = 1e-4, kSamePlane_rad = 1e-3;
 constexpr double kQuantum = 1e-9;  ///< places nearer than this are one
 /// Less area than this on a surface is none, as for the judge.
 constexpr double kNoArea_m2 = 1e-8;
+/// How far a ball comes along a normal, and in which steps.
+constexpr double kApproach_m = 0.036, kApproachStep_m = 0.012;
 /// Sides around a bar that grasps come from and points touch.
 constexpr int kBarSides = 8;
 
@@ -51,6 +53,13 @@ TransitionOptions wide_margins() {
 
 StanceSpace::Attempt attempt_of(TransitionResult result) {
   return {result.found, std::move(result.configuration), result.failure, std::move(result.reason)};
+}
+
+double distance_to(const Surface& surface, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d local = surface.world_from_surface.inverse() * point;
+  return Eigen::Vector3d(std::max(0.0, std::abs(local.x()) - surface.half_x_m),
+                         std::max(0.0, std::abs(local.y()) - surface.half_y_m), local.z())
+      .norm();
 }
 
 bool lies_in(const Surface& surface, const Contact& contact) {
@@ -209,7 +218,26 @@ std::vector<int> StanceSpace::places_near(int effector, const Eigen::Vector3d& p
     places_on(effector, surface, point, reach_m, places);
   }
   for (const Bar& bar : problem_.world.bars) places_on(effector, bar, point, reach_m, places);
+  if (options_.accept) std::erase_if(places, [this](int number) { return !has_room(number); });
   return places;
+}
+
+bool StanceSpace::has_room(int number) {
+  const auto [found, fresh] = has_room_.emplace(number, true);
+  const Contact& contact = place(number).bearing.contact;
+  const double radius_m = contact.effector.radius_m;
+  if (!fresh || contact.effector.kind != ContactKind::kPoint || !(radius_m > 0.0)) {
+    return found->second;
+  }
+  const Eigen::Vector3d normal = contact.normal.stableNormalized();
+  for (double off = kApproachStep_m; off < kApproach_m + kQuantum; off += kApproachStep_m) {
+    const Eigen::Vector3d middle = contact.position + (radius_m + off) * normal;
+    for (const int s : surfaces_.touching(box_around(middle, radius_m))) {
+      const Surface& surface = problem_.world.surfaces[static_cast<std::size_t>(s)];
+      if (distance_to(surface, middle) < radius_m) return found->second = false;
+    }
+  }
+  return true;
 }
 
 void StanceSpace::places_on(int effector, const Surface& surface, const Eigen::Vector3d& point,

@@ -56,7 +56,8 @@ class StanceSpace {
   /// Where the end effector's point is in a configuration [m, world].
   Eigen::Vector3d position(int effector, const Eigen::VectorXd& q);
   /// Places of the end effector on surfaces and bars that are no further than `reach` from a point,
-  /// in the order of the surfaces.
+  /// in the order of the surfaces. Where motions are asked for (StancePlannerOptions::accept), only
+  /// those that a ball can come to along their normals: none in a gap as wide as itself.
   std::vector<int> places_near(int effector, const Eigen::Vector3d& point, double reach_m);
 
   /// From one footing to the next, which has one contact more or less: what is closed are the
@@ -101,6 +102,8 @@ class StanceSpace {
 
  private:
   int intern(int effector, const Contact& contact);
+  /// What touches a place comes to it along its normal without meeting a surface.
+  bool has_room(int number);
   /// Of World::surfaces, those that the end effector may lie on there, and a few more.
   std::vector<int> surfaces_at(const Contact& contact) const;
   void places_on(int effector, const Surface& surface, const Eigen::Vector3d& point, double reach_m,
@@ -126,6 +129,7 @@ class StanceSpace {
   std::vector<double> reach_m_;
   BoxTree surfaces_;
   std::vector<Place> places_;
+  std::map<int, bool> has_room_;  ///< of places, once they were asked for
   std::map<std::vector<long long>, int> numbers_;
   std::unordered_set<Footing, FootingHash> refused_;  ///< transitions, as joined() gives them
   std::map<std::pair<int, std::string>, int> failures_;
