@@ -70,19 +70,22 @@ class Interpolation : public SegmentPlanner {
       try_arc(kArcs.front());
       return path;
     }
-    std::vector<ArcOptions> blocked, free;
+    // Balls and wheels have no axes to turn: they take each arc once.
+    const bool turns = std::ranges::any_of(swings, [](const Swing& swing) {
+      return swing.contact().effector.kind == ContactKind::kSurface;
+    });
+    std::vector<ArcOptions> held, free, blocked;
     for (const ArcOptions& arc : kArcs) {
       const auto on_arc = [&arc](const Swing& swing) { return swing.follows_arc(arc); };
-      if (std::ranges::none_of(swings, on_arc)) free.push_back(arc);
+      if (!turns && arc.with_axes) continue;
+      (std::ranges::any_of(swings, on_arc) ? held : free).push_back(arc);
     }
     // What is only lifted or only put down is free in between, at first.
     const bool free_first = std::ranges::any_of(swings, [](const Swing& swing) {
       return swing.left == nullptr || swing.reached == nullptr;
     });
     if (free_first && std::ranges::any_of(free, try_arc)) return path;
-    for (const ArcOptions& arc : kArcs) {
-      const auto on_arc = [&arc](const Swing& swing) { return swing.follows_arc(arc); };
-      if (std::ranges::none_of(swings, on_arc)) continue;
+    for (const ArcOptions& arc : held) {
       if (is_blocked(space, swings, arc)) {
         blocked.push_back(arc);
       } else if (try_arc(arc)) {
@@ -90,10 +93,7 @@ class Interpolation : public SegmentPlanner {
       }
     }
     // No ball passes by turning.
-    const bool turns = std::ranges::any_of(swings, [](const Swing& swing) {
-      return swing.contact().effector.kind == ContactKind::kSurface;
-    });
-    path.no_arc = blocked.size() + free.size() == kArcs.size() && !turns && !free_first;
+    path.no_arc = blocked.size() == held.size() && !turns && !free_first;
     if (path.no_arc) {
       path.reason = "what swings has no way past what is between its places";
       return path;
