@@ -9,8 +9,9 @@ namespace {
 constexpr double kRegionMargin = 0.1;
 
 bool same_bits(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  return a.size() == b.size() &&
-         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+  if (a.size() != b.size()) return false;
+  const std::size_t bytes = static_cast<std::size_t>(a.size()) * sizeof(double);
+  return bytes == 0 || std::memcmp(a.data(), b.data(), bytes) == 0;
 }
 
 }  // namespace
