@@ -9,7 +9,7 @@ namespace locograph {
 namespace {
 
 /// Vertices and steps that one thread judges in a row.
-constexpr std::size_t kPiece = 16;
+constexpr std::size_t kPiece = 32;
 
 }  // namespace
 
@@ -94,10 +94,9 @@ void BalanceAlong::record(const BalanceFindings::List& findings) {
 
 void BalanceAlong::tell() const {
   if (!context_.options.on_balance) return;
-  for (const BalanceFindings::List& findings : found_.at_vertices)
-    for (const BalanceFinding& finding : findings)
-      if (finding.stance == context_.stance_from(finding.vertex))
-        context_.options.on_balance(finding.vertex, finding.certificate);
+  for (std::size_t i = 0; i < found_.wrenches.size(); ++i)
+    if (!found_.wrenches[i].empty())
+      context_.options.on_balance(static_cast<int>(i), found_.wrenches[i]);
 }
 
 void BalanceAlong::report(std::vector<Violation>& violations) const {

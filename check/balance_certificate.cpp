@@ -87,7 +87,7 @@ class Programme {
     BalanceCertificate failed;
     failed.margin = -kInfinity;
     failed.max_torque_ratio = kInfinity;
-    failed.wrenches.assign(contacts_.size(), Eigen::VectorXd::Zero(6));
+    failed.wrenches.assign(contacts_.size(), Wrench::Zero());
     failed.limiting = "the linear programme was not solved (a numerical failure)";
     return failed;
   }
@@ -377,7 +377,8 @@ class Programme {
   BalanceCertificate certificate() const {
     BalanceCertificate result;
     result.margin = solution_[0];
-    std::vector<Wrench> wrenches(contacts_.size(), Wrench::Zero());
+    StanceWrenches& wrenches = result.wrenches;
+    wrenches.assign(contacts_.size(), Wrench::Zero());
     const auto add = [&](const Unknown& unknown, double amount) {
       wrenches[std::size_t(unknown.contact)] += amount * unknown.wrench;
     };
@@ -392,7 +393,6 @@ class Programme {
                          .point = state_.world_from_link(contact.link).inverse() * contact.point,
                          .force = contact.axes * wrenches[i].head<3>(),
                          .moment = contact.axes * wrenches[i].tail<3>()});
-      result.wrenches.emplace_back(wrenches[i]);
     }
     Eigen::VectorXd torques(robot_.tangent_size());
     torques = gravity_;

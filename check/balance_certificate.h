@@ -75,6 +75,9 @@ struct BalanceOptions {
   std::optional<BalanceMotion> motion = std::nullopt;  ///< none: at rest
 };
 
+/// fx fy fz mx my mz of each contact of a stance [N, N m].
+using StanceWrenches = std::vector<Eigen::Matrix<double, 6, 1>>;
+
 struct BalanceCertificate {
   bool balanced = false;  ///< margin >= 0 up to 1e-6, and the wrenches were verified
   double margin = 0.0;    ///< at most 1; > 0 inside all limits, < 0 outside
@@ -82,14 +85,14 @@ struct BalanceCertificate {
   /// wrenches (which are for the margin's sake as large as 1 - margin allows), or
   /// BalanceOptions::least_torques. If no wrenches balance, of those that violate least.
   double max_torque_ratio = 0.0;
-  /// fx fy fz mx my mz of each contact [N, N m]: on the robot, about the contact point, along the
-  /// contact's axes; zero for one that bears no load.
-  std::vector<Eigen::VectorXd> wrenches;
+  /// On the robot, about the contact point, along the contact's axes; zero for one that bears no
+  /// load.
+  StanceWrenches wrenches;
   /// The same at each corner and point that bears, in the order of contacts and corners, about it:
   /// for nearby_balance.h. Of a negative margin none.
-  std::vector<Eigen::Matrix<double, 6, 1>> at_places;
-  std::vector<Eigen::Matrix<double, 6, 1>> least_at_places;  ///< with the least torques
-  std::string limiting;  ///< what the margin depends on most, in words
+  StanceWrenches at_places;
+  StanceWrenches least_at_places;  ///< with the least torques
+  std::string limiting;            ///< what the margin depends on most, in words
 };
 
 BalanceCertificate certify_balance(const Robot& robot, const Eigen::VectorXd& configuration,

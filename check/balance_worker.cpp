@@ -64,24 +64,20 @@ void BalanceWorker::judge_vertices(std::size_t first, std::size_t last, BalanceF
     smallest_half_m_ = found.half_m[i];
     const JudgedStance* before = i == 0 ? nullptr : context_.stance_from(vertex - 1);
     const JudgedStance* after = context_.stance_from(vertex);
-    std::array<BalanceFindings::Margin, 2>& margins = found.margins[i];
-    if (before != nullptr)
+    std::array<double, 2>& margins = found.margins[i];
+    StanceWrenches* wrenches = context_.options.on_balance ? &found.wrenches[i] : nullptr;
+    if (before != nullptr && before != after)
       margins[0] = judge({.vertex = vertex, .stance = before}, &found.at_vertices[i]);
-    if (after == before)
-      margins[1] = margins[0];
-    else if (after != nullptr)
-      margins[1] = judge({.vertex = vertex, .stance = after}, &found.at_vertices[i]);
+    if (after != nullptr)
+      margins[1] = judge({.vertex = vertex, .stance = after}, &found.at_vertices[i], wrenches);
+    if (before == after) margins[0] = margins[1];
     found.half_m[i] = smallest_half_m_;
   }
 }
 
 void BalanceWorker::judge_steps(std::size_t first, std::size_t last, BalanceFindings& found) {
   begin(found);
-  // The margin at the end of a step is that at the beginning of the next one.
-  std::array<BalanceFindings::Margin, 2> here, there = found.margins[first];
   for (std::size_t i = first; i < last; ++i) {
-    here = there;
-    there = found.margins[i + 1];
     const JudgedStance* stance = context_.stance_from(static_cast<int>(i));
     for (const std::size_t vertex : {i + 1, i})
       for (const BalanceFinding& finding : found.at_vertices[vertex]) near_.push_back(&finding);
@@ -92,9 +88,8 @@ void BalanceWorker::judge_steps(std::size_t first, std::size_t last, BalanceFind
         found.at_vertices[i], [&](const BalanceFinding& finding) { return violates(finding); });
     shapes_->set_step(configuration_step(context_.robot, context_.motion.configurations[i],
                                          context_.motion.configurations[i + 1]));
-    judge_half({static_cast<int>(i), 0.0, Half::kFirst, stance}, here[1]);
-    judge_half({static_cast<int>(i), 0.5, Half::kSecond, stance}, there[0]);
-    if (context_.stance_from(static_cast<int>(i) + 1) == stance) there[1] = there[0];
+    judge_half({static_cast<int>(i), 0.0, Half::kFirst, stance}, found.margins[i][1]);
+    judge_half({static_cast<int>(i), 0.5, Half::kSecond, stance}, found.margins[i + 1][0]);
   }
 }
 
@@ -135,7 +130,8 @@ BalanceOptions BalanceWorker::options_for(const Spot& spot) {
   return options;
 }
 
-BalanceFindings::Margin BalanceWorker::judge(const Spot& spot, BalanceFindings::List* findings) {
+double BalanceWorker::judge(const Spot& spot, BalanceFindings::List* findings,
+                            StanceWrenches* wrenches) {
   context_.go_on("judging balance", spot.vertex);
   sampler_.link_poses(spot.vertex, spot.fraction, poses_);
   BalanceOptions options = options_for(spot);
@@ -143,16 +139,17 @@ BalanceFindings::Margin BalanceWorker::judge(const Spot& spot, BalanceFindings::
   // Of motions the least torques are told, at vertices; of a posture those of its wrenches.
   options.least_torques = torques && (!context_.single || !options.enforce_torque_limits);
   if (prove_nearby_ && !context_.single) {
-    const BalanceBounds bounds = prove(spot, options);
+    BalanceBounds bounds = prove(spot, options);
     const bool told = enough_is_known_of_torques(bounds);
-    if (told && enough_is_known_of_margin(bounds) && (spot.half || !context_.options.on_balance))
-      return {bounds.margin_at_least, false};
+    if (told && enough_is_known_of_margin(bounds)) {
+      if (wrenches != nullptr) *wrenches = std::move(bounds.wrenches);
+      return bounds.margin_at_least;
+    }
     if (told) torques = false;
-    // Their wrenches are wanted at every vertex, and those of the largest margin will do.
-    if (told && context_.options.on_balance) options.least_torques = false;
   }
   BalanceFinding found = programme(spot, options, torques);
-  const BalanceFindings::Margin margin{found.certificate.margin, true};
+  const double margin = found.certificate.margin;
+  if (wrenches != nullptr) *wrenches = found.certificate.wrenches;
   known_.add(found);
   violated_ = violated_ || violates(found);
   findings->push_back(std::move(found));
@@ -179,9 +176,11 @@ BalanceBounds BalanceWorker::prove(const Spot& spot, const BalanceOptions& optio
   for (auto near = near_.rbegin(); near != near_.rend() && tries < kTries; ++near) {
     if ((*near)->stance != spot.stance) continue;
     ++tries;
-    const BalanceBounds some =
-        nearby_.prove(sampler_.state(), contacts_, options, (*near)->certificate);
-    bounds.margin_at_least = std::max(bounds.margin_at_least, some.margin_at_least);
+    BalanceBounds some = nearby_.prove(sampler_.state(), contacts_, options, (*near)->certificate);
+    if (some.margin_at_least > bounds.margin_at_least) {
+      bounds.margin_at_least = some.margin_at_least;
+      bounds.wrenches = std::move(some.wrenches);
+    }
     bounds.torque_ratio_at_most = std::min(bounds.torque_ratio_at_most, some.torque_ratio_at_most);
     if (enough_is_known_of_margin(bounds) && enough_is_known_of_torques(bounds)) break;
   }
@@ -206,13 +205,6 @@ BalanceFinding BalanceWorker::programme(const Spot& spot, BalanceOptions options
           .torques = torques};
 }
 
-/// Of a vertex it is not told again.
-void BalanceWorker::make_exact(const Spot& spot, BalanceFindings::Margin& margin) {
-  if (margin.exact) return;
-  sampler_.link_poses(spot.vertex, spot.fraction, poses_);
-  margin = {programme(spot, options_for(spot), false).certificate.margin, true};
-}
-
 BalanceWorker::Sample BalanceWorker::sample(const Spot& spot) {
   Sample sample{spot.fraction, judge(spot, findings_), {}};
   const RobotState& state = sampler_.state();
@@ -224,7 +216,7 @@ BalanceWorker::Sample BalanceWorker::sample(const Spot& spot) {
   return sample;
 }
 
-void BalanceWorker::judge_half(const Spot& half, BalanceFindings::Margin& at_vertex) {
+void BalanceWorker::judge_half(const Spot& half, double margin_at_vertex) {
   const Motion& motion = context_.motion;
   const std::size_t step = static_cast<std::size_t>(half.vertex);
   const ConfigurationStep change = configuration_step(context_.robot, motion.configurations[step],
@@ -237,17 +229,7 @@ void BalanceWorker::judge_half(const Spot& half, BalanceFindings::Margin& at_ver
   const double tilt =
       (from[0].linear().row(2) - to[0].linear().row(2)).norm() + 0.1 * change.base_angle_rad;
   const double path = shapes_->step_length_bound_in_base() + tilt;
-  const auto far_enough = [&] {
-    return at_vertex.value - path * steepest_fall() >= context_.options.min_balance_margin;
-  };
-  if (far_enough()) return;
-  if (!at_vertex.exact) {
-    const double fall = smallest_half_m_;
-    make_exact({half.vertex + (half.half == Half::kSecond ? 1 : 0), 0.0, {}, half.stance},
-               at_vertex);
-    smallest_half_m_ = fall;
-    if (far_enough()) return;
-  }
+  if (margin_at_vertex - path * steepest_fall() >= context_.options.min_balance_margin) return;
   Spot end = half;
   end.fraction += 0.5;
   const Sample first = sample(half);
@@ -260,23 +242,15 @@ void BalanceWorker::refine(const Spot& half, const Sample& from, const Sample& t
     chord = std::max(chord, (from.arms[i] - to.arms[i]).norm());
   const double path = chord + 2.0 * shapes_->bend_in_base(to.fraction - from.fraction);
   if (path <= context_.options.balance_resolution_m || violated_) return;
-  const auto far_enough = [&](const Sample& one, const Sample& other) {
-    return 0.5 * (one.margin.value + other.margin.value - path * steepest_fall()) >=
-           context_.options.min_balance_margin;
-  };
-  if (far_enough(from, to)) return;
-  Sample begin = from, end = to;
+  if (0.5 * (from.margin + to.margin - path * steepest_fall()) >=
+      context_.options.min_balance_margin)
+    return;
   Spot spot = half;
-  for (Sample* sample : {&begin, &end}) {
-    spot.fraction = sample->fraction;
-    make_exact(spot, sample->margin);
-  }
-  if (far_enough(begin, end)) return;
   spot.fraction = 0.5 * (from.fraction + to.fraction);
   if (spot.fraction <= from.fraction || spot.fraction >= to.fraction) return;
   const Sample between = sample(spot);
-  refine(half, begin, between);
-  refine(half, between, end);
+  refine(half, from, between);
+  refine(half, between, to);
 }
 
 }  // namespace locograph

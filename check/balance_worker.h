@@ -34,10 +34,6 @@ struct BalanceFinding {
 
 /// Of a whole motion.
 struct BalanceFindings {
-  struct Margin {
-    double value = 0.0;  ///< that, or where it is not exact a lower bound of it
-    bool exact = true;
-  };
   struct Extremes {
     double margin = std::numeric_limits<double>::infinity();  ///< least so far
     double torque_ratio = -std::numeric_limits<double>::infinity();
@@ -45,13 +41,20 @@ struct BalanceFindings {
   };
 
   explicit BalanceFindings(std::size_t vertices)
-      : at_vertices(vertices), in_steps(vertices), margins(vertices), half_m(vertices, 0.1) {}
+      : at_vertices(vertices),
+        in_steps(vertices),
+        margins(vertices),
+        wrenches(vertices),
+        half_m(vertices, 0.1) {}
 
   using List = std::list<BalanceFinding>;  // whose entries stay where they are
 
   std::vector<List> at_vertices, in_steps;
-  /// At each vertex on the stances of the steps before and after it.
-  std::vector<std::array<Margin, 2>> margins;
+  /// At each vertex on the stances of the steps before and after it; lower bounds where no
+  /// programme was needed.
+  std::vector<std::array<double, 2>> margins;
+  /// At each vertex, of the stance of the step after it, where they are asked for.
+  std::vector<StanceWrenches> wrenches;
   std::vector<double> half_m;  ///< of the areas at each vertex, the smallest; at most 0.1
   Extremes known;              ///< to all pieces, when they begin
   double smallest_half_m = 0.1;
@@ -72,7 +75,7 @@ class BalanceWorker {
   using Half = MotionRates::Half;
   struct Sample {
     double fraction = 0.0;
-    BalanceFindings::Margin margin;
+    double margin = 0.0;                // or a lower bound of it
     std::vector<Eigen::Vector3d> arms;  // contacts from the centre of mass; gravity; base axes
   };
   struct Spot {
@@ -83,15 +86,15 @@ class BalanceWorker {
   };
 
   void begin(const BalanceFindings& found);
-  BalanceFindings::Margin judge(const Spot& spot, BalanceFindings::List* findings);
+  double judge(const Spot& spot, BalanceFindings::List* findings,
+               StanceWrenches* wrenches = nullptr);
   BalanceBounds prove(const Spot& spot, const BalanceOptions& options);
   bool enough_is_known_of_margin(const BalanceBounds& bounds) const;
   bool enough_is_known_of_torques(const BalanceBounds& bounds) const;
   bool violates(const BalanceFinding& finding) const;
   BalanceFinding programme(const Spot& spot, BalanceOptions options, bool torques);
   BalanceOptions options_for(const Spot& spot);
-  void make_exact(const Spot& spot, BalanceFindings::Margin& margin);
-  void judge_half(const Spot& half, BalanceFindings::Margin& at_vertex);
+  void judge_half(const Spot& half, double margin_at_vertex);
   Sample sample(const Spot& spot);
   void refine(const Spot& half, const Sample& from, const Sample& to);
   double steepest_fall() const;

@@ -77,9 +77,10 @@ struct CheckOptions {
   bool prove_nearby = true;
   /// If it is not empty, it is told the wrenches of the stance that is held from each vertex on (at
   /// the last one, of the stance that it ends in), in order, by the thread that called, once all
-  /// are known: before the check returns; never where balance is not judged. For the largest
-  /// margin.
-  std::function<void(int vertex, const BalanceCertificate& certificate)> on_balance = {};
+  /// are known: before the check returns; never where balance is not judged. They keep to all that
+  /// is judged; not to be the ones of the largest margin, but of one no less than the least that is
+  /// reported.
+  std::function<void(int vertex, const StanceWrenches& wrenches)> on_balance = {};
 
   double joint_tolerance_rad = 1e-6;  ///< beyond a joint limit; metres for prismatic joints
   double velocity_tolerance = 1e-6;   ///< of a ratio of velocity or acceleration, for rounding

@@ -8,7 +8,8 @@
 namespace locograph {
 namespace {
 
-constexpr double kLeftOver = 1e-9;  // of the weight, and of the weight times 1 m
+constexpr double kLeftOver = 1e-9;   // of the weight, and of the weight times 1 m
+constexpr double kLeastRoom = 1e-3;  // of the weight
 
 }  // namespace
 
@@ -31,11 +32,12 @@ BalanceBounds NearbyBalance::prove(const RobotState& state, std::span<const Cont
     gravity_torques(state, standard_gravity(), load_);
   }
   find_rows(state);
-  const Left widest = correct(state, options, found.at_places);
+  Left widest = correct(state, options, found.at_places);
   if (!widest.balanced) return bounds;
   bounds.margin_at_least = std::min(1.0, widest.contacts);
   if (options.enforce_torque_limits)
     bounds.margin_at_least = std::min(bounds.margin_at_least, 1.0 - widest.torque_ratio);
+  bounds.wrenches = std::move(widest.wrenches);
   if (!(widest.contacts >= 0.0)) return bounds;
   bounds.torque_ratio_at_most = widest.torque_ratio;
   if (found.least_at_places.size() != found.at_places.size()) return bounds;
@@ -97,8 +99,8 @@ void NearbyBalance::find_rows(const RobotState& state) {
   }
 }
 
-void NearbyBalance::apply(const RobotState& state, const std::vector<Wrench>& wrenches) {
-  std::vector<Wrench> whole(contacts_.size(), Wrench::Zero());
+StanceWrenches NearbyBalance::apply(const RobotState& state, const std::vector<Wrench>& wrenches) {
+  StanceWrenches whole(contacts_.size(), Wrench::Zero());
   for (std::size_t p = 0; p < places_.size(); ++p) {
     Wrench& wrench = whole[static_cast<std::size_t>(places_[p].contact)];
     wrench += wrenches[p];
@@ -108,6 +110,7 @@ void NearbyBalance::apply(const RobotState& state, const std::vector<Wrench>& wr
   for (std::size_t i = 0; i < contacts_.size(); ++i)
     add_wrench_torques(state, contacts_[i].applied(state, Eigen::Vector3d::Zero(), whole[i]), -1.0,
                        torques_);
+  return whole;
 }
 
 NearbyBalance::Left NearbyBalance::correct(const RobotState& state, const BalanceOptions& options,
@@ -121,14 +124,16 @@ NearbyBalance::Left NearbyBalance::correct(const RobotState& state, const Balanc
   }
   wrenches = std::move(kept);
   apply(state, wrenches);
-  const Eigen::Matrix<double, 6, 6> squares = rows_ * rows_.transpose();
+  const Eigen::VectorXd room = room_of(wrenches, options.facets);
+  const Eigen::Matrix<double, 6, Eigen::Dynamic> rows = rows_ * room.asDiagonal();
+  const Eigen::Matrix<double, 6, 6> squares = rows * rows.transpose();
   const Wrench multipliers = squares.ldlt().solve(torques_.head<6>());
-  const Eigen::VectorXd change = rows_.transpose() * multipliers;
+  const Eigen::VectorXd change = room.asDiagonal() * (rows.transpose() * multipliers);
   if (!change.allFinite()) return left;
   for (std::size_t c = 0; c < columns_.size(); ++c)
     wrenches[static_cast<std::size_t>(columns_[c][0])][columns_[c][1]] +=
         change[static_cast<Eigen::Index>(c)];
-  apply(state, wrenches);
+  left.wrenches = apply(state, wrenches);
   left.balanced = torques_.head<6>().lpNorm<Eigen::Infinity>() <= kLeftOver * weight_;
   left.contacts = least_left(wrenches, options.facets);
   for (int i = 0; i < robot_.active_joint_count(); ++i) {
@@ -140,8 +145,39 @@ NearbyBalance::Left NearbyBalance::correct(const RobotState& state, const Balanc
   return left;
 }
 
-double NearbyBalance::least_left(const std::vector<Wrench>& wrenches, int facets) const {
+/// How far a force is inside its friction pyramid, pressing: towards the side whose normal is
+/// nearest to what is tangential.
+double NearbyBalance::reserve(const Place& place, const Wrench& wrench, int facets) const {
   const double step = 2.0 * std::numbers::pi / facets;
+  const double side = step * std::round(std::atan2(wrench[1], wrench[0]) / step);
+  const double along = std::cos(side) * wrench[0] + std::sin(side) * wrench[1];
+  const double friction =
+      contacts_[static_cast<std::size_t>(place.contact)].effector->friction * std::cos(0.5 * step);
+  return friction * wrench[2] - along;
+}
+
+/// How much of a change each column may take: as much as it is away from its limit.
+Eigen::VectorXd NearbyBalance::room_of(const std::vector<Wrench>& wrenches, int facets) const {
+  Eigen::VectorXd room(static_cast<Eigen::Index>(columns_.size()));
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    const auto& [number, component] = columns_[c];
+    const Place& place = places_[static_cast<std::size_t>(number)];
+    const Wrench& wrench = wrenches[static_cast<std::size_t>(number)];
+    double left = 0.0;
+    if (place.cone) {
+      left = reserve(place, wrench, facets);
+    } else {
+      const EndEffector& effector = *contacts_[static_cast<std::size_t>(place.contact)].effector;
+      const double limit = component < 3 ? effector.max_force_N : effector.max_moment_Nm;
+      left = limit - std::abs(wrench[component]);
+    }
+    room[static_cast<Eigen::Index>(c)] =
+        std::clamp(left, kLeastRoom * place.share * weight_, weight_);
+  }
+  return room;
+}
+
+double NearbyBalance::least_left(const std::vector<Wrench>& wrenches, int facets) const {
   double least = std::numeric_limits<double>::infinity();
   std::vector<double> pressing(contacts_.size(), 0.0);
   for (std::size_t p = 0; p < places_.size(); ++p) {
@@ -156,11 +192,7 @@ double NearbyBalance::least_left(const std::vector<Wrench>& wrenches, int facets
       continue;
     }
     pressing[static_cast<std::size_t>(place.contact)] += wrench[2];
-    // The side whose normal is nearest to the tangential force.
-    const double side = step * std::round(std::atan2(wrench[1], wrench[0]) / step);
-    const double along = std::cos(side) * wrench[0] + std::sin(side) * wrench[1];
-    const double reserve = effector.friction * std::cos(0.5 * step) * wrench[2] - along;
-    least = std::min(least, reserve / (weight_ * place.share));
+    least = std::min(least, reserve(place, wrench, facets) / (weight_ * place.share));
   }
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const EndEffector& effector = *contacts_[i].effector;

@@ -7,12 +7,13 @@
 ///     const bool proved = bounds.margin_at_least >= enough;  // by certify_balance(), too
 ///
 /// The wrenches at corners and points are changed by the least that restores equilibrium, sum of
-/// squares over all of them: with G their 6 rows of the base and r what is left over,
-/// G^T (G G^T)^-1 r. They are a solution of the programme of balance_certificate.h then, for a
-/// margin that is read off its rows: no more than the largest there is. With the wrenches of the
-/// least torques likewise, which mostly miss a friction row by a little: of a mixture of both
-/// solutions, what is left of each row and the torques are those mixed, or better, because all rows
-/// are linear; the mixture that just holds bounds the least ratio from above.
+/// squares over all of them, each divided by the room D that it has inside its limits: with G their
+/// 6 rows of the base and r what is left over, D D G^T (G D D G^T)^-1 r. They are a solution of the
+/// programme of balance_certificate.h then, for a margin that is read off its rows: no more than
+/// the largest there is. With the wrenches of the least torques likewise, which mostly miss a
+/// friction row by a little: of a mixture of both solutions, what is left of each row and the
+/// torques are those mixed, or better, because all rows are linear; the mixture that just holds
+/// bounds the least ratio from above.
 ///
 /// Equilibrium is verified to 1e-9 of the weight. Nothing is proved where contacts, or what of them
 /// bears, are others than in the certificate. Not thread-safe: one for each thread.
@@ -35,6 +36,7 @@ struct BalanceBounds {
   double margin_at_least = -std::numeric_limits<double>::infinity();
   /// Of BalanceOptions::least_torques.
   double torque_ratio_at_most = std::numeric_limits<double>::infinity();
+  StanceWrenches wrenches = {};  ///< with that margin
 };
 
 class NearbyBalance {
@@ -58,6 +60,7 @@ class NearbyBalance {
   struct Left {
     double contacts = 0.0, torque_ratio = 0.0;
     bool balanced = false;
+    StanceWrenches wrenches = {};
   };
 
   bool place(const RobotState& state, std::span<const Contact> contacts,
@@ -65,8 +68,10 @@ class NearbyBalance {
   void find_rows(const RobotState& state);
   Left correct(const RobotState& state, const BalanceOptions& options,
                std::vector<Wrench> wrenches);
-  /// What is left to hold with these wrenches, into torques_.
-  void apply(const RobotState& state, const std::vector<Wrench>& wrenches);
+  /// What is left to hold with these wrenches, into torques_; they all together at each contact.
+  StanceWrenches apply(const RobotState& state, const std::vector<Wrench>& wrenches);
+  double reserve(const Place& place, const Wrench& wrench, int facets) const;
+  Eigen::VectorXd room_of(const std::vector<Wrench>& wrenches, int facets) const;
   double least_left(const std::vector<Wrench>& wrenches, int facets) const;
 
   const Robot& robot_;

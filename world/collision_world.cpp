@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -456,31 +457,53 @@ CollisionWorld::Closest CollisionWorld::self_distance(
     std::span<const Eigen::Isometry3d> world_from_link, double cutoff_m) const {
   const Parts& parts = *parts_;
   const std::vector<Eigen::Isometry3d> world_from_body = parts.place(world_from_link);
-  ShapeDistance best{cutoff_m, {}, {}};
-  int first_link = -1, second_link = -1;
+  std::vector<Eigen::Vector3d> centres;
+  centres.reserve(parts.bodies.size());
+  for (std::size_t b = 0; b < parts.bodies.size(); ++b)
+    centres.push_back(world_from_body[b] * parts.bodies[b].shape.center());
+  // What may be nearest comes first: of all that is farther away the bounds are enough.
+  struct Pair {
+    double at_least;
+    std::size_t first, second;  // bodies
+    bool of_capsules;
+    auto operator<=>(const Pair&) const = default;
+  };
+  std::vector<Pair> pairs;
   for (const auto& [first, second] : parts.self_pairs) {
     for (std::size_t a = parts.link_begin[first]; a < parts.link_begin[first + 1]; ++a) {
       for (std::size_t b = parts.link_begin[second]; b < parts.link_begin[second + 1]; ++b) {
-        const ConvexShape& one = parts.bodies[a].shape;
-        const ConvexShape& other = parts.bodies[b].shape;
-        if (sphere_bound(one, world_from_body[a], other, world_from_body[b]) >= best.distance)
-          continue;
-        const ShapeDistance distance =
-            shape_distance(one, world_from_body[a], other, world_from_body[b]);
-        if (distance.distance >= best.distance) continue;
-        best = distance;
-        first_link = first;
-        second_link = second;
+        const double spheres = (centres[a] - centres[b]).norm() -
+                               parts.bodies[a].shape.bounding_radius() -
+                               parts.bodies[b].shape.bounding_radius();
+        if (spheres < cutoff_m) pairs.push_back({spheres, a, b, false});
       }
     }
   }
+  std::ranges::make_heap(pairs, std::greater());
   Closest closest;
-  closest.distance_m = best.distance;
-  closest.link = first_link;
-  closest.other_link = second_link;
-  if (first_link < 0) return closest;
-  closest.what = parts.link_names[second_link];
-  closest.point = best.on_first;
+  closest.distance_m = cutoff_m;
+  while (!pairs.empty() && pairs.front().at_least < closest.distance_m) {
+    std::ranges::pop_heap(pairs, std::greater());
+    Pair& pair = pairs.back();
+    const Body &one = parts.bodies[pair.first], &other = parts.bodies[pair.second];
+    const Eigen::Isometry3d& one_pose = world_from_body[pair.first];
+    const Eigen::Isometry3d& other_pose = world_from_body[pair.second];
+    if (!pair.of_capsules) {
+      const double between = capsule_distance(one.shape, one_pose, other.shape, other_pose);
+      if (between > 0.0) pair.at_least = std::max(pair.at_least, between);
+      pair.of_capsules = true;
+      std::ranges::push_heap(pairs, std::greater());
+      continue;
+    }
+    const ShapeDistance distance = shape_distance(one.shape, one_pose, other.shape, other_pose);
+    pairs.pop_back();
+    if (distance.distance >= closest.distance_m) continue;
+    closest.distance_m = distance.distance;
+    closest.link = one.link;
+    closest.other_link = other.link;
+    closest.point = distance.on_first;
+  }
+  if (closest.other_link >= 0) closest.what = parts.link_names[closest.other_link];
   return closest;
 }
 

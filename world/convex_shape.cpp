@@ -123,13 +123,13 @@ ShapeDistance swept_sphere_box(const ConvexShape& swept, const Eigen::Isometry3d
   return result;
 }
 
-// Nearest points of two segments: C. Ericson, "Real-Time Collision Detection", 2005, 5.1.9.
-ShapeDistance swept_spheres(const ConvexShape& first, const Eigen::Isometry3d& world_from_first,
-                            const ConvexShape& second, const Eigen::Isometry3d& world_from_second) {
-  const Eigen::Vector3d p = world_from_first * along_z(-first.half_length());
-  const Eigen::Vector3d q = world_from_second * along_z(-second.half_length());
-  const Eigen::Vector3d u = world_from_first.linear().col(2) * (2.0 * first.half_length());
-  const Eigen::Vector3d v = world_from_second.linear().col(2) * (2.0 * second.half_length());
+struct NearestOnSegments {
+  Eigen::Vector3d on_first, on_second;
+};
+
+// Segments p + [0, 1] u and q + [0, 1] v: C. Ericson, "Real-Time Collision Detection", 2005, 5.1.9.
+NearestOnSegments nearest_on_segments(const Eigen::Vector3d& p, const Eigen::Vector3d& u,
+                                      const Eigen::Vector3d& q, const Eigen::Vector3d& v) {
   const Eigen::Vector3d r = p - q;
   const double a = u.squaredNorm(), e = v.squaredNorm(), b = u.dot(v), c = u.dot(r), f = v.dot(r);
   double s = 0.0, t = 0.0;
@@ -146,7 +146,16 @@ ShapeDistance swept_spheres(const ConvexShape& first, const Eigen::Isometry3d& w
   } else if (e > 0.0) {
     t = std::clamp(f / e, 0.0, 1.0);
   }
-  const Eigen::Vector3d on_u = p + s * u, on_v = q + t * v;
+  return {p + s * u, q + t * v};
+}
+
+ShapeDistance swept_spheres(const ConvexShape& first, const Eigen::Isometry3d& world_from_first,
+                            const ConvexShape& second, const Eigen::Isometry3d& world_from_second) {
+  const auto [on_u, on_v] =
+      nearest_on_segments(world_from_first * along_z(-first.half_length()),
+                          world_from_first.linear().col(2) * (2.0 * first.half_length()),
+                          world_from_second * along_z(-second.half_length()),
+                          world_from_second.linear().col(2) * (2.0 * second.half_length()));
   const Eigen::Vector3d between = on_u - on_v;
   const double norm = between.norm();
   const Eigen::Vector3d direction =
@@ -394,6 +403,15 @@ double segment_box_clearance(const Eigen::Vector3d& from, const Eigen::Vector3d&
   const double t = nearest_parameter(from, step, half_extents);
   const Eigen::Vector3d nearest = from + t * step;
   return (nearest.cwiseAbs() - half_extents).cwiseMax(0.0).norm();
+}
+
+double capsule_distance(const ConvexShape& first, const Eigen::Isometry3d& world_from_first,
+                        const ConvexShape& second, const Eigen::Isometry3d& world_from_second) {
+  const Eigen::Vector3d u = world_from_first.linear() * first.bounding_axis();
+  const Eigen::Vector3d v = world_from_second.linear() * second.bounding_axis();
+  const auto [on_u, on_v] = nearest_on_segments(world_from_first * first.center() - u, 2.0 * u,
+                                                world_from_second * second.center() - v, 2.0 * v);
+  return (on_u - on_v).norm() - first.bounding_capsule_radius() - second.bounding_capsule_radius();
 }
 
 ShapeDistance shape_distance(const ConvexShape& first, const Eigen::Isometry3d& world_from_first,

@@ -63,6 +63,11 @@ class ConvexShape {
   std::shared_ptr<const Fcl> fcl_;
 };
 
+/// Between the bounding capsules: where it is positive, the shapes are at least as far apart. Far
+/// cheaper than their distance.
+double capsule_distance(const ConvexShape& first, const Eigen::Isometry3d& world_from_first,
+                        const ConvexShape& second, const Eigen::Isometry3d& world_from_second);
+
 struct ShapeDistance {
   /// Negative on penetration: a depth. For spheres and capsules against a box it is that of the
   /// deepest sphere, otherwise how far the shapes have to be moved apart: along the normals of a

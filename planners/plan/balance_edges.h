@@ -4,18 +4,13 @@
 ///     const auto q = graph.add_vertex(0, VertexConfiguration(0, robot, 0.0, configuration, 20));
 ///     add_balance_edges(graph, q, *stance, wrenches, 1, problem.check);
 
+#include <locograph/check/balance_certificate.h>
 #include <locograph/check/check_report.h>
 #include <locograph/core/graph.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
 #include <locograph/plugins/contact/stance_parameter.h>
 
-#include <Eigen/Core>
-#include <vector>
-
 namespace locograph {
-
-/// fx fy fz mx my mz at each contact of a stance, as BalanceCertificate::wrenches.
-using StanceWrenches = std::vector<Eigen::Matrix<double, 6, 1>>;
 
 /// Adds a VERTEX_WRENCHES of this id for the contacts of a stance that bear load, with balance,
 /// friction and, where they are enforced, torque limits. wrenches: one for each contact.

@@ -251,7 +251,7 @@ void PostureGraph::keep_touching_above_ground(const PostureProblem& problem,
 
 void PostureGraph::set_start(const Eigen::VectorXd& configuration) {
   const double share_N = weight_N_ / static_cast<double>(wrench_axes_.size());
-  std::vector<Eigen::VectorXd> wrenches(contact_numbers_.size(), Eigen::VectorXd::Zero(6));
+  StanceWrenches wrenches(contact_numbers_.size(), StanceWrenches::value_type::Zero());
   for (std::size_t i = 0; i < loaded_.size(); ++i) {
     wrenches[loaded_[i]].head<3>() =
         wrench_axes_[i].transpose() * (share_N * Eigen::Vector3d::UnitZ());
@@ -259,8 +259,7 @@ void PostureGraph::set_start(const Eigen::VectorXd& configuration) {
   set(configuration, wrenches);
 }
 
-void PostureGraph::set(const Eigen::VectorXd& configuration,
-                       const std::vector<Eigen::VectorXd>& wrenches) {
+void PostureGraph::set(const Eigen::VectorXd& configuration, const StanceWrenches& wrenches) {
   graph.vertex(q_).state = configuration;
   if (wrenches.empty()) return;
   VertexWrenches& vertex = graph.vertex(w_);

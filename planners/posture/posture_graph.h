@@ -67,7 +67,7 @@ class PostureGraph {
   /// The configuration, and wrenches that share the weight evenly among the contacts.
   void set_start(const Eigen::VectorXd& configuration);
   /// wrenches: 6 numbers for each contact of the stance; empty: as they are.
-  void set(const Eigen::VectorXd& configuration, const std::vector<Eigen::VectorXd>& wrenches);
+  void set(const Eigen::VectorXd& configuration, const StanceWrenches& wrenches);
   Eigen::VectorXd configuration() const;
 
   WatchedRows watch(const Problem& compiled) const;

@@ -283,7 +283,7 @@ Graph PostureSolver::graph(const PostureProblem& problem, const PostureResult& r
   const PostureProblem found{problem.stance, result.configuration, problem.file};
   PostureGraph posture(robot_, seen_, found, exact, *shapes_);
   const std::optional<BalanceCertificate>& balance = result.report.balance;
-  posture.set(result.configuration, balance ? balance->wrenches : std::vector<Eigen::VectorXd>());
+  posture.set(result.configuration, balance ? balance->wrenches : StanceWrenches());
   if (!problem.file.empty()) {
     const auto contacts = std::make_shared<ContactsParameter>();
     contacts->file = problem.file;

@@ -33,7 +33,7 @@ class MotionGraph : public testing::Test {
       const Stance& stance = motion.stances[static_cast<std::size_t>(motion.stance_from.back())];
       const BalanceCertificate certificate =
           certify_balance(*problem.robot->robot, problem.start_configuration, stance.contacts, {});
-      plan.wrenches.emplace_back(certificate.wrenches.begin(), certificate.wrenches.end());
+      plan.wrenches.push_back(certificate.wrenches);
     }
     for (int j = 0; j < 2; ++j) {
       SegmentRecord& segment = plan.segments.emplace_back();

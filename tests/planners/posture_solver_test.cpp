@@ -68,7 +68,7 @@ TEST(PostureSolver, AHumanoidStandsOnItsSoles) {
   EXPECT_GT(joint(robot, result.configuration, "LKneePitch"), 0.1) << "knees bend forwards";
   EXPECT_GT(state.world_from_link(robot.root_link()).translation().z(), 0.7);
   // Newton: what the ground gives is the weight, and acts below the centre of mass.
-  const std::vector<Eigen::VectorXd>& wrenches = result.report.balance.value().wrenches;
+  const StanceWrenches& wrenches = result.report.balance.value().wrenches;
   ASSERT_EQ(wrenches.size(), 2U);
   EXPECT_NEAR(wrenches[0][2] + wrenches[1][2], 9.81 * robot.total_mass(), 1e-3);
   EXPECT_LT(std::abs(state.center_of_mass().x()), 0.08);
@@ -296,9 +296,9 @@ TEST(PostureSolver, AWheeledRobotStandsOnItsWheels) {
   problem.preferred = placed_at(robot.model(), robot.home, problem.stance);
   const PostureResult result = solver_of("centauro").solve(problem);
   ASSERT_TRUE(result.success) << result.reason;
-  const std::vector<Eigen::VectorXd>& wrenches = result.report.balance.value().wrenches;
+  const StanceWrenches& wrenches = result.report.balance.value().wrenches;
   double carried = 0.0;
-  for (const Eigen::VectorXd& wrench : wrenches) carried += wrench[2];
+  for (const auto& wrench : wrenches) carried += wrench[2];
   EXPECT_NEAR(carried, 9.81 * robot.model().total_mass(), 1e-2);
 }
 

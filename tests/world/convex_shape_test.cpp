@@ -247,6 +247,24 @@ TEST(ConvexShape, BoundingCapsulesContainTheShapes) {
   }
 }
 
+TEST(ConvexShape, BoundingCapsulesAreNoFartherApartThanTheShapes) {
+  Random random(7);
+  int apart = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const ConvexShape a = random.shape(i % 5), b = random.shape(i / 5 % 5);
+    const Eigen::Isometry3d world_from_a = random.pose(1.0), world_from_b = random.pose(1.0);
+    const double capsules = capsule_distance(a, world_from_a, b, world_from_b);
+    if (capsules <= 0.0) continue;
+    ++apart;
+    const double distance = shape_distance(a, world_from_a, b, world_from_b).distance;
+    EXPECT_LE(capsules, distance + 1e-5);
+    if (a.is_swept_sphere() && b.is_swept_sphere()) {
+      EXPECT_NEAR(capsules, distance, 1e-12);
+    }
+  }
+  EXPECT_GT(apart, 100);
+}
+
 TEST(ConvexShape, RefusesSizesThatAreNone) {
   EXPECT_THROW(ConvexShape::sphere(0.0), Error);
   EXPECT_THROW(ConvexShape::capsule(0.1, -1.0), Error);

@@ -56,8 +56,6 @@ std::vector<Contact> besides(const Stance& of, const Stance& held) {
   return contacts;
 }
 
-using Wrenches = decltype(MotionPlan::wrenches);
-
 class MotionSearch {
  public:
   MotionSearch(const StanceProblem& problem, const StancePlannerOptions& stances,
@@ -266,14 +264,13 @@ class MotionSearch {
     return all_planners_ ? mover_.planners() : std::min(some, mover_.planners());
   }
 
-  CheckReport judged(const Motion& motion, Wrenches* wrenches = nullptr) {
+  CheckReport judged(const Motion& motion, std::vector<StanceWrenches>* wrenches = nullptr) {
     const Stopwatch watch;
     CheckOptions asked = problem_.check;
     asked.threads = stances_.threads;
     if (wrenches != nullptr) {
-      asked.on_balance = [wrenches](int vertex, const BalanceCertificate& certificate) {
-        const auto& found = certificate.wrenches;
-        (*wrenches)[static_cast<std::size_t>(vertex)].assign(found.begin(), found.end());
+      asked.on_balance = [wrenches](int vertex, const StanceWrenches& found) {
+        (*wrenches)[static_cast<std::size_t>(vertex)] = found;
       };
     }
     CheckReport report = judge_.check(motion, asked);

@@ -51,7 +51,7 @@ struct MotionPlan {
   std::vector<SegmentRecord> segments;
   /// Of each configuration, and each contact of the stance it is left in, as
   /// BalanceCertificate::wrenches; empty where nothing was judged.
-  std::vector<std::vector<Eigen::Matrix<double, 6, 1>>> wrenches;
+  std::vector<StanceWrenches> wrenches;
   CheckReport report;        ///< of the motion
   int refused_segments = 0;  ///< told to the stance planner
   double whole_body_s = 0.0, timing_s = 0.0, judge_s = 0.0, total_s = 0.0;

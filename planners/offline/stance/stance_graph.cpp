@@ -65,9 +65,7 @@ Graph stance_graph(const Scenario& scenario, const StanceProblem& problem, const
       graph.add_edge(EdgeContact(*contact, number, kEdgeContact), vertex);
     }
     graph.add_edge(EdgeJointLimits(model, 0.0, kEdgeLimit), vertex);
-    add_balance_edges(graph, vertex, *bearing,
-                      StanceWrenches(certificate.wrenches.begin(), certificate.wrenches.end()),
-                      count + i, problem.check);
+    add_balance_edges(graph, vertex, *bearing, certificate.wrenches, count + i, problem.check);
   }
   return graph;
 }
