@@ -29,7 +29,7 @@ struct CampaignQuantity {
   bool whole_plans_only;  ///< says nothing of plans that are stances only
 };
 
-inline constexpr std::array<CampaignQuantity, 22> kCampaignQuantities = {{
+inline constexpr std::array<CampaignQuantity, 24> kCampaignQuantities = {{
     {"planning_time", "/time/total", false},
     {"transition_time", "/time/transitions", false},
     {"iterations", "/iterations", false},
@@ -44,6 +44,8 @@ inline constexpr std::array<CampaignQuantity, 22> kCampaignQuantities = {{
     {"refused_segments", "/refused_segments", true},
     {"path_ratio_median", "/path_ratio/median", true},
     {"path_ratio_worst", "/path_ratio/worst", true},
+    {"swing_clearance_median_m", "/swing_clearance/median_m", true},
+    {"swing_clearance_worst_m", "/swing_clearance/worst_m", true},
     {"interpolation_segments", "/segments_by_planner/interpolation/count", true},
     {"interpolation_time", "/segments_by_planner/interpolation/seconds", true},
     {"optimisation_segments", "/segments_by_planner/optimisation/count", true},

@@ -137,6 +137,17 @@ Json path_ratio_json(const std::vector<SegmentRecord>& segments) {
   return {{"median", percentile(ratios, 0.5)}, {"worst", ratios.back()}};
 }
 
+/// How far what swings gets from all else.
+Json swing_clearance_json(const std::vector<SegmentRecord>& segments) {
+  std::vector<double> clear_m;
+  for (const SegmentRecord& segment : segments) {
+    if (segment.clear_m) clear_m.push_back(*segment.clear_m);
+  }
+  if (clear_m.empty()) return {{"median_m", nullptr}, {"worst_m", nullptr}};
+  std::sort(clear_m.begin(), clear_m.end());
+  return {{"median_m", percentile(clear_m, 0.5)}, {"worst_m", clear_m.front()}};
+}
+
 double duration_s(const Motion& motion) {
   return motion.time_s.empty() ? 0.0 : motion.time_s.back() - motion.time_s.front();
 }
@@ -183,6 +194,7 @@ Json answer_json(const PlanOptions& options, const ContactTaskPlan& plan) {
   if (!options.stances_only) {
     json["segments_by_planner"] = by_planner_json(motion.segments);
     json["path_ratio"] = path_ratio_json(motion.segments);
+    json["swing_clearance"] = swing_clearance_json(motion.segments);
     json["refused_segments"] = motion.refused_segments;
   }
   if (options.improve) json["improved"] = plan.improved;

@@ -54,6 +54,8 @@ TEST_F(MotionPlan, PrintsOneJsonObjectWithEveryField) {
   EXPECT_EQ(json["segments_by_planner"].size(), 4u);
   EXPECT_GE(json["path_ratio"]["median"].get<double>(), 1.0 - 1e-9);
   EXPECT_GE(json["path_ratio"]["worst"], json["path_ratio"]["median"]);
+  EXPECT_GE(json["swing_clearance"]["worst_m"].get<double>(), 0.02);
+  EXPECT_LE(json["swing_clearance"]["worst_m"], json["swing_clearance"]["median_m"]);
   EXPECT_GE(json["refused_segments"], 0);
   double parts_s = 0.0;
   for (const char* phase : {"stance_planner", "whole_body", "timing", "judge"}) {
@@ -158,6 +160,7 @@ TEST(MotionPlanCommand, WithoutTimeThereIsNoPlan) {
   EXPECT_NE(json["reason"].get<std::string>().find("time"), std::string::npos);
   EXPECT_EQ(json["segments"], 0);
   EXPECT_TRUE(json["path_ratio"]["median"].is_null());
+  EXPECT_TRUE(json["swing_clearance"]["worst_m"].is_null());
 }
 
 TEST(MotionPlanCommand, APlanThatDoesNotArriveIsWrittenAsFarAsItIsFeasible) {
@@ -206,7 +209,8 @@ TEST(MotionPlanCommand, CampaignTellsTheFiguresOfWholePlans) {
   ASSERT_EQ(json["solved"], 1) << outcome.out;
   for (const char* quantity :
        {"planning_time", "total_time", "stance_planner_time", "whole_body_time", "timing_time",
-        "judge_time", "duration_s", "segments", "path_ratio_median", "path_ratio_worst"}) {
+        "judge_time", "duration_s", "segments", "path_ratio_median", "path_ratio_worst",
+        "swing_clearance_median_m", "swing_clearance_worst_m"}) {
     EXPECT_GT(json[quantity]["mean"].get<double>(), 0.0) << quantity;
   }
   double by_planner = 0.0;

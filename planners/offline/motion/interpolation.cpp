@@ -17,6 +17,10 @@ constexpr double kHalf = 0.5;
 constexpr int kMarch = 8;
 /// What lies half-way is no arc: it need not be halved as often.
 constexpr int kMarchDepth = 3;
+/// Parts of a way that straighter ones replace, where it is so many times as long as straight, and
+/// by so much; by ways that are shorter by so much.
+constexpr std::array<double, 4> kShares = {0.75, 0.5, 0.3, 0.15};
+constexpr double kDetour = 2.0, kLeastDetour = 0.5, kShorter = 0.9;
 /// What swings is not smoothed near its places.
 constexpr double kKept = 0.2;
 
@@ -114,6 +118,7 @@ class Interpolation : public SegmentPlanner {
       path.reason = space.why_not().empty() ? "no short way leads half-way" : space.why_not();
       if (swings.empty() || !march(space, swings, arc, begin, end, knots)) return false;
     }
+    shorten(space, swings, arc, knots);
     smooth(space, !swings.empty(), knots);
     for (Knot& knot : knots) path.waypoints.push_back(std::move(knot.q));
     return true;
@@ -195,6 +200,40 @@ class Interpolation : public SegmentPlanner {
       if (!fill(space, swings, arc, knots, next, kMarchDepth)) return false;
     }
     return true;
+  }
+
+  /// Puts straighter ways in place of the longest detours.
+  static void shorten(SegmentSpace& space, const std::vector<Swing>& swings, const ArcOptions& arc,
+                      std::vector<Knot>& knots) {
+    for (const double share : kShares) {
+      std::vector<double> at = {0.0};  // length of the way up to each knot
+      const auto measure = [&] {
+        at.resize(1);
+        for (std::size_t i = 1; i < knots.size(); ++i) {
+          at.push_back(at.back() + space.distance(knots[i - 1].q, knots[i].q));
+        }
+      };
+      measure();
+      const double window = share * at.back();
+      for (std::size_t i = 0; i + 2 < knots.size(); ++i) {
+        std::size_t j = i + 1;
+        while (j + 1 < knots.size() && at[j] - at[i] < window) ++j;
+        const double along = at[j] - at[i];
+        if (along < window) break;
+        if (along < kLeastDetour + kDetour * space.distance(knots[i].q, knots[j].q)) continue;
+        std::vector<Knot> way = {knots[i]};
+        if (!fill(space, swings, arc, way, knots[j], kMarchDepth + 1)) continue;
+        double length = 0.0;
+        for (std::size_t k = 1; k < way.size(); ++k) {
+          length += space.distance(way[k - 1].q, way[k].q);
+        }
+        if (length > kShorter * along) continue;
+        way.insert(way.end(), knots.begin() + static_cast<std::ptrdiff_t>(j) + 1, knots.end());
+        knots.resize(i);
+        knots.insert(knots.end(), way.begin(), way.end());
+        measure();
+      }
+    }
   }
 
   static void smooth(SegmentSpace& space, bool swinging, std::vector<Knot>& knots) {

@@ -131,6 +131,7 @@ class MotionSearch {
       record.timing_s = way.timing_s;
       record.length = way.length;
       record.straight = way.straight;
+      record.clear_m = way.clear_m;
       plan_.segments.push_back(std::move(record));
     }
     const std::size_t done = plan_.segments.size();

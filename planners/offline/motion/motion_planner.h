@@ -14,6 +14,7 @@
 #include <locograph/check/motion.h>
 #include <locograph/planners/offline/stance/stance_planner.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,7 +40,8 @@ struct SegmentRecord {
   double seconds = 0.0;  ///< all planners that tried
   double timing_s = 0.0;
   double length = 0.0,
-         straight = 0.0;  ///< of the path and of the straight way, SegmentSpace::distance
+         straight = 0.0;          ///< of the path and of the straight way, SegmentSpace::distance
+  std::optional<double> clear_m;  ///< as SegmentMotion::clear_m
 };
 
 struct MotionPlan {

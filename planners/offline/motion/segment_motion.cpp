@@ -1,4 +1,5 @@
 #include <locograph/planners/offline/motion/segment_motion.h>
+#include <locograph/planners/offline/motion/swing.h>
 #include <locograph/planners/offline/timing/balance_rows.h>
 #include <locograph/robots/wheel.h>
 
@@ -22,6 +23,7 @@ constexpr int kMostBroughtBack = 4;
 constexpr int kOffGround = 3;  ///< more in the first and the last part
 /// Both ends of a segment are the same: one contact more and another one less at once.
 constexpr double kNoWay = 1e-6;
+constexpr std::size_t kLooks = 8;  ///< at what swings
 
 /// Splines may swing a little beyond limits. False: nothing was to be done.
 bool bring_within_limits(const Robot& robot, Eigen::VectorXd& q) {
@@ -101,6 +103,25 @@ void SegmentMover::shape(std::span<const BearingContact> bearing, const SegmentP
   const Stopwatch timing;
   motion.found = time(closed, bearing, pace.slower, motion);
   motion.timing_s += timing.seconds();
+  motion.clear_m = clear_of(motion);
+}
+
+std::optional<double> SegmentMover::clear_of(const SegmentMotion& motion) {
+  if (!motion.found) return std::nullopt;
+  std::optional<double> least;
+  RobotState state(space_.robot());
+  for (const Swing& swing : swings_of(space_)) {
+    if (swing.left == nullptr || swing.reached == nullptr) continue;
+    const Contact& contact = swing.contact();
+    const int link = space_.robot().link_index(contact.effector.link);
+    double most = 0.0;
+    for (std::size_t look = 1; look < kLooks; ++look) {
+      state.update(motion.configurations[motion.configurations.size() * look / kLooks].data());
+      most = std::max(most, space_.room_of(contact, state.world_from_link(link)));
+    }
+    least = std::min(least.value_or(most), most);
+  }
+  return least;
 }
 
 std::size_t SegmentMover::number_of(const std::string& planner) const {

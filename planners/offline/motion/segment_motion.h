@@ -36,6 +36,9 @@ struct SegmentMotion {
   std::vector<Eigen::VectorXd> configurations;  ///< equispaced in time, both ends included
   double duration_s = 0.0;
   double length = 0.0, straight = 0.0;  ///< SegmentSpace::distance, of the path and of its ends
+  /// How far what swings from one place to another gets from all else, at most 0.1 m; of several
+  /// the least. Nothing swings: none.
+  std::optional<double> clear_m;
   double path_s = 0.0, timing_s = 0.0;  ///< what it took
 };
 
@@ -73,6 +76,7 @@ class SegmentMover {
              SegmentMotion& motion);
   bool time(const PathSpline& path, std::span<const BearingContact> bearing, double slower,
             SegmentMotion& motion);
+  std::optional<double> clear_of(const SegmentMotion& motion);
   void hold_wheels(std::vector<Eigen::VectorXd>& configurations);
 
   const StanceProblem& problem_;
