@@ -118,8 +118,8 @@ inline std::unique_ptr<SegmentProblem> segment_problem(const std::string& name) 
   return problem;
 }
 
-/// COMAN+ on its left foot; the right one steps forward, by 0.12 m.
-inline std::unique_ptr<SegmentProblem> step_forward_problem() {
+/// COMAN+ on its left foot; the right one steps forward.
+inline std::unique_ptr<SegmentProblem> step_forward_problem(double step_m = 0.12) {
   StanceProblem task = stance_task("slanted_wall");
   auto problem = std::make_unique<SegmentProblem>();
   problem->robot = task.robot;
@@ -127,7 +127,7 @@ inline std::unique_ptr<SegmentProblem> step_forward_problem() {
   const Contact left = contact_of(task.start, "left_foot");
   const Contact before = contact_of(task.start, "right_foot");
   Contact after = before;
-  after.position.x() += 0.12;
+  after.position.x() += step_m;
   const std::vector<BearingContact> bearing = {{left}};
   problem->region = balance_region(task.robot->robot->total_mass(), bearing, 0.1);
   Segment& segment = problem->segment;
