@@ -61,7 +61,7 @@ void run(const LiveJob& job, LiveChannel& channel) {
                  {"speed", job.speed}});
   RefineOptions options;
   options.planner.horizon = job.horizon;
-  options.verify = step_check(file, judging);
+  options.verify = step_check(judging);
   options.on_cycle = [&](const CycleReport& cycle) {
     send(channel, cycle_json(file, cycle));
     const double step_s = time_of(file, cycle.executed + 1) - time_of(file, cycle.executed);

@@ -69,8 +69,8 @@ CheckReport check_plan(const PlanFile& file, const Judging& judging) {
   return about(file.name, [&] { return judged(file.graph, file.plan, judging); });
 }
 
-std::function<CheckReport(const Motion&)> step_check(const PlanFile& file, const Judging& judging) {
-  const auto judge = std::make_shared<const Judge>(file.plan.robot->robot, judging.world);
+std::function<CheckReport(const Motion&)> step_check(const Judging& judging) {
+  const auto judge = std::make_shared<const Judge>(judging.robot, judging.world);
   CheckOptions options = judging.options;
   options.starts_at_rest = options.ends_at_rest = false;
   return [judge, options](const Motion& motion) { return judge->check(motion, options); };

@@ -47,6 +47,6 @@ Judging judging_of(const PlanFile& file, const WorldOptions& options);
 CheckReport check_plan(const PlanFile& file, const Judging& judging);
 
 /// The check of single steps of a plan, as refine() wants it.
-std::function<CheckReport(const Motion&)> step_check(const PlanFile& file, const Judging& judging);
+std::function<CheckReport(const Motion&)> step_check(const Judging& judging);
 
 }  // namespace locograph

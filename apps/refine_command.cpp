@@ -121,7 +121,7 @@ ExitCode refine_plan(const CommandOptions& options) {
   // From now on this is the plan's world: the file that is written needs nothing else.
   if (options.world.given()) file.plan.world->set_files(options.world.map, options.world.obstacles);
 
-  refine_options.verify = step_check(file, judging);
+  refine_options.verify = step_check(judging);
   const double configurations = static_cast<double>(file.plan.slots.size());
   progress.emplace("refining " + options.input);
   refine_options.on_cycle = [&](const CycleReport& cycle) {

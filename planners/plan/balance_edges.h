@@ -4,7 +4,6 @@
 ///     const auto q = graph.add_vertex(0, VertexConfiguration(0, robot, 0.0, configuration, 20));
 ///     add_balance_edges(graph, q, *stance, wrenches, 1, problem.check);
 
-#include <locograph/check/balance_certificate.h>
 #include <locograph/check/check_report.h>
 #include <locograph/core/graph.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>

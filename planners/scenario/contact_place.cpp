@@ -1,5 +1,5 @@
-#include <locograph/check/bar_contact.h>
 #include <locograph/check/limits.h>
+#include <locograph/planners/scenario/bar_place.h>
 #include <locograph/planners/scenario/contact_place.h>
 
 #include <algorithm>
@@ -32,8 +32,8 @@ bool lies_on(const Surface& surface, const Contact& contact) {
 }
 
 bool lies_on(const Bar& bar, const Contact& contact) {
-  const double ends_m = beyond_ends_m(bar, contact.position);
-  return off_bar_m(contact, bar) <= limits::kClosed_m && ends_m <= limits::kClosed_m;
+  return gap_to_bar_m(bar, contact) <= limits::kClosed_m &&
+         past_ends_m(bar, contact.position) <= limits::kClosed_m;
 }
 
 }  // namespace locograph

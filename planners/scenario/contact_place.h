@@ -13,7 +13,7 @@ namespace locograph {
 
 /// In its plane, within its border; a sole may reach in from beyond it. Grasps lie on none.
 bool lies_on(const Surface& surface, const Contact& contact);
-/// See check/bar_contact.h. Wheels lie on none.
+/// See bar_place.h. Wheels lie on none.
 bool lies_on(const Bar& bar, const Contact& contact);
 /// On any of a world's surfaces and bars.
 bool lies_on_something(const World& world, const Contact& contact);

@@ -23,6 +23,7 @@
 #include <locograph/planners/posture/contacts_file.h>
 #include <locograph/planners/posture/posture_graph.h>
 #include <locograph/planners/posture/posture_solver.h>
+#include <locograph/planners/scenario/bar_place.h>
 #include <locograph/planners/scenario/contact_place.h>
 #include <locograph/planners/scenario/move_contacts.h>
 #include <locograph/planners/scenario/scenario.h>
@@ -168,6 +169,10 @@ extern const Eigen::MatrixXd columns;
 extern const Eigen::VectorXd within, inside, target;
 extern const ReachProgramme::Bounds bounds;
 }  // namespace offline_timing_reach_programme_h
+namespace scenario_bar_place_h {
+extern const Bar bar;
+extern const Contact contact;
+}  // namespace scenario_bar_place_h
 namespace plan_balance_edges_h {
 extern const std::shared_ptr<const RobotParameter> robot;
 extern const Eigen::VectorXd configuration;

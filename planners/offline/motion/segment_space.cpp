@@ -1,4 +1,3 @@
-#include <locograph/check/motion.h>
 #include <locograph/planners/offline/motion/segment_space.h>
 #include <locograph/robots/wheel.h>
 
@@ -200,8 +199,10 @@ double SegmentSpace::distance(const Eigen::VectorXd& a, const Eigen::VectorXd& b
 
 Eigen::VectorXd SegmentSpace::half_way(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
                                        double fraction) const {
-  Eigen::VectorXd q;
-  interpolate(robot(), a, b, fraction, q);
+  Eigen::VectorXd difference(robot().tangent_size()), q(robot().configuration_size());
+  robot().difference(a.data(), b.data(), difference.data());
+  difference *= fraction;
+  robot().integrate(a.data(), difference.data(), q.data());
   return q;
 }
 

@@ -1,10 +1,12 @@
-#include <locograph/check/balance_certificate.h>
+#include <locograph/check/judge.h>
 #include <locograph/planners/offline/stance/stance_graph.h>
 #include <locograph/planners/plan/balance_edges.h>
 #include <locograph/planners/plan/plan.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/contact/edge_contact.h>
 #include <locograph/plugins/joint_limits/edge_joint_limits.h>
+
+#include <utility>
 
 namespace locograph {
 namespace {
@@ -19,6 +21,15 @@ std::size_t smaller_stance(const StancePlan& plan, std::size_t i) {
 std::size_t larger_stance(const StancePlan& plan, std::size_t i) {
   if (i == 0) return 0;
   return smaller_stance(plan, i) == i ? i - 1 : i;
+}
+
+/// Those that the judge finds: what it answers, as in whole motions.
+StanceWrenches wrenches_of(const Judge& judge, const Eigen::VectorXd& configuration,
+                           const Stance& bearing, CheckOptions options) {
+  options.certify_only_if_rest_holds = false;
+  CheckReport report = judge.check(configuration, bearing, options);
+  if (report.balance) return std::move(report.balance->wrenches);
+  return StanceWrenches(bearing.contacts.size(), Eigen::Matrix<double, 6, 1>::Zero());
 }
 
 }  // namespace
@@ -48,24 +59,21 @@ Graph stance_graph(const Scenario& scenario, const StanceProblem& problem, const
                                             {.stances_only = true, .incomplete = !plan.success});
 
   const int count = static_cast<int>(plan.configurations.size());
-  BalanceOptions balance;
-  balance.enforce_torque_limits = problem.check.enforce_torque_limits;
-  balance.effort_scale = problem.check.effort_scale;
+  const Judge judge(problem.robot->robot, problem.world);
   for (int i = 0; i < count; ++i) {
     const std::size_t k = static_cast<std::size_t>(i);
     const Eigen::VectorXd& q = plan.configurations[k];
     const auto vertex =
         graph.add_vertex(i, VertexConfiguration(kRobotNumber, problem.robot, i, q, numbers[k]));
     const auto bearing = graph.parameters().get<StanceParameter>(numbers[smaller_stance(plan, k)]);
-    const BalanceCertificate certificate =
-        certify_balance(model, q, bearing->stance.contacts, balance);
+    const StanceWrenches wrenches = wrenches_of(judge, q, bearing->stance, problem.check);
     const auto closed = graph.parameters().get<StanceParameter>(numbers[larger_stance(plan, k)]);
     for (const int number : closed->contact_numbers) {
       const auto contact = graph.parameters().get<ContactParameter>(number);
       graph.add_edge(EdgeContact(*contact, number, kEdgeContact), vertex);
     }
     graph.add_edge(EdgeJointLimits(model, 0.0, kEdgeLimit), vertex);
-    add_balance_edges(graph, vertex, *bearing, certificate.wrenches, count + i, problem.check);
+    add_balance_edges(graph, vertex, *bearing, wrenches, count + i, problem.check);
   }
   return graph;
 }

@@ -1,6 +1,6 @@
-#include <locograph/check/bar_contact.h>
 #include <locograph/check/limits.h>
 #include <locograph/planners/offline/stance/stance_space.h>
+#include <locograph/planners/scenario/bar_place.h>
 
 #include <algorithm>
 #include <cmath>
@@ -169,11 +169,8 @@ std::vector<Eigen::Vector2d> StanceSpace::area_on_surfaces(const Contact& contac
     }
     if (area(part) > kNoArea_m2) add(part);
   }
-  Eigen::Isometry3d link = Eigen::Isometry3d::Identity();
-  link.linear() = axes * axes_in_link(sole).transpose();
-  link.translation() = contact.position - link.linear() * sole.point;
   for (const Bar& bar : problem_.world.bars) {
-    if (off_bar_m(standing, bar) <= limits::kClosed_m) add(sole_on_bar(bar, standing, link).line);
+    if (gap_to_bar_m(bar, standing) <= limits::kClosed_m) add(line_on_bar(bar, standing));
   }
   return all;
 }
