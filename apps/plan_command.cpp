@@ -35,6 +35,9 @@ ExitCode plan_scenario(const PlanOptions& options) {
     };
     if (options.stances_only) refuse("stances to plan", "--stances-only");
     if (options.move_contacts_m > 0.0) refuse("contacts to move", "--move-contacts");
+    if (options.max_transitions != StancePlannerOptions().max_transitions) {
+      refuse("stances to change", "--max-transitions");
+    }
     if (!options.tree.empty()) refuse("search for stances to show", "--tree");
     if (!options.segment_planners.empty()) refuse("segments between stances", "--segment-planner");
     return plan_drive(scenario, options, total);
@@ -76,6 +79,11 @@ Command add_plan(OptionParser& app) {
       .add_option("--timeout", o.timeout_s,
                   "Seconds that planning may take, judging included; 0: no limit")
       .not_negative();
+  parser
+      .add_option("--max-transitions", o.max_transitions,
+                  "Changes of stance that may be tried for each goal; 0: no limit")
+      .not_negative()
+      .show_default();
   add_torque_limits_option(parser, o.torques,
                            "enforce: the plan keeps to the URDF's efforts; report: only tell them "
                            "(without it, what the scenario says)");

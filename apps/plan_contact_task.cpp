@@ -36,6 +36,7 @@ struct ContactTaskPlan {
 StancePlannerOptions stance_options(const PlanOptions& options) {
   StancePlannerOptions asked;
   asked.seed = options.seed;
+  asked.max_transitions = options.max_transitions;
   asked.keep_tree = !options.tree.empty();
   asked.threads = std::min(options.threads, processor_count());
   if (options.timeout_s > 0.0) asked.deadline = Deadline::after(options.timeout_s);

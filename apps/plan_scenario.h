@@ -3,6 +3,7 @@
 
 #include <locograph/apps/command.h>
 #include <locograph/common/deadline.h>
+#include <locograph/planners/offline/stance/stance_planner.h>
 #include <locograph/planners/scenario/scenario.h>
 
 #include <algorithm>
@@ -22,6 +23,7 @@ struct PlanOptions {
   bool stances_only = false, improve = false;
   unsigned seed = 0;
   double timeout_s = 0.0;  ///< 0: no limit
+  int max_transitions = StancePlannerOptions().max_transitions;
   double move_contacts_m = 0.0;
   int threads = processor_count();
   bool json = false;

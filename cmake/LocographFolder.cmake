@@ -82,7 +82,7 @@ function(locograph_test name)
       set(test ${name}_${shard}_of_${arg_SHARDS})
     endif()
     add_test(NAME ${test} COMMAND ${name} --gtest_brief=1)
-    set_tests_properties(${test} PROPERTIES TIMEOUT 1800
+    set_tests_properties(${test} PROPERTIES TIMEOUT 9000
       ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${index}")
   endforeach()
 endfunction()

@@ -162,12 +162,13 @@ TEST(Progress, WithoutAShareTellsTheTimeThatHasPassed) {
   EXPECT_EQ(progress_line("optimising", 4.0, {}, "iteration 7"), "optimising, 4 s, iteration 7");
 }
 
-/// What a terminal shows while the command waits for its input.
-std::string on_a_terminal(const CommandRunner& runner, const std::string& arguments) {
+/// What a terminal shows while the command waits for its input, until these words of a shell end.
+std::string on_a_terminal(const CommandRunner& runner, const std::string& wait,
+                          const std::string& arguments) {
   runner.write("a.g2o", "VERTEX_XY 0 0 0\nVERTEX_XY 1 0 0\nFIX 0\nEDGE_POINTXY 0 1 1 0 1 0 1\n");
-  const std::string line = "cd '" + runner.folder().string() +
-                           "' && script -qec \"(sleep 2; cat a.g2o) | '" LOCOGRAPH_COMMAND "' " +
-                           arguments + "\" /dev/null >seen </dev/null";
+  const std::string line = "cd '" + runner.folder().string() + "' && script -qec \"(" + wait +
+                           "; cat a.g2o) | '" LOCOGRAPH_COMMAND "' " + arguments +
+                           "\" /dev/null >seen </dev/null";
   EXPECT_EQ(std::system(line.c_str()), 0);
   return runner.read("seen");
 }
@@ -175,11 +176,13 @@ std::string on_a_terminal(const CommandRunner& runner, const std::string& argume
 TEST(Progress, IsShownOnATerminalAndErasedInTheEnd) {
   if (std::system("command -v script >/dev/null") != 0) GTEST_SKIP() << "no script (bsdutils)";
   const CommandRunner runner;
-  const std::string seen = on_a_terminal(runner, "optimize -");
+  const std::string seen = on_a_terminal(
+      runner, "timeout 600 sh -c 'until grep -q reading seen; do sleep 0.1; done'", "optimize -");
   const std::size_t shown = seen.find("\r\033[Kreading stdin");
   ASSERT_NE(shown, std::string::npos) << seen;
   EXPECT_NE(seen.find("\r\033[K", seen.rfind("reading stdin")), std::string::npos) << seen;
-  EXPECT_EQ(on_a_terminal(runner, "optimize - --quiet").find("reading"), std::string::npos);
+  EXPECT_EQ(on_a_terminal(runner, "sleep 2", "optimize - --quiet").find("reading"),
+            std::string::npos);
 }
 
 }  // namespace

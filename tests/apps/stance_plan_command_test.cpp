@@ -165,12 +165,13 @@ TEST(StancePlanCommand, AnIncompletePlanIsWrittenAndCheckSaysSo) {
   const CommandRunner runner;
   runner.write("far.xml", with_far_floor(standing_up_with(goal_on_all_fours("51 0.1 0"))));
   const Outcome outcome =
-      runner.run("plan far.xml --stances-only --timeout 0.5 -o part.g2o --json");
+      runner.run("plan far.xml --stances-only --max-transitions 300 -o part.g2o --json");
   ASSERT_EQ(outcome.exit_code, 1) << outcome.err;
   const nlohmann::json json = outcome.json();
   EXPECT_EQ(json["success"], false);
   const std::string reason = json["reason"];
-  EXPECT_EQ(reason.find("the goal is not reached: the time allowed is used up; "), 0u) << reason;
+  EXPECT_TRUE(reason.starts_with("the goal is not reached: the transitions allowed are used up; "))
+      << reason;
   EXPECT_NE(reason.find("left_hand"), std::string::npos) << reason;
   EXPECT_EQ(json["best"]["goal_contacts_reached"], 3);
   EXPECT_TRUE(json["best"]["stances"].is_number_integer());
@@ -186,6 +187,9 @@ TEST(StancePlanCommand, RefusesWrongUsageInOneLineAndWritesNothing) {
   const CommandRunner runner;
   const std::string plan = "plan standing_up -o out.g2o ";
   expect_refusal(runner.run(plan + "--stances-only --timeout -1"), "", "--timeout");
+  expect_refusal(runner.run(plan + "--stances-only --max-transitions -1"), "", "--max-transitions");
+  expect_refusal(runner.run("plan centauro_drive --max-transitions 9 -o out.g2o"), "",
+                 "no stances to change");
   expect_refusal(runner.run(plan + "--stances-only --planner nosuch"), "", "nosuch");
   expect_refusal(runner.run("plan centauro_drive --stances-only -o out.g2o"), "", "no stances");
   expect_refusal(runner.run(plan + "--stances-only --move-contacts -0.1"), "", "--move-contacts");

@@ -251,7 +251,7 @@ TEST(View, RefusesATreeThatIsNone) {
     expect_refusal(outcome, text[0] == '[' ? "t.json:1" : "t.json", words);
   }
   // Found or not.
-  const std::string plan = " --stances-only --timeout 0.1 -o other.g2o";
+  const std::string plan = " --stances-only --max-transitions 20 -o other.g2o";
   ASSERT_LE(runner.run("plan ladder_climbing --tree other.json" + plan).exit_code, 1);
   expect_refusal(runner.run("view p.g2o --tree other.json -o x.html"), "other.json",
                  "is a tree of the scenario \"ladder_climbing\", expected one of the plan's");

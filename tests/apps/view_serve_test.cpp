@@ -19,6 +19,9 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 using asio::ip::tcp;
 
+/// For what does not come: far longer than any machine needs.
+constexpr int kMostWait_ms = 600000;
+
 /// `locograph view … --serve 0`, ended by SIGINT.
 class Served {
  public:
@@ -41,7 +44,7 @@ class Served {
     std::string text;
     for (char c = 0; text.find('\n') == std::string::npos;) {
       pollfd readable = {out_, POLLIN, 0};
-      if (::poll(&readable, 1, 60000) <= 0 || ::read(out_, &c, 1) != 1) break;
+      if (::poll(&readable, 1, kMostWait_ms) <= 0 || ::read(out_, &c, 1) != 1) break;
       text += c;
     }
     const std::string before = "http://127.0.0.1:";

@@ -10,7 +10,7 @@
 namespace locograph::improve_stances_test {
 namespace {
 
-TEST(ImproveStances, FindsPlansWithFewerStancesOnTwoThreadsAndTheJudgeAccepts) {
+TEST(ImproveStances, FindsPlansWithNoMoreStancesOnTwoThreadsAndTheJudgeAccepts) {
   const StanceProblem task = test::stance_task("quadrupedal_walking");
   const auto planner = make_stance_planner("guided");
   StancePlannerOptions options;

@@ -151,12 +151,12 @@ class TransitionsAhead : public testing::Test {
     return task;
   }
 
-  /// Expects until a thread has got to it, and takes it.
+  /// Expects until a thread has got to it, however long it gets no processor, and takes it.
   static std::optional<TransitionResult> taken(TransitionAhead& ahead,
                                                const TransitionAhead::Expected& expected,
                                                const TransitionTask& asked) {
     std::optional<TransitionResult> result;
-    for (int i = 0; i < 10000 && !result; ++i) {
+    for (int i = 0; i < 600000 && !result; ++i) {
       ahead.expect({expected});
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       result = ahead.take(asked);

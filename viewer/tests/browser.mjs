@@ -31,7 +31,7 @@ export class Browser {
     browser.chromium = await chromium.launch({
       executablePath: CHROMIUM,
       args: FLAGS,
-      timeout: 60000,
+      timeout: 300000,
     });
     browser.count = 0;
     return browser;
@@ -49,7 +49,7 @@ export class Browser {
   async open(scene, { hash = '', width = 1280, height = 720, colorScheme = 'light', url } = {}) {
     const context = await this.chromium.newContext({ viewport: { width, height }, colorScheme });
     const page = await context.newPage();
-    page.setDefaultTimeout(60000);
+    page.setDefaultTimeout(300000);
     const errors = [];
     const requests = [];
     page.on('pageerror', (error) => errors.push(error.message));

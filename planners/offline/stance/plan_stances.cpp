@@ -28,7 +28,11 @@ std::string why_not_reached(const StancePlan& plan, const StanceSpace& space,
   std::string reason = goals > 1 ? "goal " + std::to_string(plan.goals_reached + 1) + " of " +
                                        std::to_string(goals) + " is not reached"
                                  : "the goal is not reached";
-  if (space.ended()) reason += space.stopped() ? ": interrupted" : ": the time allowed is used up";
+  if (space.ended()) {
+    reason += space.stopped() ? ": interrupted" : ": the time allowed is used up";
+  } else if (space.tried_enough()) {
+    reason += ": the transitions allowed are used up";
+  }
   if (!none_stands.empty()) {
     reason += "; no posture was found that holds the goal's contacts: " + none_stands;
   }
