@@ -1,5 +1,6 @@
 // Plan files that lie: `check` refuses each of them by the name of what it breaks.
 #include <apps/command_runner.h>
+#include <locograph/common/input_file.h>
 
 #include <algorithm>
 #include <cmath>
@@ -181,6 +182,23 @@ TEST(LyingPlan, LinksMayMeetAndJointsMoveAsTheScenariosRobotSays) {
   const Outcome outcome = runner.run("check fewer.g2o");
   EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
   EXPECT_NE(outcome.err.find("moves other joints"), std::string::npos) << outcome.err;
+}
+
+TEST(LyingPlan, RefineJudgesEveryStepByTheScenariosRobot) {
+  const Drive runner;
+  const std::string stem = LOCOGRAPH_SOURCE_DIR "/robots/models/centauro/centauro";
+  // No two links may meet, not even neighbours.
+  std::istringstream srdf(read_file(stem + ".srdf"));
+  std::string strict;
+  for (std::string line; std::getline(srdf, line);) {
+    if (line.find("disable_collisions") == std::string::npos) strict += line + '\n';
+  }
+  runner.write("strict.srdf", strict);
+  runner.write("plan.g2o",
+               with_robot(runner.plan(), stem + ".urdf strict.srdf floating 1 lower_body"));
+  const Outcome outcome = runner.run("refine plan.g2o -o refined.g2o --json");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  EXPECT_EQ(outcome.json()["configurations"], 50);
 }
 
 TEST(LyingPlan, ASecondScenarioIsKinder) {

@@ -199,10 +199,10 @@ double SegmentSpace::distance(const Eigen::VectorXd& a, const Eigen::VectorXd& b
 
 Eigen::VectorXd SegmentSpace::half_way(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
                                        double fraction) const {
-  Eigen::VectorXd difference(robot().tangent_size()), q(robot().configuration_size());
-  robot().difference(a.data(), b.data(), difference.data());
-  difference *= fraction;
-  robot().integrate(a.data(), difference.data(), q.data());
+  Eigen::VectorXd q(a.size()), step(robot().tangent_size());
+  robot().difference(a.data(), b.data(), step.data());
+  step *= fraction;
+  robot().integrate(a.data(), step.data(), q.data());
   return q;
 }
 
