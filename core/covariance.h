@@ -1,7 +1,7 @@
 #pragma once
 /// Covariances of chosen vertices at the optimum: blocks of (JᵀΩJ)⁻¹.
 ///
-///     Covariance covariance(graph, *make_linear_solver("auto"));   // linearises and factorises
+///     Covariance covariance(graph, make_linear_solver("auto"));   // linearises and factorises
 ///     if (!covariance.singular()) Eigen::Matrix3d sigma = covariance.block(a, a);
 ///     std::vector<std::pair<int, int>> pairs = {{a.slot, a.slot}, {a.slot, b.slot}};
 ///     std::vector<Eigen::MatrixXd> blocks = covariance.blocks(pairs);
@@ -11,13 +11,15 @@
 /// covariance of the measurement, whose likelihood is exp(−½ eᵀΩe); robust kernels count with their
 /// weight at the present state. Works with every linear solver, also one that eliminates vertices.
 ///
-/// Ask for many blocks at once: they share the work (LinearSolver::inverse_blocks). The solver
-/// keeps the factorisation, so nothing else may use it in the meantime.
+/// Ask for many blocks at once: they share the work (LinearSolver::inverse_blocks). A covariance
+/// owns all it needs: the solver, which keeps the factorisation, and what it noted of the graph. It
+/// is that of the graph as it was, whatever becomes of the graph.
 
+#include <locograph/core/graph.h>
 #include <locograph/core/linear_solver.h>
-#include <locograph/core/workspace.h>
 
 #include <Eigen/Core>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -27,16 +29,15 @@ namespace locograph {
 
 class Covariance {
  public:
-  /// At the graph's present state. Keeps references to both.
-  Covariance(Graph& graph, LinearSolver& solver);
-  Covariance(Graph&&, LinearSolver&) = delete;
+  /// At the graph's present state, which stays. Throws Error without a solver.
+  Covariance(Graph& graph, std::unique_ptr<LinearSolver> solver);
 
   /// Some direction is not measured (or no state is finite): there is no covariance.
   bool singular() const { return singular_; }
   /// Empty when it is not singular.
   const std::string& reason_text() const { return reason_; }
 
-  /// By vertex slots. Throws Error when singular, and for vertices that are fixed or not there.
+  /// By vertex slots. Throws Error when singular, and for vertices that were fixed or not there.
   Eigen::MatrixXd block(int a, int b) const;
   std::vector<Eigen::MatrixXd> blocks(std::span<const std::pair<int, int>> pairs) const;
   template <class A, class B>
@@ -47,14 +48,18 @@ class Covariance {
   Eigen::MatrixXd joint(std::span<const int> vertices) const;
 
  private:
-  int block_row(int slot) const;
-  bool solution_explodes();
+  struct VertexRow {
+    int id;
+    int row;  ///< in the pattern; or one of:
+    static constexpr int kHeld = -1, kNotThere = -2;
+  };
 
-  Graph& graph_;
-  LinearSolver& solver_;
-  Problem problem_;
-  Workspace workspace_;
-  std::vector<int> block_of_slot_;
+  int block_row(int slot) const;
+
+  std::unique_ptr<LinearSolver> solver_;
+  BlockPattern pattern_;
+  std::vector<double> hessian_, damping_;  ///< conjugate gradients need them to solve
+  std::vector<VertexRow> vertices_;        ///< by slot
   bool singular_ = false;
   std::string reason_;
 };

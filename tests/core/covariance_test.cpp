@@ -4,6 +4,7 @@
 #include <locograph/types/standard_types.h>
 
 #include <Eigen/Dense>
+#include <type_traits>
 
 #include "core/dense_system.h"
 #include "core/toy_graphs.h"
@@ -52,8 +53,7 @@ TEST_P(EverySolver, GivesTheBlocksOfTheDenseInverse) {
     graph.set_kernel(RobustKernel::parse("cauchy:1"));
     run(graph, {});
     const DenseInverse reference(graph);
-    const auto solver = make_linear_solver(GetParam());
-    const Covariance covariance(graph, *solver);
+    const Covariance covariance(graph, make_linear_solver(GetParam()));
     ASSERT_FALSE(covariance.singular()) << covariance.reason_text();
     const std::vector<std::pair<int, int>> pairs{{3, 3}, {7, 3}, {3, 7}, {1, 14}, {14, 14}};
     const std::vector<Eigen::MatrixXd> blocks = covariance.blocks(pairs);
@@ -67,8 +67,7 @@ TEST_P(EverySolver, GivesTheBlocksOfTheDenseInverse) {
 
 TEST(Covariance, OfSeveralVerticesIsOneSymmetricMatrix) {
   Graph graph = ring_2d(12);
-  const auto solver = make_linear_solver("auto");
-  const Covariance covariance(graph, *solver);
+  const Covariance covariance(graph, make_linear_solver("auto"));
   const std::vector<int> vertices{5, 2, 9};
   const Eigen::MatrixXd joint = covariance.joint(vertices);
   ASSERT_EQ(joint.rows(), 9);
@@ -90,8 +89,7 @@ TEST(Covariance, OfAChainGrowsByTheNoiseOfEachStep) {
     graph.add_edge(edge, ids[i - 1], ids[i]);
   }
   graph.set_fixed(ids[0], true);
-  const auto solver = make_linear_solver("auto");
-  const Covariance covariance(graph, *solver);
+  const Covariance covariance(graph, make_linear_solver("auto"));
   EXPECT_NEAR(covariance.block(ids[5], ids[5])(0, 0), 5.0 / 4.0, 1e-12);
   EXPECT_NEAR(covariance.block(ids[5], ids[5])(1, 1), 5.0 / 25.0, 1e-12);
   EXPECT_NEAR(covariance.block(ids[2], ids[5])(0, 0), 2.0 / 4.0, 1e-12);
@@ -100,8 +98,7 @@ TEST(Covariance, OfAChainGrowsByTheNoiseOfEachStep) {
 TEST(Covariance, SaysWhenThereIsNone) {
   Graph graph = ring_2d(25);
   graph.set_fixed(0, false);
-  const auto solver = make_linear_solver("auto");
-  const Covariance covariance(graph, *solver);
+  const Covariance covariance(graph, make_linear_solver("auto"));
   EXPECT_TRUE(covariance.singular());
   EXPECT_NE(covariance.reason_text().find("singular"), std::string::npos);
   EXPECT_THROW(covariance.block(1, 1), Error);
@@ -120,8 +117,7 @@ TEST(Covariance, IsNotTakenForSingularBecauseAChainIsLong) {
       graph.add_edge(edge, ids[i - 1], ids[i]);
     }
     graph.set_fixed(ids[0], true);
-    const auto solver = make_linear_solver("auto");
-    const Covariance covariance(graph, *solver);
+    const Covariance covariance(graph, make_linear_solver("auto"));
     ASSERT_FALSE(covariance.singular());
     EXPECT_NEAR(covariance.block(ids[length], ids[length])(2, 2), length, accuracy * length);
   }
@@ -129,11 +125,32 @@ TEST(Covariance, IsNotTakenForSingularBecauseAChainIsLong) {
 
 TEST(Covariance, RefusesVerticesThatHaveNone) {
   Graph graph = ring_2d(10);
-  const auto solver = make_linear_solver("auto");
-  const Covariance covariance(graph, *solver);
+  const Covariance covariance(graph, make_linear_solver("auto"));
   EXPECT_THROW(covariance.block(0, 1), Error) << "held fixed";
   EXPECT_THROW(covariance.block(1, 99), Error);
   EXPECT_THROW(covariance.block(-1, 1), Error);
+}
+
+/// Nothing that goes away with a statement may be handed over.
+static_assert(!std::is_constructible_v<Covariance, Graph&, LinearSolver&>);
+
+TEST(Covariance, OutlivesTheGraphAndWhoeverMadeTheSolver) {
+  // pcg keeps pointers to the matrix it is to solve.
+  for (const char* name : {"auto", "pcg", "schur"}) {
+    const auto made = [name](Graph graph) { return Covariance(graph, make_linear_solver(name)); };
+    Graph graph = ring_2d(12);
+    Covariance first = made(ring_2d(12));
+    const Covariance covariance = std::move(first);
+    const Covariance expected(graph, make_linear_solver("dense"));
+    EXPECT_LE(relative_difference(covariance.block(5, 2), expected.block(5, 2)), 1e-6) << name;
+    EXPECT_EQ(covariance.joint(std::vector<int>{5, 2}).rows(), 6);
+    EXPECT_THROW(covariance.block(0, 1), Error) << "held fixed";
+  }
+}
+
+TEST(Covariance, NeedsASolver) {
+  Graph graph = ring_2d(4);
+  EXPECT_THROW(Covariance(graph, nullptr), Error);
 }
 
 TEST(Covariance, OfAPoseGraphFileIsTheDenseInverse) {
@@ -144,8 +161,7 @@ TEST(Covariance, OfAPoseGraphFileIsTheDenseInverse) {
   graph.set_fixed(0, true);
   run(graph, {});
   const DenseInverse reference(graph);
-  const auto solver = make_linear_solver("block-cholesky");
-  const Covariance covariance(graph, *solver);
+  const Covariance covariance(graph, make_linear_solver("block-cholesky"));
   ASSERT_FALSE(covariance.singular());
   for (int v = 1; v < graph.vertex_slots(); ++v) {
     EXPECT_LE(relative_difference(covariance.block(v, 5), reference.block(v, 5)), 1e-9);
