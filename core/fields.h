@@ -1,7 +1,8 @@
 #pragma once
 /// Reads and writes the fields of one line of a graph file.
 ///
-///     FieldReader in("0 1 0.5 \"my map.bt\"", {"plan.g2o", 12, "/home/me"});
+///     const FileLine where{"plan.g2o", 12, "/home/me"};
+///     FieldReader in("0 1 0.5 \"my map.bt\"", where);
 ///     int a = in.integer(), b = in.integer();
 ///     double range = in.number();
 ///     std::string map = in.word();
@@ -31,7 +32,9 @@ struct FileLine {
 
 class FieldReader {
  public:
+  /// Keeps references to both.
   FieldReader(std::string_view text, const FileLine& where) : text_(text), where_(where) {}
+  FieldReader(std::string_view, FileLine&&) = delete;
 
   double number();          ///< a finite number
   int integer();            ///< a decimal integer
