@@ -2,6 +2,8 @@
 /// What the rooms of the judge share while one motion is checked.
 ///
 ///     CheckContext context{robot, world, exact, motion, options, &shapes, sampler, job};
+///     for (const Stance& stance : motion.stances)
+///       context.stances.emplace_back(robot, world, stance, options.known);
 ///     for (std::size_t i = 0; i < context.vertices(); ++i)
 ///       for (const JudgedStance* stance : context.stances_at(int(i))) use(*stance);
 

@@ -2,9 +2,9 @@
 /// Which types a graph file may name: tags of vertices, edges and parameters.
 ///
 ///     TypeRegistry types = standard_types();          // from locograph/types/standard_types.h
-///     types.add_vertex<VertexXY>();
+///     types.add_vertex<VertexBeacon>();
 ///     types.add_edge<EdgeRange>();
-///     types.add_parameter<PoseOffset>("PARAMS_SE3OFFSET");
+///     types.add_parameter<RangeOffset>("PARAMS_RANGE_OFFSET");
 ///     Graph graph = read_graph("map.g2o", types);
 ///
 /// A value: made where it is needed and passed on; there is no global registry. A tag or a type

@@ -5,6 +5,10 @@
 ///     posture.set_start(problem.preferred);
 ///     Problem compiled;
 ///     compiled.compile(posture.graph);
+///     Workspace workspace;
+///     workspace.allocate(compiled);
+///     workspace.load_state();
+///     workspace.evaluate(workspace.state());
 ///     WatchedRows rows = posture.watch(compiled);
 ///     double worst = rows.worst(workspace);                // 1: the worst row is at its tolerance
 ///

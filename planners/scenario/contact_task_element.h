@@ -2,7 +2,6 @@
 /// What `<start>` and `<goal>` of a scenario say.
 ///
 ///     const XmlFile xml("stones.xml", "scenario");
-///     const std::vector<EndEffector> effectors;   // of the same scenario
 ///     const std::optional<ContactTask> task = read_contact_task(xml, effectors);
 ///
 /// A contact is a scenario's end effector at its place: what it can bear is the end effector's. Its

@@ -23,7 +23,7 @@ class ReachProgramme {
     std::vector<double> most;          ///< of the sum of each group; negative: none
   };
 
-  /// columns: what each force does. within: half the size of the box, row by row.
+  /// columns: what each force does. within: half the size of the box, row by row. inside: f_0.
   ReachProgramme(const Eigen::MatrixXd& columns, const Eigen::VectorXd& within,
                  const Eigen::VectorXd& inside, const Bounds& bounds);
   ~ReachProgramme();
