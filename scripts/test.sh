@@ -1,8 +1,8 @@
 #!/bin/bash
-# Builds and runs every test: sources formatted, unit tests under AddressSanitizer and UBSan, what
-# threads share under ThreadSanitizer, every parser for some seconds under libFuzzer, then all tests
-# in Release. Quick when nothing has changed;
-# ends with ctest's summary.
+# Builds and runs every test: sources formatted, unit tests and the examples of headers under
+# AddressSanitizer and UBSan, what threads share under ThreadSanitizer, every parser for some
+# seconds under libFuzzer, then all tests in Release. Quick when nothing has changed; ends with
+# ctest's summary.
 
 . "$(dirname "$0")/setup.sh"
 
@@ -29,17 +29,18 @@ configure_sanitized() {
     "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-Og -g1" -DLOCOGRAPH_BENCHMARKS=OFF
 }
 
-# The libraries' unit tests; the command itself and the installed package are tested in Release.
+# The libraries' unit tests and examples; the command itself and the installed package are tested
+# in Release.
 configure_sanitized build-asan address,undefined
 mapfile -t unit_tests < <(
   cd "$root/tests"
   sed -n 's/^locograph_test(\([a-z_]*\).*/\1/p' \
     {common,core,solvers,types,robots,world,check,plugins,planners}/CMakeLists.txt
 )
-build build-asan --target "${unit_tests[@]}"
-say "running ${unit_tests[*]} under AddressSanitizer and UBSan"
+build build-asan --target "${unit_tests[@]}" header_examples
+say "running ${unit_tests[*]} and the examples of headers under AddressSanitizer and UBSan"
 ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 run_tests build-asan \
-  --tests-regex "^($(IFS='|' && echo "${unit_tests[*]}"))" >&2
+  --tests-regex "^($(IFS='|' && echo "${unit_tests[*]}")|header_examples)" >&2
 
 configure_sanitized build-tsan thread
 build build-tsan --target planners_thread_tests

@@ -1,6 +1,9 @@
 #pragma once
 /// What the examples of check/ take for granted.
 
+#include <documentation/example_context.h>
+#include <documentation/example_robots.h>
+#include <documentation/example_world.h>
 #include <locograph/check/balance_along.h>
 #include <locograph/check/check_report.h>
 #include <locograph/check/clearance_search.h>
@@ -13,79 +16,170 @@
 #include <locograph/robots/contact.h>
 #include <locograph/robots/robot.h>
 
+#include "check/coman_plus_standing.h"
+
 namespace locograph::documentation::in_check {
 
-extern const Robot robot;
-extern const World world;
-extern const RobotState state;
-extern const Eigen::VectorXd q0, q1, from, to, configuration;
-extern const Stance stance, both_feet;
-extern const EndEffector left_foot, right_foot;
-extern const Motion motion;
-extern const CheckOptions options;
-extern CheckContext context;
-extern CheckReport report;
-extern const std::vector<Obstacle> obstacles;
-extern const std::vector<Eigen::Isometry3d> world_from_link;
-extern const double time_s;
-extern const int vertex;
-extern const Eigen::Vector3d point;
+/// COMAN+ stands in a room with both soles on the floor, and moves an arm.
+struct Standing {
+  const test::Standing& standing = test::standing();
+  const Robot& robot = *standing.robot;
+  const World world = small_room();
+  const Eigen::VectorXd &configuration = standing.home, &q0 = configuration;
+  const Stance &stance = standing.feet, &both_feet = stance;
+  const EndEffector &left_foot = standing.known[0], &right_foot = standing.known[1];
+  const std::vector<Obstacle>& obstacles = world.obstacles;
+  const RobotState state = state_at(robot, configuration);
+  const std::vector<Eigen::Isometry3d> world_from_link = link_poses(state);
+  const double time_s = 0.25;
+  const int vertex = 1;
+  const Eigen::Vector3d point = {0.0, 0.0, 0.5};
+};
+
+/// The motion, while it is being judged.
+struct Judging : Standing {
+  const Motion motion;
+  const CheckOptions options;
+  const JobControl job;
+  const CollisionWorld exact{robot, world};
+  MovingShapes shapes{robot};
+  MotionSampler sampler{robot, motion};
+  CheckContext context{robot, world, exact, motion, options, &shapes, sampler, job};
+  CheckReport report;
+
+  explicit Judging(int vertices) : motion(standing.motion(vertices)) {
+    for (const Stance& held : motion.stances) {
+      context.stances.emplace_back(robot, world, held, options.known);
+    }
+    NumbersCheck(context).run();
+  }
+};
+
+struct Context : Judging {
+  Context() : Judging(6) {}
+};
 
 namespace check_context_h {
-extern const JobControl job;
-extern const CollisionWorld exact;
-extern MovingShapes shapes;
-extern MotionSampler sampler;
-void use(const JudgedStance& stance);
+struct Context : in_check::Context {
+  static void use(const JudgedStance&) {}
+};
 }  // namespace check_context_h
 namespace balance_along_h {
-extern ThreadPool threads;
-}
+struct Context : in_check::Context {
+  ThreadPool threads{2};
+};
+}  // namespace balance_along_h
 namespace balance_worker_h {
-extern const MotionRates rates;
-extern BalanceFindings found;
+/// A motion of 33 vertices, half of which another worker has judged.
+struct Context : Judging {
+  const MotionRates rates{context};
+  BalanceFindings found{context.vertices()};
+  Context() : Judging(33) { BalanceWorker(context, rates).judge_vertices(0, 17, found); }
+};
 }  // namespace balance_worker_h
 namespace loaded_contact_h {
-extern const Contact contact;
-extern const std::vector<Eigen::Vector2d> area;
-void use(const LoadedContact& contact, const Eigen::Vector2d& corner);
+struct Context : Standing {
+  const Contact& contact = stance.contacts[0];
+  const std::vector<Eigen::Vector2d> area;
+  static void use(const LoadedContact&, const Eigen::Vector2d&) {}
+};
 }  // namespace loaded_contact_h
 namespace nearby_balance_h {
-extern const std::vector<Contact> contacts;
-extern const BalanceCertificate certificate;
-extern const double enough;
-extern const BalanceOptions options;
+struct Context : Standing {
+  const std::vector<Contact>& contacts = stance.contacts;
+  const BalanceOptions options;
+  const BalanceCertificate certificate = certify_balance(robot, configuration, contacts, options);
+  const double enough = 0.1;
+};
 }  // namespace nearby_balance_h
 namespace bar_contact_h {
-extern const Contact contact;
-extern const Bar bar;
-extern const Eigen::Isometry3d world_from_link;
+/// The left sole stands on a bar across it.
+struct Context : Standing {
+  const Contact& contact = stance.contacts[0];
+  const Eigen::Isometry3d& world_from_link =
+      Standing::world_from_link[robot.link_index(contact.effector.link)];
+  const Bar bar = {.name = "rung",
+                   .from = world_from_link * Eigen::Vector3d(0.0, -0.5, -0.02),
+                   .to = world_from_link * Eigen::Vector3d(0.0, 0.5, -0.02),
+                   .radius_m = 0.02};
+};
 }  // namespace bar_contact_h
 namespace check_report_h {
-extern const Judge judge;
-}
+struct Context : in_check::Context {
+  const Judge judge{standing.robot, world};
+};
+}  // namespace check_report_h
 namespace clearance_search_h {
-extern ViolationTally obstacle_distance, ground_penetration, touching_depth, self_collision;
-}
+struct Context : in_check::Context {
+  static ViolationTally tally(const char* what, Worse worse) { return {what, "m", 0.0, worse, 6}; }
+  ViolationTally obstacle_distance = tally("obstacle_distance", Worse::kLower);
+  ViolationTally ground_penetration = tally("ground_penetration", Worse::kHigher);
+  ViolationTally touching_depth = tally("touching_depth", Worse::kHigher);
+  ViolationTally self_collision = tally("self_collision", Worse::kLower);
+};
+}  // namespace clearance_search_h
 namespace extent_h {
-extern const std::vector<Eigen::Vector3d> path;
-}
+struct Context {
+  const std::vector<Eigen::Vector3d> path = {{0.0, 0.0, 0.0}, {0.1, 0.0, 0.2}, {0.3, 0.1, 0.0}};
+};
+}  // namespace extent_h
 namespace judge_h {
-extern const std::shared_ptr<const Robot> robot;
-}
+struct Context : in_check::Context {
+  const std::shared_ptr<const Robot>& robot = standing.robot;
+  Context() { write_room_files(); }
+};
+}  // namespace judge_h
+namespace motion_h {
+struct Context : Standing {
+  const Eigen::VectorXd q1 = standing.motion(2).configurations[1];
+};
+}  // namespace motion_h
 namespace moving_shapes_h {
-extern const std::vector<Eigen::Isometry3d> poses_at_0_25, poses_at_0_50;
-}
+struct Context : in_check::Context {
+  const Eigen::VectorXd &from = motion.configurations[0], &to = motion.configurations[1];
+  std::vector<Eigen::Isometry3d> poses_at_0_25, poses_at_0_50;
+  Context() {
+    sampler.link_poses(0, 0.25, poses_at_0_25);
+    sampler.link_poses(0, 0.5, poses_at_0_50);
+  }
+};
+}  // namespace moving_shapes_h
 namespace plan_ends_h {
-extern const Stance on_the_floor, on_top;
-}
+struct Context : in_check::Context {
+  const Stance on_the_floor = both_feet, on_top = raised();
+  Stance raised() const {
+    Stance stance = both_feet;
+    for (Contact& contact : stance.contacts) contact.position.z() += 0.2;
+    return stance;
+  }
+};
+}  // namespace plan_ends_h
 namespace violation_tally_h {
-extern const double tilt;
-extern const std::string wheel_name;
+struct Context : in_check::Context {
+  const double tilt = 0.1;
+  const std::string wheel_name = "wheel_1";
+};
 }  // namespace violation_tally_h
 namespace wheel_rolling_h {
-extern const JudgedContact contact;
-extern const std::vector<Eigen::Isometry3d> poses_before, poses;
+/// A wheel of CENTAURO that is pushed forward without turning.
+struct Context {
+  const Robot& robot = *centauro();
+  const Eigen::VectorXd before = robot.named_configuration("home"), now = moved();
+  const std::vector<Eigen::Isometry3d> poses_before = link_poses(state_at(robot, before)),
+                                       poses = link_poses(state_at(robot, now));
+  const Stance wheels = {.contacts = {{.effector = {.name = "wheel_1",
+                                                    .link = "wheel_1",
+                                                    .kind = ContactKind::kWheel,
+                                                    .radius_m = 0.078,
+                                                    .friction = 0.5,
+                                                    .max_force_N = 1000.0}}}};
+  const JudgedContact contact = JudgedStance(robot, World(), wheels, {}).contacts[0];
+  Eigen::VectorXd moved() const {
+    Eigen::VectorXd q = before;
+    q[0] += 0.01;
+    return q;
+  }
+};
 }  // namespace wheel_rolling_h
 
 }  // namespace locograph::documentation::in_check

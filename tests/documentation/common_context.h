@@ -1,24 +1,40 @@
 #pragma once
 /// What the examples of common/ take for granted.
 
-#include <locograph/common/error.h>
+// Throws: common/error.h
+// Throws: common/suggestion.h
 
-#include <Eigen/Dense>
-#include <cmath>
-#include <iostream>
-#include <string>
-#include <vector>
+#include <documentation/example_context.h>
+#include <locograph/common/error.h>
+#include <locograph/common/uniform.h>
+
+#include <csignal>
 
 namespace locograph::documentation::in_common {
 
-extern const std::string text, name, file;
-extern const int line;
-extern const double x;
-extern const std::vector<std::string> known;
-extern const Eigen::Vector3d v, w;
-extern const int chunks;
-extern std::vector<double> sums;
-double sum(int chunk);
-void try_another_start();
+struct Context {
+  const std::string text = "<robot/>", name = "centaur", file = "robot.urdf";
+  const int line = 12;
+  const double x = 0.5;
+  const std::vector<std::string> known = {"centauro", "coman_plus"};
+  const Eigen::Vector3d v = {1.0, 2.0, 3.0}, w = {0.0, 0.0, 1.0};
+  const int chunks = 8;
+  std::vector<double> sums = std::vector<double>(8);
+
+  static double sum(int chunk) { return 0.5 * chunk; }
+  static void try_another_start() {}
+};
+
+namespace input_file_h {
+struct Context : in_common::Context {
+  Context() { write_example_file("robot.urdf", text); }
+};
+}  // namespace input_file_h
+namespace stop_signals_h {
+struct Context : in_common::Context {
+  /// As if somebody pressed Ctrl-C.
+  static void try_another_start() { std::raise(SIGINT); }
+};
+}  // namespace stop_signals_h
 
 }  // namespace locograph::documentation::in_common

@@ -1,6 +1,10 @@
 #pragma once
 /// What the examples of core/ take for granted.
 
+// Not run: core/plugin_library.h: there is no librange.so; core_tests load plug-ins
+
+#include <documentation/example_context.h>
+#include <documentation/planar_map.h>
 #include <locograph/core/edge.h>
 #include <locograph/core/graph.h>
 #include <locograph/core/optimiser.h>
@@ -8,11 +12,7 @@
 #include <locograph/core/workspace.h>
 #include <locograph/solvers/linear_solvers.h>
 #include <locograph/types/slam2d/edges.h>
-#include <locograph/types/slam3d/parameters.h>
 #include <locograph/types/standard_types.h>
-
-#include <memory>
-#include <vector>
 
 // As locograph_add_plugin() defines it.
 #define LOCOGRAPH_HEADERS "headers"
@@ -31,44 +31,92 @@ struct EdgeRange : Edge<1, VertexSE2, VertexXY> {
 };
 LOCOGRAPH_REGISTER_EDGE("RANGE_SE2_XY", EdgeRange)
 
+/// A vertex and a parameter of one's own.
+struct VertexBeacon : VertexXY {};
+LOCOGRAPH_REGISTER_VERTEX("VERTEX_BEACON", VertexBeacon)
+struct RangeOffset : Parameter {
+  double offset_m = 0.0;
+  std::string_view tag() const override { return "PARAMS_RANGE_OFFSET"; }
+  void read(FieldReader& in) override { offset_m = in.number(); }
+  void write(FieldWriter& out) const override { out.number(offset_m); }
+};
+
 }  // namespace locograph
 
 namespace locograph::documentation::in_core {
 
-using PoseOffset = OffsetSE3;
+/// A map that is being optimised. e: a measurement; b, a: poses.
+struct Context {
+  LinearisedMap map;
+  Graph& graph = map.graph;
+  const VertexId<VertexSE2> a = map.poses[1], b = map.poses[2];
+  const EdgeId e = map.sights[0];
+  const std::vector<int> window = {a.slot, b.slot}, trusted_edges = {map.odometry[0].slot};
+  std::vector<int> rows;
+  const BlockPattern& pattern = map.problem.pattern();
+  const int c = 1, columns = 3;
+  std::vector<double> right_hand_side = std::vector<double>(map.problem.dimension(), 1.0);
+  std::vector<double> solution = right_hand_side;
+  const double *H = map.workspace.hessian().data(), *damping = map.workspace.damping().data(),
+               *rhs = right_hand_side.data();
+  double* x = solution.data();
+  Workspace& workspace = map.workspace;
+  OptimiserOptions options;
+  std::unique_ptr<LinearSolver> solver = make_linear_solver("auto");
 
-extern Graph graph;
-extern VertexId<VertexSE2> a, b;
-extern VertexId<VertexXY> point;
-extern EdgePriorXY on_circle;
-extern EdgeId e, f;
-extern std::vector<int> window, trusted_edges, rows;
-extern const BlockPattern pattern;
-extern const int c, columns;
-extern const double *H, *damping, *rhs;
-extern double* x;
-extern Workspace workspace;
-extern OptimiserOptions options;
-extern std::unique_ptr<LinearSolver> solver;
-extern FieldReader in;
-extern Scratch scratch;
+  Context() {
+    for (const char* file : {"map.g2o", "beacons.g2o"}) write_example_file(file, kMapFile);
+  }
+};
 
+namespace constraint_h {
+/// An edge with a diagonal Ω of its own, as an inequality needs.
+struct Context : in_core::Context {
+  const EdgeId e = graph.add_edge(EdgePriorXY(), map.points[0]);
+};
+}  // namespace constraint_h
+namespace edge_line_h {
+struct Context : in_core::Context {
+  const FileLine where{"beacons.g2o", 7, "."};
+  FieldReader in{"2.5 100", where};
+};
+}  // namespace edge_line_h
 namespace optimiser_h {
-extern LinearSolver& solver;
-}
+struct Context : in_core::Context {
+  LinearSolver& solver = *in_core::Context::solver;
+};
+}  // namespace optimiser_h
 namespace reference_cost_h {
-extern const double cost, trial_cost, predicted;
-}
+struct Context : in_core::Context {
+  const double cost = 5.0, trial_cost = 4.0, predicted = 1.5;
+};
+}  // namespace reference_cost_h
 namespace weighted_square_h {
-extern const EdgePool& pool;
-extern const int index;
-extern const Eigen::VectorXd error;
+struct Context : in_core::Context {
+  const EdgePool& pool = *graph.edge_pools()[graph.edge_record(e.slot).pool];
+  const int index = graph.edge_record(e.slot).index;
+  const Eigen::VectorXd error = Eigen::Vector2d(0.1, 0.2);
+};
 }  // namespace weighted_square_h
 namespace scratch_h {
-extern const int rows;
-}
+struct Context : in_core::Context {
+  const int rows = 2;
+  Scratch scratch;
+  Context() { scratch.reserve(Scratch::bytes<double>(rows * columns)); }
+};
+}  // namespace scratch_h
 namespace violations_h {
-extern Optimiser optimiser;
-}
+/// A run whose constraint does not hold yet.
+struct Context : in_core::Context {
+  Optimiser optimiser{options};
+  Context() {
+    graph.set_constraint(e, ConstraintKind::kEquality);
+    map.problem.compile(graph);
+    workspace.allocate(map.problem);
+    workspace.load_state();
+    optimiser.start(workspace, *solver);
+  }
+};
+}  // namespace violations_h
 
 }  // namespace locograph::documentation::in_core

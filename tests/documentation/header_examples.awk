@@ -2,6 +2,14 @@
 #
 #     awk -v folder=core -v root=SOURCE_FOLDER -v output=SOURCE -f header_examples.awk HEADER…
 #
+# Beside this file FOLDER_context.h has the objects that the examples take for granted, as members
+# of a struct Context: that of the namespace in_FOLDER, or of a header's own, in_FOLDER::FILE_h.
+# Each example is a member function of a class derived from it, and is run on an object of its own.
+# The context also says, by the headers' names, what becomes of examples that are not simply run:
+#
+#     // Not run: common/input_file.h: REASON
+#     // Throws: common/error.h
+#
 # An example is what stands four columns into the head comment after an empty line. Its parts, cut
 # at empty lines, become
 #
@@ -13,6 +21,25 @@
 # columns in and is neither fails, so that no example is left out.
 
 BEGIN {
+  context = root "/tests/documentation/" folder "_context.h"
+  while ((status = getline line < context) > 0) {
+    if (line !~ /^\/\/ (Not run|Throws): /) continue
+    kind = line ~ /^\/\/ Throws/ ? "throws" : "not_run"
+    sub(/^[^:]*: /, "", line)
+    marked = line
+    sub(/:.*/, "", marked)
+    reason = substr(line, length(marked) + 3)
+    if (kind == "not_run" && reason == "") {
+      print context ": expected a reason why " marked " is not run" > "/dev/stderr"
+      exit (failed = 1)
+    }
+    mark[marked] = kind == "throws" ? "kThrows" : "kNotRun"
+    reason_of[marked] = reason
+  }
+  if (status < 0) {
+    print context ": expected a context for the examples" > "/dev/stderr"
+    exit (failed = 1)
+  }
   includes = "// Made by header_examples.awk. Do not edit.\n" \
              "#include <documentation/example_context.h>\n" \
              "#include <documentation/" folder "_context.h>\n"
@@ -73,8 +100,12 @@ past_head { next }
 
 END {
   if (!failed) finish_header()
+  if (!failed) {
+    for (marked in mark) fail_mark(marked)
+  }
   if (failed || headers == 0) exit 1
-  printf "%snamespace locograph::documentation::in_%s {\n%s}\n", includes, folder, bodies > output
+  printf "%snamespace locograph::documentation::in_%s {\n%s" \
+         "const Registration registered({\n%s});\n}\n", includes, folder, bodies, entries > output
   print folder ": " headers " headers, " with_example " with an example"
 }
 
@@ -82,6 +113,11 @@ function fail(expected) {
   print file ":" FNR ": expected " expected > "/dev/stderr"
   failed = 1
   exit 1
+}
+
+function fail_mark(marked) {
+  print context ": expected an example in " marked ", which is marked here" > "/dev/stderr"
+  failed = 1
 }
 
 function kind_of(text) {
@@ -100,7 +136,13 @@ function finish_part() {
 
 function finish_example() {
   finish_part()
-  if (example != "") functions = functions "Anything example_" ++count "() {\n" example "}\n"
+  if (example != "") {
+    ++count
+    functions = functions "Anything example_" count "() {\n" example "return {};\n}\n"
+    how = header in mark ? mark[header] : "kRuns"
+    entries = entries "{\"" header "\", " count ", Example::" how ", \"" reason_of[header] "\",\n" \
+              " [] { " name "::Examples().example_" count "(); }},\n"
+  }
   example = ""
 }
 
@@ -110,5 +152,8 @@ function finish_header() {
   if (!in_head) fail("a head comment in the file before")
   if (declarations functions == "") return
   ++with_example
-  bodies = bodies "namespace " name " {\n" declarations functions "}\n"
+  delete mark[header]
+  bodies = bodies "namespace " name " {\n" declarations
+  if (functions != "") bodies = bodies "struct Examples : Context {\n" functions "};\n"
+  bodies = bodies "}\n"
 }

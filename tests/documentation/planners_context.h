@@ -1,8 +1,13 @@
 #pragma once
 /// What the examples of planners/ take for granted.
 
+#include <documentation/example_context.h>
+#include <documentation/example_robots.h>
+#include <documentation/example_world.h>
 #include <locograph/check/judge.h>
+#include <locograph/common/data_folder.h>
 #include <locograph/core/graph_file.h>
+#include <locograph/planners/offline/drive/wheeled_drive.h>
 #include <locograph/planners/offline/motion/motion_graph.h>
 #include <locograph/planners/offline/motion/segment_motion.h>
 #include <locograph/planners/offline/stance/experience.h>
@@ -28,258 +33,530 @@
 #include <locograph/planners/scenario/move_contacts.h>
 #include <locograph/planners/scenario/scenario.h>
 #include <locograph/planners/scenario/snap_to_places.h>
+#include <locograph/plugins/robot_types.h>
 #include <locograph/robots/xml_file.h>
-
-#include <filesystem>
-#include <memory>
-#include <vector>
+#include <locograph/types/standard_types.h>
+#include <locograph/world/distance_view.h>
 
 namespace locograph::documentation::in_planners {
 
-extern const std::filesystem::path data_folder;
-extern Graph graph;
-extern const Plan plan;
-extern const std::vector<Eigen::VectorXd> planned;
-extern const Stance stance;
-extern const Robot robot;
-extern const World world;
+/// COMAN+ puts its left foot 5 cm ahead.
+inline constexpr std::string_view kOneStep = R"(<scenario version="1" name="one_step">
+  <robot model="coman_plus"/>
+  <end_effectors>
+    <end_effector name="left_foot" link="l_sole" kind="surface" half_x="0.08" half_y="0.035"
+                  link_forward="1 0 0" max_force="1000"/>
+    <end_effector name="right_foot" link="r_sole" kind="surface" half_x="0.08" half_y="0.035"
+                  link_forward="1 0 0" max_force="1000"/>
+  </end_effectors>
+  <environment friction="0.8">
+    <plane name="floor" center="0 0 0" normal="0 0 1" forward="1 0 0" size="2 2"/>
+  </environment>
+  <start>
+    <contact end_effector="left_foot" position="0 0.1 0" normal="0 0 1" forward="1 0 0"/>
+    <contact end_effector="right_foot" position="0 -0.1 0" normal="0 0 1" forward="1 0 0"/>
+  </start>
+  <goal>
+    <contact end_effector="left_foot" position="0.05 0.1 0" normal="0 0 1" forward="1 0 0"/>
+    <contact end_effector="right_foot" position="0 -0.1 0" normal="0 0 1" forward="1 0 0"/>
+  </goal>
+  <planner torque_limits="enforce"/>
+</scenario>
+)";
+
+inline Scenario one_step() {
+  write_example_file("one_step.xml", kOneStep);
+  Scenario scenario = load_scenario("one_step.xml", data_folder());
+  scenario.limits.joint_acceleration_rad_s2 = 10.0;
+  return scenario;
+}
+inline const StanceProblem& step_problem() {
+  static const StanceProblem problem = stance_problem(one_step()).problem;
+  return problem;
+}
+/// On both feet, on the right one, on both.
+inline const StancePlan& step_stances() {
+  static const StancePlan plan = make_stance_planner("guided")->plan(step_problem(), {.seed = 7});
+  if (plan.configurations.size() != 3) throw Error("the step is not planned: " + plan.reason);
+  return plan;
+}
+inline Graph drive(double distance_m, int configurations) {
+  Scenario scenario = load_scenario("centauro_drive", data_folder());
+  scenario.drive->distance_m = distance_m;
+  scenario.drive->configurations = configurations;
+  return plan_wheeled_drive(scenario);
+}
+inline std::vector<Eigen::VectorXd> configurations_of(const Graph& graph, const Plan& plan) {
+  return motion_of(graph, plan).configurations;
+}
+
+struct Context {
+  const std::filesystem::path data_folder = locograph::data_folder();
+};
+
+/// CENTAURO drives ahead.
+struct DriveContext : Context {
+  Graph graph;
+  const Plan plan = plan_of(graph);
+  const std::vector<Eigen::VectorXd> planned = configurations_of(graph, plan);
+  const std::shared_ptr<const RobotParameter>& parameter = plan.robot;
+  const std::shared_ptr<const RobotParameter>& robot = plan.robot;
+  World world;
+
+  explicit DriveContext(double distance_m = 0.32, int configurations = 5)
+      : graph(drive(distance_m, configurations)) {
+    world.surfaces = {ground()};
+  }
+};
+
+/// The step that COMAN+ makes.
+struct StepContext : Context {
+  const Scenario scenario = one_step();
+  const StanceProblem& problem = step_problem();
+  const Robot& robot = *problem.robot->robot;
+  const World& world = problem.world;
+  const Stance& stance = problem.start;
+  const Eigen::VectorXd& q = problem.start_configuration;
+  const RobotState state = state_at(robot, q);
+  const std::vector<BearingContact> bearing = {{stance.contacts[0]}, {stance.contacts[1]}};
+  StancePlannerOptions options;
+};
+
+/// The search for it.
+struct SearchContext : StepContext {
+  StanceSpace space{problem, options};
+  const Footing footing = space.footing(problem.start), start = footing;
+  const int effector = 0, place = footing[0], other_place = space.footing(problem.goals[0])[0];
+};
+
+/// The moment when the left foot is lifted: the smaller stance is the right foot's.
+struct TransitionContext : StepContext {
+  const std::shared_ptr<const RobotParameter>& robot = problem.robot;
+  const std::vector<Contact> smaller = {stance.contacts[1]};
+  const BalanceRegion region_of_smaller =
+      balance_region(robot->robot->total_mass(), std::vector<BearingContact>{{smaller[0]}}, 0.1);
+  const TransitionOptions options;
+  TransitionProblem transition() const {
+    return {.closed = stance.contacts,
+            .balance = &region_of_smaller,
+            .start = q,
+            .preferred = q,
+            .held = smaller};
+  }
+  TransitionTask task_of(const Footing& larger, const Footing& smaller_footing) const {
+    return {.larger = larger,
+            .smaller = smaller_footing,
+            .closed = stance.contacts,
+            .held = smaller,
+            .bearing = {{smaller[0]}},
+            .start = q};
+  }
+};
+
+/// The left foot on its way, the right one stands.
+struct SegmentContext : StepContext {
+  const StancePlan& stances = step_stances();
+  const std::vector<BearingContact> bearing = {{stance.contacts[1]}};
+  const BalanceRegion region = balance_region(robot.total_mass(), bearing, 0.1);
+  const Segment segment = {.held = {stance.contacts[1]},
+                           .balance = &region,
+                           .left = {stance.contacts[0]},
+                           .reached = {problem.goals[0].contacts[0]},
+                           .from = stances.configurations[1],
+                           .to = stances.configurations[2]};
+};
+struct LiftedContext : SegmentContext {
+  SegmentSpace space{problem.robot, problem.world};
+  LiftedContext() {
+    space.set_segment(segment);
+    if (!space.lift_off()) throw Error("the foot is not lifted: " + space.why_not());
+  }
+};
+
+/// An arm moves while both feet stand.
+struct TimingContext : StepContext {
+  const std::vector<Eigen::VectorXd> waypoints = {q, moved(0.1), moved(0.2)};
+  const TimingLimits limits = timing_limits(robot, scenario.limits);
+  const TimingOptions options;
+  Eigen::VectorXd moved(double angle_rad) const {
+    Eigen::VectorXd to = q;
+    to[7 + 24] += angle_rad;
+    return to;
+  }
+};
 
 namespace offline_drive_wheel_motion_h {
-extern Eigen::VectorXd q;
-extern const Eigen::VectorXd before;
+struct Context : DriveContext {
+  const Robot& robot = *parameter->robot;
+  const Stance& stance = plan.stance_from[0]->stance;
+  Eigen::VectorXd q = planned[1];
+  const Eigen::VectorXd before = planned[0];
+};
 }  // namespace offline_drive_wheel_motion_h
 namespace offline_drive_wheeled_plan_h {
-extern const std::shared_ptr<const RobotParameter> robot;
-extern const std::shared_ptr<const WorldParameter> world;
-extern const Motion motion;
+struct Context : DriveContext {
+  const Motion motion = motion_of(DriveContext::graph, plan);
+  const std::shared_ptr<const WorldParameter> world = std::make_shared<const WorldParameter>();
+  Graph graph;
+};
 }  // namespace offline_drive_wheeled_plan_h
 namespace offline_stance_balance_region_h {
-extern const std::vector<BearingContact> bearing;
-extern const RobotState state;
-}  // namespace offline_stance_balance_region_h
+using Context = StepContext;
+}
 namespace offline_stance_experience_h {
-extern const StanceSpace space;
-extern const Footing footing;
-extern const int effector, place, other_place;
-extern const bool found;
-extern double cost;
+struct Context : SearchContext {
+  const bool found = true;
+  double cost = 0.0;
+};
 }  // namespace offline_stance_experience_h
 namespace offline_stance_footing_h {
-extern const Footing footing;
-extern const int place;
-}  // namespace offline_stance_footing_h
+using Context = SearchContext;
+}
 namespace offline_stance_guided_tree_h {
-extern const GuidedTree::Move move;
-void prepare(const GuidedTree::Move& likely);
+struct Context {
+  const GuidedTree::Move move = {};
+  static void prepare(const GuidedTree::Move&) {}
+};
 }  // namespace offline_stance_guided_tree_h
 namespace offline_stance_plan_stances_h {
-extern const StanceProblem problem;
-extern const StancePlannerOptions options;
-bool search(StanceSpace& space, const Footing& goal, StancePath& path);
+/// A search that gives up.
+struct Context : StepContext {
+  static bool search(StanceSpace&, const Footing&, StancePath&) { return false; }
+};
 }  // namespace offline_stance_plan_stances_h
 namespace offline_stance_rrt_planner_h {
-extern const StanceProblem problem;
+using Context = StepContext;
 }
 namespace offline_stance_improve_stances_h {
-extern const std::unique_ptr<const StancePlanner> planner;
-extern const StanceProblem problem;
-extern StancePlannerOptions options;
+struct Context : StepContext {
+  const std::unique_ptr<const StancePlanner> planner = make_stance_planner("guided");
+};
 }  // namespace offline_stance_improve_stances_h
 namespace offline_stance_stance_path_h {
-extern StanceSpace space;
-extern const Judge judge;
-extern const Footing footing;
-extern const Eigen::VectorXd configuration;
+struct Context : SearchContext {
+  const Judge judge{problem.robot->robot, world};
+  const Eigen::VectorXd& configuration = q;
+};
 }  // namespace offline_stance_stance_path_h
 namespace offline_stance_stance_planner_h {
-extern const Scenario scenario;
-}
+struct Context {
+  const Scenario scenario = one_step();
+};
+}  // namespace offline_stance_stance_planner_h
 namespace offline_stance_stance_tree_h {
-extern const StanceSpace space;
-extern const StancePlannerOptions options;
-extern StancePlan plan;
-extern const Footing start;
+struct Context : SearchContext {
+  StancePlan plan;
+};
 }  // namespace offline_stance_stance_tree_h
 namespace offline_stance_standing_wheels_h {
-extern const StanceSpace space;
-extern StancePath path;
+/// Of feet only: nothing turns.
+struct Context : SearchContext {
+  StancePath path = {.footings = {start, without(start, 0)}, .configurations = {q, q}};
+};
 }  // namespace offline_stance_standing_wheels_h
 namespace offline_stance_torque_programme_h {
-extern const std::vector<BearingContact> bearing;
-extern const RobotState state;
-extern Eigen::VectorXd gradient;
+struct Context : StepContext {
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(robot.tangent_size());
+};
 }  // namespace offline_stance_torque_programme_h
 namespace offline_stance_transition_ahead_h {
-extern TaskSolver solver;
-extern const TransitionTask task, likeliest, lift, put;
+struct Context : TransitionContext {
+  BalanceRegions regions{robot->robot->total_mass()};
+  TaskSolver solver{problem, regions};
+  const TransitionTask task = task_of({0, 1}, {kFree, 1}), likeliest = task,
+                       lift = task_of({2, 1}, {kFree, 1}), put = task_of({3, 1}, {kFree, 1});
+};
 }  // namespace offline_stance_transition_ahead_h
 namespace offline_stance_transition_task_h {
-extern const StanceProblem problem;
-extern const TransitionTask task;
-extern const double mass_kg;
+struct Context : TransitionContext {
+  const TransitionTask task = task_of({0, 1}, {kFree, 1});
+  const double mass_kg = robot->robot->total_mass();
+};
 }  // namespace offline_stance_transition_task_h
 namespace offline_stance_transition_places_h {
-extern const std::shared_ptr<const RobotParameter> robot;
-extern const World world;
-extern const TransitionProblem problem;
-extern const Eigen::AlignedBox3d around_the_robot;
-extern double least_m;
-extern const std::size_t bound;
-extern const Eigen::Vector3d centre;
-extern const double radius;
+struct Context : TransitionContext {
+  const TransitionProblem problem = transition();
+  const Eigen::AlignedBox3d around_the_robot{Eigen::Vector3d(-1.0, -1.0, -1.0),
+                                             Eigen::Vector3d(1.0, 1.0, 2.0)};
+  double least_m = 1.0;
+  const std::size_t bound = 0;
+  const Eigen::Vector3d centre = {0.0, 0.0, 0.8};
+  const double radius = 0.1;
+};
 }  // namespace offline_stance_transition_places_h
 namespace offline_motion_motion_graph_h {
-extern const Scenario scenario;
-extern const StanceProblem problem;
-extern const MotionPlan plan;
+struct Context : StepContext {
+  const MotionPlan plan = plan_motion(problem, {.seed = 7});
+};
 }  // namespace offline_motion_motion_graph_h
 namespace offline_motion_motion_planner_h {
-extern const Scenario scenario;
-}
+struct Context {
+  const Scenario scenario = one_step();
+};
+}  // namespace offline_motion_motion_planner_h
 namespace offline_motion_segment_motion_h {
-extern const StanceProblem problem;
-extern const MotionOptions options;
-extern const Segment segment;
-extern const std::vector<BearingContact> bearing;
+struct Context : SegmentContext {
+  const MotionOptions options;
+};
 }  // namespace offline_motion_segment_motion_h
 namespace offline_motion_segment_planner_h {
-extern const StanceProblem problem;
-extern const Segment segment;
-}  // namespace offline_motion_segment_planner_h
+using Context = SegmentContext;
+}
 namespace offline_motion_segment_space_h {
-extern const std::shared_ptr<const RobotParameter> robot;
-extern const World world;
-extern const Segment segment;
-extern std::vector<Eigen::VectorXd> waypoints;
+struct Context : SegmentContext {
+  const std::shared_ptr<const RobotParameter>& robot = problem.robot;
+  std::vector<Eigen::VectorXd> waypoints;
+};
 }  // namespace offline_motion_segment_space_h
 namespace offline_motion_shorten_way_h {
-extern SegmentSpace space;
+using Context = LiftedContext;
 }
 namespace offline_motion_swing_h {
-extern SegmentSpace space;
+using Context = LiftedContext;
 }
 namespace offline_timing_balance_rows_h {
-extern const std::vector<BearingContact> bearing;
-extern const std::vector<Eigen::VectorXd> waypoints;
-extern const TimingLimits limits;
-extern const TimingOptions options;
-}  // namespace offline_timing_balance_rows_h
+using Context = TimingContext;
+}
 namespace offline_timing_reach_programme_h {
-extern const Eigen::MatrixXd columns;
-extern const Eigen::VectorXd within, inside, target;
-extern const ReachProgramme::Bounds bounds;
+/// Three forces of at most one, along x, y and both.
+struct Context {
+  const Eigen::MatrixXd columns = (Eigen::MatrixXd(2, 3) << 1, 0, 1, 0, 1, 1).finished();
+  const Eigen::VectorXd within = Eigen::Vector2d(1e-6, 1e-6),
+                        inside = Eigen::Vector3d(0.2, 0.2, 0.2), target = Eigen::Vector2d(3.0, 0.0);
+  const ReachProgramme::Bounds bounds = {
+      .group = {0, 0, 0}, .lower = {0, 0, 0}, .upper = {1, 1, 1}, .most = {-1}};
+};
 }  // namespace offline_timing_reach_programme_h
-namespace scenario_bar_place_h {
-extern const Bar bar;
-extern const Contact contact;
-}  // namespace scenario_bar_place_h
-namespace plan_balance_edges_h {
-extern const std::shared_ptr<const RobotParameter> robot;
-extern const Eigen::VectorXd configuration;
-extern const std::shared_ptr<const StanceParameter> stance;
-extern const StanceWrenches wrenches;
-extern const StanceProblem problem;
-}  // namespace plan_balance_edges_h
 namespace offline_timing_effort_rows_h {
-extern const std::vector<Eigen::VectorXd> waypoints;
-extern const TimingLimits limits;
+/// The same robot, its base held.
+struct Context {
+  const Robot robot = fixed();
+  const std::vector<Eigen::VectorXd> waypoints = {robot.named_configuration("home"), moved()};
+  const TimingLimits limits = timing_limits(robot, {.joint_acceleration_rad_s2 = 10.0});
+  static Robot fixed() {
+    const RobotFiles files = shipped_robot("coman_plus").value();
+    return Robot::load(files.urdf, files.srdf, {.floating_base = false});
+  }
+  Eigen::VectorXd moved() const {
+    Eigen::VectorXd to = robot.named_configuration("home");
+    to[24] += 0.2;
+    return to;
+  }
+};
 }  // namespace offline_timing_effort_rows_h
 namespace offline_timing_path_spline_h {
-extern const std::vector<Eigen::VectorXd> waypoints;
+using Context = TimingContext;
 }
 namespace offline_timing_path_timing_h {
-extern const std::vector<Eigen::VectorXd> waypoints;
-extern const Scenario scenario;
-}  // namespace offline_timing_path_timing_h
+using Context = TimingContext;
+}
 namespace offline_timing_speed_profile_h {
-extern const Scenario scenario;
-extern const PathSpline path;
+struct Context : TimingContext {
+  const PathSpline path = timing_path(robot, waypoints, limits);
+};
 }  // namespace offline_timing_speed_profile_h
 namespace offline_stance_transition_rows_h {
-extern const std::shared_ptr<const RobotParameter> robot;
-extern const TransitionProblem problem;
-extern const TransitionOptions options;
-extern const Eigen::VectorXd q;
-extern double worst;
+struct Context : TransitionContext {
+  const TransitionProblem problem = transition();
+  double worst = 1.0;
+};
 }  // namespace offline_stance_transition_rows_h
 namespace offline_stance_stance_graph_h {
-extern const Scenario scenario;
-extern const StanceProblem problem;
-extern const StancePlan plan;
+struct Context : StepContext {
+  const StancePlan& plan = step_stances();
+};
 }  // namespace offline_stance_stance_graph_h
 namespace offline_stance_stance_space_h {
-extern const StanceProblem problem;
-extern const StancePlannerOptions options;
-extern const Eigen::VectorXd q;
-}  // namespace offline_stance_stance_space_h
+using Context = StepContext;
+}
 namespace offline_stance_transition_solver_h {
-extern const std::shared_ptr<const RobotParameter> robot;
-extern const Stance larger;
-extern const BalanceRegion region_of_smaller;
-extern const Eigen::VectorXd q, home;
+struct Context : TransitionContext {
+  const Stance& larger = stance;
+  const Eigen::VectorXd& home = q;
+};
 }  // namespace offline_stance_transition_solver_h
 namespace online_detour_search_h {
-extern const std::shared_ptr<const RobotParameter> robot;
-extern const DetourOptions options;
-extern const std::vector<const double*> window;
-extern const std::vector<double> times;
-extern const WorldDistance world;
-extern const double offset, slope;
-extern const int first;
+/// A box on the way, after two metres.
+struct Context : DriveContext {
+  const DetourOptions options;
+  std::vector<const double*> window;
+  std::vector<double> times;
+  const WorldDistance world = distance_view(small_room());
+  const double offset = 0.0, slope = 0.0;
+  const int first = 1;
+  Context() : DriveContext(1.6, 21) {
+    for (int i = first; i < static_cast<int>(planned.size()); ++i) {
+      window.push_back(planned[i].data());
+      times.push_back(0.8 * i);
+    }
+  }
+};
 }  // namespace online_detour_search_h
 namespace online_local_planner_h {
-extern Graph plan_graph;
-extern const LocalPlannerOptions options;
-extern const WorldDistance world;
+struct Context : DriveContext {
+  Graph& plan_graph = graph;
+  const LocalPlannerOptions options;
+  const WorldDistance world = distance_view(DriveContext::world);
+};
 }  // namespace online_local_planner_h
 namespace online_refine_h {
-extern const Judge judge;
-extern const CheckOptions limits;
-extern const WorldAt world_seen_at;
+/// Nothing new is seen.
+struct Context : DriveContext {
+  const Judge judge{parameter->robot, world};
+  const CheckOptions limits;
+  const WorldAt world_seen_at = [](int) { return nullptr; };
+};
 }  // namespace online_refine_h
+namespace online_window_cause_h {
+struct Context : DriveContext {
+  Context() : DriveContext(2.56, 33) {}
+};
+}  // namespace online_window_cause_h
 namespace online_window_quality_h {
-extern const ConstraintReader reader;
-extern const std::vector<int> step_of;
-extern const int steps;
-extern double cost;
-double optimise();
-void keep();
+/// Of the whole drive; each constraint counts for the first step.
+struct Context : DriveContext {
+  Problem problem;
+  Workspace workspace;
+  const ConstraintReader reader = compiled();
+  const std::vector<int> step_of = std::vector<int>(problem.constraints().size(), 1);
+  const int steps = 4;
+  double cost = 1.0;
+  static double optimise() { return 0.5; }
+  static void keep() {}
+  ConstraintReader compiled() {
+    problem.compile(graph);
+    workspace.allocate(problem);
+    workspace.load_state();
+    workspace.evaluate(workspace.state());
+    return ConstraintReader(workspace);
+  }
+};
 }  // namespace online_window_quality_h
+namespace plan_balance_edges_h {
+struct Context : StepContext {
+  const std::shared_ptr<const RobotParameter>& robot = problem.robot;
+  const Eigen::VectorXd& configuration = q;
+  Graph graph;
+  const int number = add_stance();
+  const std::shared_ptr<const StanceParameter> stance =
+      graph.parameters().get<StanceParameter>(number);
+  const StanceWrenches wrenches = StanceWrenches(2, Eigen::Matrix<double, 6, 1>::Zero());
+  int add_stance() {
+    graph.parameters().set(kRobotNumber, robot);
+    return add_stances(graph, robot, {problem.start})[0];
+  }
+};
+}  // namespace plan_balance_edges_h
+namespace plan_judging_h {
+using Context = DriveContext;
+}
 namespace plan_plan_h {
-extern const TypeRegistry types;
-}
+struct Context : DriveContext {
+  const TypeRegistry types = robot_types();
+  Context() { write_graph(graph, "plan.g2o"); }
+  static TypeRegistry robot_types() {
+    TypeRegistry types = standard_types();
+    add_robot_types(types);
+    return types;
+  }
+};
+}  // namespace plan_plan_h
 namespace plan_seen_world_h {
-extern const Judging judging;
-}
+struct Context : DriveContext {
+  const Judging judging = judging_of(graph, plan, {.data_folder = data_folder});
+};
+}  // namespace plan_seen_world_h
+
+/// COMAN+ on both soles.
+inline constexpr std::string_view kStanding = R"(<contacts version="1" name="standing">
+  <contact link="l_sole" kind="surface" position="0 0.1 0" normal="0 0 1" forward="1 0 0"
+           half_x="0.08" half_y="0.035" mu="0.6" max_force="1000"/>
+  <contact link="r_sole" kind="surface" position="0 -0.1 0" normal="0 0 1" forward="1 0 0"
+           half_x="0.08" half_y="0.035" mu="0.6" max_force="1000"/>
+</contacts>
+)";
+
+namespace posture_contacts_file_h {
+struct Context {
+  const Robot& robot = *coman_plus();
+  Context() { write_example_file("standing.xml", kStanding); }
+};
+}  // namespace posture_contacts_file_h
 namespace posture_posture_graph_h {
-extern const std::shared_ptr<const RobotParameter> robot;
-extern const std::shared_ptr<const WorldParameter> seen;
-extern const PostureProblem problem;
-extern const PostureOptions options;
-extern const PostureSolver::Shapes shapes;
-extern const Workspace workspace;
+struct Context : StepContext {
+  const std::shared_ptr<const RobotParameter>& robot = StepContext::problem.robot;
+  const std::shared_ptr<const WorldParameter> seen = std::make_shared<const WorldParameter>();
+  const PostureProblem problem = {.stance = stance, .preferred = q};
+  const PostureOptions options;
+  PostureSolver::Shapes shapes;
+  Context() {
+    shapes.coarse_pairs.assign(robot->self_collision.pairs.size(), false);
+    for (std::size_t link = 0; link < robot->robot->links().size(); ++link) {
+      shapes.solids.push_back(
+          std::make_shared<const LinkSolids>(*robot->robot, static_cast<int>(link)));
+    }
+  }
+};
 }  // namespace posture_posture_graph_h
 namespace posture_posture_solver_h {
-extern const std::filesystem::path urdf, srdf;
-extern const RobotOptions options;
-extern const Eigen::VectorXd home;
+struct Context : posture_contacts_file_h::Context {
+  const RobotFiles files = shipped_robot("coman_plus").value();
+  const std::filesystem::path &urdf = files.urdf, &srdf = files.srdf;
+  const RobotOptions options;
+  const Eigen::VectorXd home = robot.named_configuration("home");
+};
 }  // namespace posture_posture_solver_h
+namespace scenario_bar_place_h {
+struct Context {
+  const Bar bar = small_room().bars[0];
+  const Contact contact = step_problem().start.contacts[0];
+};
+}  // namespace scenario_bar_place_h
 namespace scenario_contact_place_h {
-extern const Contact contact;
-}
+struct Context {
+  const World world = small_room();
+  const Contact contact = step_problem().start.contacts[0];
+};
+}  // namespace scenario_contact_place_h
+namespace scenario_contact_task_element_h {
+struct Context {
+  const std::vector<EndEffector> effectors = one_step().end_effectors;
+  Context() { write_example_file("stones.xml", kOneStep); }
+};
+}  // namespace scenario_contact_task_element_h
+namespace scenario_effector_element_h {
+struct Context {
+  const XmlFile xml = file();
+  const XmlFile::Element& element = *xml.root().FirstChildElement();
+  static XmlFile file() {
+    write_example_file("feet.xml", R"(<feet><foot link="l_sole" kind="surface" position="0 0.1 0"
+      half_x="0.08" half_y="0.035" mu="0.6" max_force="1000"/></feet>)");
+    return XmlFile("feet.xml", "feet");
+  }
+};
+}  // namespace scenario_effector_element_h
+namespace scenario_environment_element_h {
+struct Context {
+  Context() { write_example_file("hall.xml", kOneStep); }
+};
+}  // namespace scenario_environment_element_h
 namespace scenario_move_contacts_h {
-extern ContactTask task;
-}
+struct Context : StepContext {
+  ContactTask task = *scenario.contacts;
+};
+}  // namespace scenario_move_contacts_h
+namespace scenario_scenario_h {
+struct Context : in_planners::Context {
+  Context() { write_example_file("hall.xml", kOneStep); }
+};
+}  // namespace scenario_scenario_h
 namespace scenario_snap_to_places_h {
-extern const Scenario scenario;
-extern ContactTask task;
+struct Context : StepContext {
+  ContactTask task = *scenario.contacts;
+};
 }  // namespace scenario_snap_to_places_h
 namespace scenario_task_stances_h {
-extern const Scenario scenario;
+using Context = StepContext;
 }
-namespace scenario_effector_element_h {
-extern const XmlFile xml;
-extern const XmlFile::Element element;
-}  // namespace scenario_effector_element_h
 
 }  // namespace locograph::documentation::in_planners

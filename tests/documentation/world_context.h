@@ -1,6 +1,9 @@
 #pragma once
 /// What the examples of world/ take for granted.
 
+#include <documentation/example_context.h>
+#include <documentation/example_robots.h>
+#include <documentation/example_world.h>
 #include <locograph/robots/robot.h>
 #include <locograph/world/collision_world.h>
 #include <locograph/world/convex_shape.h>
@@ -10,59 +13,74 @@
 #include <locograph/world/surfaces_of.h>
 #include <locograph/world/world.h>
 
-#include <memory>
-#include <string>
-#include <vector>
-
 namespace locograph::documentation::in_world {
 
-extern const Robot robot;
-extern const std::vector<Obstacle> obstacles;
-extern const std::vector<Eigen::Isometry3d> world_from_link;
-extern const Eigen::Isometry3d world_from_arm, world_from_table, world_from_shape;
-extern const double time_s, margin_m;
-extern const std::shared_ptr<const octomap::OcTree> tree;
-extern const Eigen::Vector3d point, a_point, b_point;
-extern const int link;
-extern std::vector<ConvexShape> solids;
-extern const ConvexShape shape;
-extern const DistanceField field;
-extern const DistanceFieldOptions options;
-Eigen::Vector3d farthest_point_of_a(const Eigen::Vector3d& direction);
-Eigen::Vector3d farthest_point_of_b(const Eigen::Vector3d& direction);
-void report(const std::string& link, const std::string& what);
-void use(const ShapeDistance& nearest);
+/// COMAN+ at home in a room, with all its files.
+struct Context {
+  const Robot& robot = *coman_plus();
+  const World world = small_room();
+  const std::vector<Obstacle>& obstacles = world.obstacles;
+  const std::vector<Eigen::Isometry3d> world_from_link =
+      link_poses(state_at(robot, robot.named_configuration("home")));
+  const Eigen::Isometry3d world_from_arm{Eigen::Translation3d(0.0, 0.0, 1.0)},
+      world_from_table{Eigen::Translation3d(0.0, 0.5, 0.4)}, world_from_shape = world_from_arm;
+  const double time_s = 0.5, margin_m = 0.05;
+  const std::shared_ptr<const octomap::OcTree>& tree = world.map;
+  const Eigen::Vector3d point = {1.0, 0.0, 1.0}, a_point = {0.0, 0.0, 0.0},
+                        b_point = {1.0, 0.2, 0.0};
+  const int link = robot.link_index("l_sole");
+  std::vector<ConvexShape> solids;
+  const ConvexShape shape = ConvexShape::capsule(0.05, 0.3);
+  const DistanceField field = DistanceField::from_octree(*tree, {.max_distance_m = 0.5});
+  const DistanceFieldOptions options;
+
+  Context() { write_room_files(); }
+
+  static Eigen::Vector3d farthest_point_of_a(const Eigen::Vector3d& direction) {
+    return 0.2 * direction.normalized();
+  }
+  static Eigen::Vector3d farthest_point_of_b(const Eigen::Vector3d& direction) {
+    return Eigen::Vector3d(1.0, 0.2, 0.0) + 0.3 * direction.normalized();
+  }
+  static void report(const std::string&, const std::string&) {}
+  static void use(const ShapeDistance&) {}
+  static void use(const Surface&) {}
+};
 
 namespace collision_world_h {
-extern const World world;
-extern const int sole;
+struct Context : in_world::Context {
+  const int sole = link;
+};
 }  // namespace collision_world_h
-namespace box_tree_h {
-extern const World world;
-void use(const Surface& surface);
-}  // namespace box_tree_h
-namespace touchable_solids_h {
-extern const World world;
-}
-namespace distance_view_h {
-extern const World world;
-}
 namespace leftover_map_h {
-extern World world;
-extern const Surface surface;
-extern const std::vector<Eigen::Vector3d> points;
-extern const std::vector<Bar> bars;
+struct Context : in_world::Context {
+  World world = in_world::Context::world;
+  const Surface surface = world.surfaces[1];
+  const std::vector<Eigen::Vector3d> points = scanned_points();
+  const std::vector<Bar> bars = world.bars;
+};
 }  // namespace leftover_map_h
+namespace link_pairs_h {
+struct Context : in_world::Context {
+  const Robot robot = small_arm();
+};
+}  // namespace link_pairs_h
 namespace planar_patches_h {
-extern const std::vector<Eigen::Vector3d> points;
-extern const Eigen::Vector3d camera_position;
+struct Context : in_world::Context {
+  const std::vector<Eigen::Vector3d> points = scanned_points();
+  const Eigen::Vector3d camera_position = {0.0, 0.0, 1.5};
+};
 }  // namespace planar_patches_h
 namespace point_grid_h {
-extern const std::vector<Eigen::Vector3d> points;
-extern const int v;
+struct Context : in_world::Context {
+  const std::vector<Eigen::Vector3d> points = scanned_points();
+  const int v = 0;
+};
 }  // namespace point_grid_h
 namespace surfaces_of_h {
-extern const Eigen::Isometry3d world_from_mesh;
-}
+struct Context : in_world::Context {
+  const Eigen::Isometry3d world_from_mesh = world_from_table;
+};
+}  // namespace surfaces_of_h
 
 }  // namespace locograph::documentation::in_world
