@@ -6,6 +6,8 @@
 #include <locograph/robots/approximation.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace locograph {
 namespace {
@@ -51,8 +53,11 @@ Json describe_robot(const std::filesystem::path& path) {
   options.lenient_srdf = true;
   const Robot robot = Robot::load(path, srdf, options);
 
-  int shapes = 0;
-  for (const Link& link : robot.links()) shapes += static_cast<int>(link.collision.size());
+  int elements = 0, shapes = 0;
+  for (const Link& link : robot.links()) {
+    elements += link.collision_elements;
+    shapes += static_cast<int>(link.collision.size());
+  }
   Json json = {
       {"file", path.string()},
       {"kind", "robot"},
@@ -62,7 +67,9 @@ Json describe_robot(const std::filesystem::path& path) {
       {"movable_joints", robot.active_joint_count()},
       {"root_link", robot.links()[robot.root_link()].name},
       {"mass_kg", robot.total_mass()},
+      {"collision_elements", elements},
       {"collision_shapes", shapes},
+      {"links_without_collision", robot.links_without_collision()},
       {"missing_meshes", robot.missing_meshes()},
   };
   json["srdf"] = srdf.empty() ? Json(nullptr) : Json(srdf.string());
@@ -85,7 +92,13 @@ Json describe_robot(const std::filesystem::path& path) {
                           {"offset", joint.offset}};
   }
   if (!mimics.empty()) json["mimic_joints"] = mimics;
-  if (!robot.urdf_warnings().empty()) json["warnings"] = robot.urdf_warnings();
+  std::vector<std::string> warnings = robot.urdf_warnings();
+  if (!robot.has_collision_shapes()) {
+    warnings.push_back(path.string() +
+                       ": no link has a <collision>: distances cannot be judged, so that nothing "
+                       "is feasible");
+  }
+  if (!warnings.empty()) json["warnings"] = warnings;
   json["approximation"] = approximation_json(robot);
   return json;
 }

@@ -11,6 +11,7 @@
 #include <locograph/core/graph_file.h>
 #include <locograph/core/initial_guess.h>
 #include <locograph/core/optimiser.h>
+#include <locograph/plugins/configuration/vertex_configuration.h>
 #include <locograph/solvers/linear_solvers.h>
 #ifdef LOCOGRAPH_WITH_CERES_BACKEND
 #include <locograph/solvers/ceres_backend.h>
@@ -29,6 +30,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <typeinfo>
 #include <vector>
 
 namespace locograph {
@@ -106,6 +108,28 @@ Graph load(const OptimizeOptions& options, ReadReport& report) {
                   "semi-definite ones");
   }
   return graph;
+}
+
+/// The states of the configurations of a plan that have slopes, by their slots.
+std::map<int, Eigen::VectorXd> sloped_configurations(const Graph& graph) {
+  std::map<int, Eigen::VectorXd> states;
+  for (int slot = 0; slot < graph.vertex_slots(); ++slot) {
+    if (!graph.vertex_alive(slot)) continue;
+    const auto& pool = *graph.vertex_pools()[graph.vertex_record(slot).pool];
+    if (pool.type() != typeid(VertexConfiguration)) continue;
+    const VertexConfiguration& vertex = graph.vertex(VertexId<VertexConfiguration>{slot});
+    if (vertex.slopes.size() > 0) states.emplace(slot, vertex.state);
+  }
+  return states;
+}
+
+/// What has moved has the slopes of the curve's rule, not those of where it was.
+void drop_stale_slopes(Graph& graph, const std::map<int, Eigen::VectorXd>& before) {
+  constexpr double kMoved = 1e-6;
+  for (const auto& [slot, state] : before) {
+    VertexConfiguration& vertex = graph.vertex(VertexId<VertexConfiguration>{slot});
+    if ((vertex.state - state).lpNorm<Eigen::Infinity>() > kMoved) vertex.slopes.resize(0);
+  }
 }
 
 /// Fills start.guess and start.doubted; there is none without a kernel or graduation to bring the
@@ -293,6 +317,7 @@ ExitCode optimize(const OptimizeOptions& options) {
   Graph graph = load(options, report);
   times.load = total.seconds();
   if (kernel.kind != RobustKernel::Kind::kNone) graph.set_kernel(kernel);
+  const std::map<int, Eigen::VectorXd> before = sloped_configurations(graph);
   Gauge gauge;
   if (options.bal) {
     gauge.text = "free, held by damping";
@@ -357,6 +382,7 @@ ExitCode optimize(const OptimizeOptions& options) {
     json["diagnosis"] = diagnosis;
     json["diagnosis_text"] = diagnosis_text;
   }
+  drop_stale_slopes(graph, before);
   if (!options.output.empty() && std::isfinite(result.final.robust)) {
     const Progress progress("writing " + options.output);
     write_graph(graph, options.output);

@@ -1,6 +1,7 @@
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_scenario.h>
 #include <locograph/apps/progress.h>
+#include <locograph/apps/robot_files.h>
 #include <locograph/apps/stance_tree_file.h>
 #include <locograph/apps/statistics.h>
 #include <locograph/common/atomic_file.h>
@@ -31,6 +32,10 @@ struct ContactTaskPlan {
   double total_s = 0.0;
 
   const StancePlan& stances() const { return motion.stances; }
+  std::vector<std::string> links_without_collision() const {
+    const auto& robot = started.problem.robot;  // null when the time was used up before
+    return robot ? robot->robot->links_without_collision() : std::vector<std::string>();
+  }
 };
 
 StancePlannerOptions stance_options(const PlanOptions& options) {
@@ -190,6 +195,7 @@ Json answer_json(const PlanOptions& options, const ContactTaskPlan& plan) {
       {"transitions", {{"tried", stances.transitions}, {"found", stances.transitions_found}}},
       {"start_moved", {{"base_m", started.moved_base_m}, {"joint_rad", started.moved_joint_rad}}},
       {"failures", failures_json(stances)},
+      {"links_without_collision", plan.links_without_collision()},
       {"time", time_json(options, plan)},
   };
   if (!options.stances_only) {
@@ -247,6 +253,7 @@ std::string answer_text(const std::string& scenario, const PlanOptions& options,
   }
   text += "in " + short_number(plan.total_s) + " s\n";
   if (!options.stances_only && plan.graph) text += segments_text(json);
+  text += shapeless_text(plan.links_without_collision());
   if (plan.graph) text += "written: " + options.output + '\n';
   if (options.improve) text += "improved " + counted(plan.improved, "time", "times") + '\n';
   if (plan.graph && !options.tree.empty()) text += "written: " + options.tree + '\n';

@@ -1,6 +1,7 @@
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_scenario.h>
 #include <locograph/apps/progress.h>
+#include <locograph/apps/robot_files.h>
 #include <locograph/common/data_folder.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
@@ -9,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace locograph {
 namespace {
@@ -20,6 +22,7 @@ struct Planned {
   double duration_s = 0.0, whole_body_s = 0.0, judge_s = 0.0;
   bool success = false;
   std::string reason = "the time allowed is used up";
+  std::vector<std::string> links_without_collision;
 };
 
 Planned plan_and_judge(const Scenario& scenario, const PlanOptions& options,
@@ -30,6 +33,7 @@ Planned plan_and_judge(const Scenario& scenario, const PlanOptions& options,
   planned.whole_body_s = watch.lap();
   if (!planned.graph) return planned;
   const Plan plan = plan_of(*planned.graph);
+  planned.links_without_collision = plan.robot->robot->links_without_collision();
   const Motion motion = motion_of(*planned.graph, plan);
   planned.configurations = motion.configurations.size();
   planned.duration_s = motion.time_s.back() - motion.time_s.front();
@@ -77,6 +81,7 @@ ExitCode plan_drive(const Scenario& scenario, const PlanOptions& options, const 
       {"configurations", planned.configurations},
       {"duration_s", planned.duration_s},
       {"segments", planned.success ? 1 : 0},
+      {"links_without_collision", planned.links_without_collision},
       {"time",
        {{"stance_planner", 0.0},
         {"transitions", 0.0},
@@ -88,10 +93,11 @@ ExitCode plan_drive(const Scenario& scenario, const PlanOptions& options, const 
   if (options.json) {
     print_result(json, true);
   } else if (planned.success) {
-    print_text(scenario.name + ": " +
-               counted(json["configurations"], "configuration", "configurations") + " in " +
-               short_number(json["duration_s"]) + " s, planned in " +
-               short_number(total.seconds()) + " s\nwritten: " + options.output + '\n');
+    print_text(
+        scenario.name + ": " + counted(json["configurations"], "configuration", "configurations") +
+        " in " + short_number(json["duration_s"]) + " s, planned in " +
+        short_number(total.seconds()) + " s\n" + shapeless_text(planned.links_without_collision) +
+        "written: " + options.output + '\n');
   } else {
     print_text(scenario.name + ": no plan: " + planned.reason + '\n');
   }

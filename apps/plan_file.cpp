@@ -72,8 +72,12 @@ CheckReport check_plan(const PlanFile& file, const Judging& judging) {
 std::function<CheckReport(const Motion&)> step_check(const Judging& judging) {
   const auto judge = std::make_shared<const Judge>(judging.robot, judging.world);
   CheckOptions options = judging.options;
-  options.starts_at_rest = options.ends_at_rest = false;
-  return [judge, options](const Motion& motion) { return judge->check(motion, options); };
+  options.starts_at_rest = false;
+  return [judge, options](const Motion& motion) {
+    CheckOptions asked = options;
+    asked.ends_at_rest = motion.slopes.back().isZero(0.0);
+    return judge->check(motion, asked);
+  };
 }
 
 }  // namespace locograph

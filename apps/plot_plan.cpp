@@ -1,6 +1,7 @@
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_file.h>
 #include <locograph/apps/plot.h>
+#include <locograph/check/motion_curve.h>
 
 #include <algorithm>
 #include <cmath>
@@ -59,18 +60,17 @@ std::vector<Series> positions(const Robot& robot, const Motion& motion) {
   return all;
 }
 
-/// |velocity| over its limit, constant from one configuration to the next: shown where it starts.
-std::vector<Series> velocities(const Robot& robot, const Motion& motion) {
+/// |velocity| over its limit.
+std::vector<Series> velocities(const MotionCurve& curve) {
+  const Robot& robot = curve.robot();
   std::vector<Series> all;
   for (int j = 0; j < robot.active_joint_count(); ++j) {
     const Joint& joint = robot.active_joint(j);
     if (!std::isfinite(joint.max_velocity) || joint.max_velocity <= 0.0) continue;
-    const int k = robot.base_configuration_size() + j;
     Series series{joint.name, {}};
-    for (std::size_t i = 0; i + 1 < motion.configurations.size(); ++i) {
-      const double step_s = motion.time_s[i + 1] - motion.time_s[i];
-      const double change = std::abs(motion.configurations[i + 1][k] - motion.configurations[i][k]);
-      series.values.push_back(step_s > 0.0 ? change / step_s / joint.max_velocity : 0.0);
+    for (int i = 0; i < static_cast<int>(curve.motion().configurations.size()); ++i) {
+      const double velocity = curve.slope(i)[robot.base_tangent_size() + j];
+      series.values.push_back(std::abs(velocity) / joint.max_velocity);
       series.peak = std::max(series.peak, series.values.back());
     }
     all.push_back(std::move(series));
@@ -78,30 +78,25 @@ std::vector<Series> velocities(const Robot& robot, const Motion& motion) {
   return all;
 }
 
-/// |jerk| by differences of differences, constant from one configuration to the next. The robot
-/// stands still before and after.
-std::vector<Series> jerks(const Robot& robot, const Motion& motion) {
-  const std::size_t steps = motion.configurations.size() - 1;
-  std::vector<double> step_s(steps), velocity(steps), acceleration(steps + 1, 0.0);
-  for (std::size_t i = 0; i < steps; ++i) step_s[i] = motion.time_s[i + 1] - motion.time_s[i];
-  const auto rate = [](double change, double time_s) {
-    return time_s > 0.0 ? change / time_s : 0.0;
-  };
+/// |jerk| of each step's cubic, and what accelerations jump by at the vertex that begins it, over
+/// the step's time: shown where it starts. The robot stands still before.
+std::vector<Series> jerks(const MotionCurve& curve) {
+  const Robot& robot = curve.robot();
   std::vector<Series> all;
-  for (int j = 0; j < robot.active_joint_count(); ++j) {
-    const int k = robot.base_configuration_size() + j;
-    for (std::size_t i = 0; i < steps; ++i) {
-      velocity[i] = rate(motion.configurations[i + 1][k] - motion.configurations[i][k], step_s[i]);
-    }
-    for (std::size_t i = 1; i < steps; ++i) {
-      acceleration[i] = rate(velocity[i] - velocity[i - 1], 0.5 * (step_s[i - 1] + step_s[i]));
-    }
-    Series series{robot.active_joint(j).name, {}};
-    for (std::size_t i = 0; i < steps; ++i) {
-      series.values.push_back(std::abs(rate(acceleration[i + 1] - acceleration[i], step_s[i])));
+  for (int j = 0; j < robot.active_joint_count(); ++j)
+    all.push_back({robot.active_joint(j).name, {}});
+  Eigen::VectorXd before = Eigen::VectorXd::Zero(robot.active_joint_count());
+  for (int i = 0; i + 1 < static_cast<int>(curve.motion().configurations.size()); ++i) {
+    const CurveStep step = curve.step(i);
+    const double h = step.duration_s();
+    for (int j = 0; j < robot.active_joint_count() && h > 0.0; ++j) {
+      const Eigen::Vector3d cubic = step.cubic(robot.base_tangent_size() + j);
+      const double begin = 2.0 * cubic[1] / (h * h), end = begin + 6.0 * cubic[2] / (h * h);
+      Series& series = all[static_cast<std::size_t>(j)];
+      series.values.push_back((std::abs(end - begin) + std::abs(begin - before[j])) / h);
       series.peak = std::max(series.peak, series.values.back());
+      before[j] = end;
     }
-    all.push_back(std::move(series));
   }
   return all;
 }
@@ -184,7 +179,8 @@ PlotScript plot_plan(const std::filesystem::path& file, const std::vector<std::s
   add_lines(plot, "position", motion.time_s, positions(robot, motion));
   plot.line("unset arrow 1");
   if (moves) {
-    const std::vector<Series> speeds = velocities(robot, motion), jerky = jerks(robot, motion);
+    const MotionCurve curve(robot, motion);
+    const std::vector<Series> speeds = velocities(curve), jerky = jerks(curve);
     plot.line("set title 'joint velocities (1 at the limit; lower is better)'");
     plot.line("set ylabel '|velocity| / limit'");
     plot.line("set yrange [0:" + short_number(1.1 * highest(speeds, 1.0)) + "]");

@@ -94,6 +94,7 @@ Json result_json(const Robot& robot, const PostureProblem& problem, const Postur
           {"max_torque_ratio", number_json(report.max_torque_ratio)},
           {"limiting", report.balance ? Json(report.balance->limiting) : Json(nullptr)},
           {"trusted", report.trusted},
+          {"links_without_collision", robot.links_without_collision()},
           {"restarts", result.restarts},
           {"iterations", result.iterations},
           {"time",
@@ -119,7 +120,7 @@ void print_summary(const Robot& robot, const PostureResult& result, const Comman
           counted(result.restarts, "restart", "restarts") + "; balance margin " +
           short_number(balance.margin) + " (" + balance.limiting + "), torques up to " +
           short_number(100.0 * result.report.max_torque_ratio.value_or(0.0)) +
-          " % of their limits\n";
+          " % of their limits\n" + shapeless_text(robot.links_without_collision());
   if (!options.output.empty()) text += "written: " + options.output + '\n';
   print_text(text);
 }

@@ -8,11 +8,14 @@
 #include <locograph/common/error.h>
 #include <locograph/common/suggestion.h>
 #include <locograph/planners/scenario/scenario.h>
+#include <locograph/robots/names.h>
+#include <locograph/robots/robot.h>
 #include <locograph/robots/shipped_robot.h>
 
 #include <filesystem>
 #include <string>
 #include <system_error>
+#include <vector>
 
 namespace locograph {
 
@@ -40,6 +43,11 @@ inline RobotFiles robot_files(const std::string& name_or_file, const std::string
   }
   if (!srdf.empty()) files.srdf = srdf;
   return files;
+}
+
+/// A line that names the links with something to see and nothing to collide; empty without any.
+inline std::string shapeless_text(const std::vector<std::string>& links) {
+  return links.empty() ? "" : "without a collision shape: " + listed_names(links) + '\n';
 }
 
 }  // namespace locograph

@@ -2,6 +2,7 @@
 #include <locograph/apps/packed.h>
 #include <locograph/apps/scene.h>
 #include <locograph/check/judged_stance.h>
+#include <locograph/check/motion_curve.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/plugins/static_balance/static_rows.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
@@ -230,7 +231,15 @@ void add_plan_scene(const PlanFile& file, const Judging* judging, const SceneOpt
                {"configurations", packed_floats(configurations)},
                {"configuration_size", robot.configuration_size()},
                {"ids", std::move(ids)}};
-  if (file.plan.stances_only) plan["stances_only"] = true;
+  if (file.plan.stances_only) {
+    plan["stances_only"] = true;
+  } else if (count > 1) {
+    const Motion motion = motion_of(file.graph, file.plan);
+    const MotionCurve curve(robot, motion);
+    std::vector<float> slopes;
+    for (int i = 0; i < count; ++i) append(curve.slope(i), slopes);
+    plan["slopes"] = packed_floats(slopes);
+  }
   if (!planned.empty()) plan["reference"] = packed_floats(reference);
   if (options.executed >= 0) {
     if (options.executed >= count) {

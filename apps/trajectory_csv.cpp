@@ -4,6 +4,9 @@
 #include <locograph/apps/trajectory_parts.h>
 #include <locograph/common/input_file.h>
 
+#include <algorithm>
+#include <iterator>
+
 namespace locograph {
 namespace {
 
@@ -17,6 +20,28 @@ std::vector<std::string> column_names(const Robot& robot) {
   }
   for (int i = 0; i < robot.active_joint_count(); ++i) names.push_back(robot.active_joint(i).name);
   return names;
+}
+
+/// What a column of slopes is called after what it is the slope of.
+constexpr char kSlopeOf[] = "d_";
+
+std::vector<std::string> slope_names(const Robot& robot) {
+  std::vector<std::string> names;
+  if (robot.floating_base()) {
+    for (const char* name : {"base_x", "base_y", "base_z", "base_wx", "base_wy", "base_wz"}) {
+      names.push_back(std::string(kSlopeOf) + name);
+    }
+  }
+  for (int i = 0; i < robot.active_joint_count(); ++i) {
+    names.push_back(kSlopeOf + robot.active_joint(i).name);
+  }
+  return names;
+}
+
+bool has_slopes(const PlanFile& file) {
+  return std::ranges::any_of(file.plan.slots, [&file](int slot) {
+    return file.graph.vertex(VertexId<VertexConfiguration>{slot}).slopes.size() > 0;
+  });
 }
 
 std::string number_text(double value) {
@@ -47,10 +72,25 @@ std::string take_parameters(std::string& text) {
   return parameters;
 }
 
-/// Where the columns behind the stance are to be found, in the order of a VERTEX_CONFIGURATION.
-std::vector<std::size_t> columns_of(const CsvReader& reader, const CsvRow& head,
-                                    const Robot& robot) {
-  const std::vector<std::string> expected = column_names(robot);
+/// Where the columns after the stance are to be found, in the order of a VERTEX_CONFIGURATION;
+/// those of slopes, all or none, are the last.
+std::vector<std::size_t> columns_of(const CsvReader& reader, CsvRow head, const Robot& robot) {
+  const std::vector<std::string> expected = column_names(robot), slopes = slope_names(robot);
+  std::vector<std::size_t> slope_columns;
+  const bool sloped =
+      std::ranges::find(head.fields, slopes.empty() ? "" : slopes.back()) != head.fields.end();
+  for (const std::string& slope : slopes) {
+    const auto found = std::ranges::find(head.fields, slope);
+    if (!sloped) break;
+    if (found == head.fields.end()) {
+      reader.fail(head.line, "column '" + slope + "' is missing", "slopes of all, or of none");
+    }
+    slope_columns.push_back(static_cast<std::size_t>(found - head.fields.begin()));
+    if (slope_columns.back() < expected.size()) {
+      reader.fail(head.line, "column '" + slope + "' is among the positions", "slopes after them");
+    }
+  }
+  if (sloped) head.fields.resize(std::min(head.fields.size(), expected.size()));
   const std::size_t fixed = 3U + static_cast<std::size_t>(robot.base_configuration_size());
   for (std::size_t i = 0; i < fixed; ++i) {
     if (i < head.fields.size() && head.fields[i] == expected[i]) continue;
@@ -68,6 +108,7 @@ std::vector<std::size_t> columns_of(const CsvReader& reader, const CsvRow& head,
   for (std::size_t i = 0; i < order.size(); ++i) {
     columns[fixed - 3 + static_cast<std::size_t>(order[i])] = fixed + i;
   }
+  columns.insert(columns.end(), slope_columns.begin(), slope_columns.end());
   return columns;
 }
 
@@ -76,9 +117,14 @@ std::vector<std::size_t> columns_of(const CsvReader& reader, const CsvRow& head,
 std::string trajectory_csv(const PlanFile& file, const std::filesystem::path& folder) {
   require_motion(file);
   const Robot& robot = *file.plan.robot->robot;
-  std::string text = "# A plan of locograph: m, rad, s; the base in the world\n";
+  std::string text =
+      "# A plan of locograph: m, rad, s; the base in the world, its angular velocity along its own "
+      "axes\n";
   for (const std::string& line : parameter_lines(file.graph, folder)) text += "# " + line + '\n';
-  text += csv_line(column_names(robot));
+  std::vector<std::string> head = column_names(robot);
+  const bool sloped = has_slopes(file);
+  if (sloped) std::ranges::copy(slope_names(robot), std::back_inserter(head));
+  text += csv_line(head);
   const std::vector<int> segments = segment_of_each(file.plan);
   for (std::size_t i = 0; i < file.plan.slots.size(); ++i) {
     const VertexConfiguration& vertex =
@@ -86,6 +132,9 @@ std::string trajectory_csv(const PlanFile& file, const std::filesystem::path& fo
     std::vector<std::string> fields = {number_text(vertex.time_s), whole_text(segments[i]),
                                        whole_text(vertex.stance_number)};
     for (const double value : vertex.state) fields.push_back(number_text(value));
+    for (const double slope : vertex.slopes) fields.push_back(number_text(slope));
+    // By the rule, among others that have some.
+    if (sloped) fields.resize(head.size(), "-");
     text += csv_line(fields);
   }
   return text;
@@ -117,6 +166,8 @@ ReadTrajectory read_trajectory_csv(const std::string& file, const TypeRegistry& 
     }
     std::vector<std::string> fields = {row->fields[0], row->fields[2]};
     for (const std::size_t column : columns) fields.push_back(row->fields[column]);
+    std::erase(fields, "-");
+    if (row->fields[2] == "-") fields.insert(fields.begin() + 1, "-");
     configurations.add(fields, row->line);
     segments.emplace_back(row->fields[1], row->line);
   }

@@ -2,6 +2,7 @@
 #include <locograph/apps/json_file.h>
 #include <locograph/apps/trajectory_file.h>
 #include <locograph/apps/trajectory_parts.h>
+#include <locograph/check/motion_curve.h>
 #include <locograph/common/input_file.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
 
@@ -318,7 +319,8 @@ std::string trajectory_json(const PlanFile& file, const std::filesystem::path& f
   require_motion(file);
   const Robot& robot = *file.plan.robot->robot;
   const Motion motion = motion_of(file.graph, file.plan);
-  const MotionDerivatives rates = derivatives_of(robot, motion);
+  const MotionCurve curve(robot, motion);
+  CurvePoint point;
   const std::map<int, const VertexWrenches*> bearing = wrenches_by_slot(file.graph);
   const int joints = robot.active_joint_count();
   Json names = Json::array(), points = Json::array(), bases = Json::array(),
@@ -326,7 +328,15 @@ std::string trajectory_json(const PlanFile& file, const std::filesystem::path& f
   for (int i = 0; i < joints; ++i) names.push_back(robot.active_joint(i).name);
   for (std::size_t i = 0; i < motion.configurations.size(); ++i) {
     const Eigen::VectorXd& q = motion.configurations[i];
-    const Eigen::VectorXd &velocity = rates.velocities[i], &acceleration = rates.accelerations[i];
+    const int step = static_cast<int>(i);
+    const Eigen::VectorXd& velocity = curve.slope(step);
+    // As the step from there begins; at the end, as the last one ends.
+    Eigen::VectorXd acceleration = Eigen::VectorXd::Zero(robot.tangent_size());
+    if (motion.configurations.size() > 1) {
+      const bool last = i + 1 == motion.configurations.size();
+      curve.step(last ? step - 1 : step).at(last ? 1.0 : 0.0, point);
+      acceleration = point.acceleration;
+    }
     points.push_back({{"positions", numbers_json(q.tail(joints))},
                       {"velocities", numbers_json(velocity.tail(joints))},
                       {"accelerations", numbers_json(acceleration.tail(joints))},
@@ -349,6 +359,11 @@ std::string trajectory_json(const PlanFile& file, const std::filesystem::path& f
   text += list_text("parameters", parameter_lines(file.graph, folder)) + ",\n";
   text += "\"joint_names\": " + names.dump() + ",\n" + list_text("points", points) + ",\n";
   text += "\"time_s\": " + Json(motion.time_s).dump() + ",\n";
+  if (std::ranges::any_of(motion.slopes, [](const auto& slope) { return slope.size() > 0; })) {
+    Json slopes = Json::array();
+    for (const Eigen::VectorXd& slope : motion.slopes) slopes.push_back(numbers_json(slope));
+    text += list_text("slopes", slopes) + ",\n";
+  }
   if (robot.floating_base()) text += list_text("base", bases) + ",\n";
   if (!bearing.empty()) text += list_text("wrenches", wrenches) + ",\n";
   text += list_text("contacts", schedule_json(file)) + ",\n";
@@ -374,6 +389,7 @@ ReadTrajectory read_trajectory_json(const std::string& file, const TypeRegistry&
   const std::vector<std::string> stances = stances_of(json, points.size());
   const auto count = static_cast<std::ptrdiff_t>(points.size());
   const Json* bases = robot.floating_base() ? &json.list("base", count) : nullptr;
+  const Json* slopes = json.has("slopes") ? &json.list("slopes", count) : nullptr;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::string index = std::to_string(i);
     std::vector<double> values;
@@ -394,6 +410,16 @@ ReadTrajectory read_trajectory_json(const std::string& file, const TypeRegistry&
     words.number(times[i]);
     words.word(stances[i]);
     for (const double value : values) words.number(value);
+    if (slopes != nullptr) {
+      const Json& given = (*slopes)[i];
+      const Path path = {"slopes", index};
+      if (!given.is_array()) json.fail(path, "is no list", "a list");
+      if (!given.empty() && std::cmp_not_equal(given.size(), robot.tangent_size())) {
+        json.fail(path, "has " + std::to_string(given.size()) + " numbers",
+                  std::to_string(robot.tangent_size()) + ", or none");
+      }
+      for (const Json& slope : given) words.number(json.number(slope, path));
+    }
     try {
       configurations.add({words.text()}, 0);
     } catch (const Error&) {  // again, now that somebody wants to know the line

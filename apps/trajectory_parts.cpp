@@ -39,13 +39,6 @@ Graph drive_graph(const Graph& read, const Plan& plan) {
   return graph;
 }
 
-Eigen::VectorXd step_of(const Robot& robot, const Motion& motion, std::size_t i) {
-  Eigen::VectorXd step(robot.tangent_size());
-  robot.difference(motion.configurations[i].data(), motion.configurations[i + 1].data(),
-                   step.data());
-  return step / (motion.time_s[i + 1] - motion.time_s[i]);
-}
-
 }  // namespace
 
 void require_motion(const PlanFile& file) {
@@ -76,28 +69,6 @@ std::vector<std::string> parameter_lines(const Graph& graph, const std::filesyst
     lines.push_back(out.text());
   }
   return lines;
-}
-
-MotionDerivatives derivatives_of(const Robot& robot, const Motion& motion) {
-  MotionDerivatives result;
-  const std::size_t count = motion.configurations.size();
-  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(robot.tangent_size());
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool first = i == 0, last = i + 1 == count;
-    const double before_s = first ? 0.0 : motion.time_s[i] - motion.time_s[i - 1];
-    const double after_s = last ? 0.0 : motion.time_s[i + 1] - motion.time_s[i];
-    const Eigen::VectorXd before = first ? rest : step_of(robot, motion, i - 1);
-    const Eigen::VectorXd after = last ? rest : step_of(robot, motion, i);
-    const double both_s = before_s + after_s;
-    if (!(both_s > 0.0)) {  // a posture
-      result.velocities.push_back(rest);
-      result.accelerations.push_back(rest);
-      continue;
-    }
-    result.velocities.push_back((before * after_s + after * before_s) / both_s);
-    result.accelerations.push_back(2.0 * (after - before) / both_s);
-  }
-  return result;
 }
 
 std::vector<int> segment_of_each(const Plan& plan) {

@@ -18,14 +18,6 @@ void require_motion(const PlanFile& file);
 /// The lines of a graph file for its parameters, as far as they say something of configurations.
 std::vector<std::string> parameter_lines(const Graph& graph, const std::filesystem::path& folder);
 
-/// Velocities and accelerations of each configuration, of a motion from rest to rest: tangents and
-/// their derivatives, the base's along its own axes. Those of joints are what the judge sees
-/// (motion_rates.h).
-struct MotionDerivatives {
-  std::vector<Eigen::VectorXd> velocities, accelerations;
-};
-MotionDerivatives derivatives_of(const Robot& robot, const Motion& motion);
-
 /// Of each configuration the segment that it begins or is in; -1 where a plan has none.
 std::vector<int> segment_of_each(const Plan& plan);
 
@@ -41,8 +33,8 @@ class ConfigurationReader {
   ConfigurationReader(Graph& graph, std::string file);
 
   const Robot& robot() const { return *robot_->robot; }
-  /// time, stance (`-`: not known), base and joints: fields of a VERTEX_CONFIGURATION behind the
-  /// number of its robot. line: for errors. Times must increase.
+  /// time, stance (`-`: not known), base, joints and slopes: fields of a VERTEX_CONFIGURATION after
+  /// the number of its robot. line: for errors. Times must increase.
   void add(const std::vector<std::string>& fields, int line);
 
  private:

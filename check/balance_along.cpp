@@ -15,7 +15,6 @@ constexpr std::size_t kPiece = 32;
 
 BalanceAlong::BalanceAlong(CheckContext& context)
     : context_(context),
-      rates_(context),
       found_(context.vertices()),
       static_balance_("static_balance", "1", context.options.min_balance_margin, Worse::kLower,
                       context.vertices(), limits::kBalanceRounding),
@@ -31,7 +30,7 @@ void BalanceAlong::run(ThreadPool& threads) {
     threads.run(threads.size(), [&](int thread) {
       std::unique_ptr<BalanceWorker>& worker = workers_[static_cast<std::size_t>(thread)];
       for (std::size_t piece; (piece = next++) < count;) {
-        if (worker == nullptr) worker = std::make_unique<BalanceWorker>(context_, rates_);
+        if (worker == nullptr) worker = std::make_unique<BalanceWorker>(context_);
         judge(*worker, piece * kPiece);
       }
     });

@@ -12,6 +12,9 @@ constexpr double kFall = 10.0;  // of a margin, per metre
 /// than what a tally counts as equal.
 constexpr double kNear = 1e-6;
 constexpr int kTries = 4;  // wrenches found nearby
+/// Long steps are looked at so often, as what inertia asks for bends within them.
+constexpr double kLookEvery_s = 0.05;
+constexpr int kMostPieces = 64;
 
 /// How far apart the farthest two corners are along the narrowest of both axes, halved; of a line,
 /// half its length.
@@ -37,11 +40,8 @@ void BalanceFindings::Extremes::add(const BalanceFinding& finding) {
     torque_ratio = std::max(torque_ratio, finding.certificate.max_torque_ratio);
 }
 
-BalanceWorker::BalanceWorker(CheckContext& context, const MotionRates& rates)
-    : context_(context),
-      rates_(rates),
-      sampler_(context.robot, context.motion),
-      nearby_(context.robot) {
+BalanceWorker::BalanceWorker(CheckContext& context)
+    : context_(context), sampler_(context.curve), nearby_(context.robot) {
   if (context.shapes != nullptr) shapes_ = *context.shapes;
 }
 
@@ -65,12 +65,26 @@ void BalanceWorker::judge_vertices(std::size_t first, std::size_t last, BalanceF
     const JudgedStance* before = i == 0 ? nullptr : context_.stance_from(vertex - 1);
     const JudgedStance* after = context_.stance_from(vertex);
     std::array<double, 2>& margins = found.margins[i];
+    BalanceFindings::List* findings = &found.at_vertices[i];
     StanceWrenches* wrenches = context_.options.on_balance ? &found.wrenches[i] : nullptr;
-    if (before != nullptr && before != after)
-      margins[0] = judge({.vertex = vertex, .stance = before}, &found.at_vertices[i]);
-    if (after != nullptr)
-      margins[1] = judge({.vertex = vertex, .stance = after}, &found.at_vertices[i], wrenches);
-    if (before == after) margins[0] = margins[1];
+    const bool arrives = i > 0 && context_.usable.steps[i - 1], goes_on = context_.usable.steps[i];
+    const bool last_of_part =
+        i + 1 == context_.vertices() && arrives && !context_.options.ends_at_rest;
+    // As the step before ends, as the one after begins, and at rest where there is none.
+    const Spot at_rest{.vertex = vertex, .at_rest = true, .stance = after};
+    const Spot end{.vertex = vertex - 1, .fraction = 1.0, .stance = before};
+    if (before != nullptr && (arrives || before != after)) {
+      margins[0] = judge(arrives ? end : Spot{.vertex = vertex, .at_rest = true, .stance = before},
+                         findings);
+    }
+    if (after != nullptr) {
+      Spot begin = goes_on ? Spot{.vertex = vertex, .stance = after} : at_rest;
+      if (last_of_part) begin = Spot{.vertex = vertex - 1, .fraction = 1.0, .stance = after};
+      const bool again = last_of_part && before == after;
+      if (!again || wrenches != nullptr) margins[1] = judge(begin, findings, wrenches);
+      if (i == 0 && goes_on && context_.options.starts_at_rest) judge(at_rest, findings);
+    }
+    if (before == after && !arrives) margins[0] = margins[1];
     found.half_m[i] = smallest_half_m_;
   }
 }
@@ -86,10 +100,8 @@ void BalanceWorker::judge_steps(std::size_t first, std::size_t last, BalanceFind
     smallest_half_m_ = found.smallest_half_m;
     violated_ = std::ranges::any_of(
         found.at_vertices[i], [&](const BalanceFinding& finding) { return violates(finding); });
-    shapes_->set_step(configuration_step(context_.robot, context_.motion.configurations[i],
-                                         context_.motion.configurations[i + 1]));
-    judge_half({static_cast<int>(i), 0.0, Half::kFirst, stance}, found.margins[i][1]);
-    judge_half({static_cast<int>(i), 0.5, Half::kSecond, stance}, found.margins[i + 1][0]);
+    judge_step({.vertex = static_cast<int>(i), .stance = stance}, found.margins[i][1],
+               found.margins[i + 1][0]);
   }
 }
 
@@ -124,9 +136,10 @@ BalanceOptions BalanceWorker::options_for(const Spot& spot) {
     options.areas.push_back(std::move(support.area));
     contacts_.push_back(std::move(contact));
   }
-  if (context_.moves())
-    options.motion = spot.half ? rates_.at(spot.vertex, spot.fraction, *spot.half, sampler_.state())
-                               : rates_.at(spot.vertex, sampler_.state());
+  if (!spot.at_rest) {
+    context_.curve.step(spot.vertex).at(spot.fraction, point_);
+    options.motion = BalanceMotion{point_.velocity, point_.acceleration};
+  }
   return options;
 }
 
@@ -135,7 +148,7 @@ double BalanceWorker::judge(const Spot& spot, BalanceFindings::List* findings,
   context_.go_on("judging balance", spot.vertex);
   sampler_.link_poses(spot.vertex, spot.fraction, poses_);
   BalanceOptions options = options_for(spot);
-  bool torques = !spot.half;
+  bool torques = spot.at_rest || spot.fraction == 0.0 || spot.fraction == 1.0;
   // Of motions the least torques are told, at vertices; of a posture those of its wrenches.
   options.least_torques = torques && (!context_.single || !options.enforce_torque_limits);
   if (prove_nearby_ && !context_.single) {
@@ -199,44 +212,57 @@ BalanceFinding BalanceWorker::programme(const Spot& spot, BalanceOptions options
   }
   return {.certificate = std::move(certificate),
           .stance = spot.stance,
-          .vertex = spot.vertex,
-          .time_s = sampler_.time_s(spot.vertex, spot.fraction),
+          .vertex = spot.fraction == 1.0 ? spot.vertex + 1 : spot.vertex,
+          .time_s = context_.curve.time_s(spot.vertex, spot.fraction),
           .place = poses_[0].translation(),
           .torques = torques};
 }
 
-BalanceWorker::Sample BalanceWorker::sample(const Spot& spot) {
-  Sample sample{spot.fraction, judge(spot, findings_), {}};
-  const RobotState& state = sampler_.state();
-  const Eigen::Vector3d com = state.center_of_mass();
+std::vector<Eigen::Vector3d> BalanceWorker::arms(const Spot& spot) {
+  sampler_.link_poses(spot.vertex, spot.fraction, poses_);
+  std::vector<Eigen::Vector3d> arms;
+  const Eigen::Vector3d com = sampler_.state().center_of_mass();
   const Eigen::Matrix3d base_from_world = poses_[0].linear().transpose();
   for (const JudgedContact& contact : spot.stance->contacts)
-    sample.arms.push_back(base_from_world * (touching_point(contact, poses_) - com));
-  sample.arms.push_back(base_from_world.col(2));
-  return sample;
+    arms.push_back(base_from_world * (touching_point(contact, poses_) - com));
+  arms.push_back(base_from_world.col(2));
+  return arms;
 }
 
-void BalanceWorker::judge_half(const Spot& half, double margin_at_vertex) {
-  const Motion& motion = context_.motion;
-  const std::size_t step = static_cast<std::size_t>(half.vertex);
-  const ConfigurationStep change = configuration_step(context_.robot, motion.configurations[step],
-                                                      motion.configurations[step + 1]);
+BalanceWorker::Sample BalanceWorker::sample(const Spot& spot) {
+  const double margin = judge(spot, findings_);
+  return {spot.fraction, margin, arms(spot)};
+}
+
+void BalanceWorker::judge_step(const Spot& begin, double margin_from, double margin_to) {
+  const CurveStep step = context_.curve.step(begin.vertex);
+  const StepBounds bounds = step.bounds();
+  shapes_->set_step(bounds);
+  const int pieces = std::clamp(
+      static_cast<int>(std::min(std::ceil(step.duration_s() / kLookEvery_s), 1e6)), 1, kMostPieces);
+  Spot end = begin;
+  end.fraction = 1.0;
   // Where the base and what hangs on it move as one, or wheels turn about their axles, contacts
   // stay where they are as seen from the centre of mass.
   LinkPoses from, to;
-  sampler_.link_poses(half.vertex, half.fraction, from);
-  sampler_.link_poses(half.vertex, half.fraction + 0.5, to);
-  const double tilt =
-      (from[0].linear().row(2) - to[0].linear().row(2)).norm() + 0.1 * change.base_angle_rad;
+  sampler_.link_poses(begin.vertex, 0.0, from);
+  sampler_.link_poses(begin.vertex, 1.0, to);
+  const double tilt = (from[0].linear().row(2) - to[0].linear().row(2)).norm() +
+                      0.1 * bounds.base_angle_rad + 0.25 * bounds.base_bend_rad;
   const double path = shapes_->step_length_bound_in_base() + tilt;
-  if (margin_at_vertex - path * steepest_fall() >= context_.options.min_balance_margin) return;
-  Spot end = half;
-  end.fraction += 0.5;
-  const Sample first = sample(half);
-  refine(half, first, sample(end));
+  const double enough = context_.options.min_balance_margin + path * steepest_fall();
+  if (pieces == 1 && std::min(margin_from, margin_to) >= enough) return;
+  Sample here{0.0, margin_from, arms(begin)};
+  for (int piece = 1; piece <= pieces; ++piece) {
+    Spot spot = begin;
+    spot.fraction = static_cast<double>(piece) / pieces;
+    Sample there = piece == pieces ? Sample{1.0, margin_to, arms(end)} : sample(spot);
+    refine(begin, here, there);
+    here = std::move(there);
+  }
 }
 
-void BalanceWorker::refine(const Spot& half, const Sample& from, const Sample& to) {
+void BalanceWorker::refine(const Spot& begin, const Sample& from, const Sample& to) {
   double chord = 0.0;
   for (std::size_t i = 0; i < from.arms.size(); ++i)
     chord = std::max(chord, (from.arms[i] - to.arms[i]).norm());
@@ -245,12 +271,12 @@ void BalanceWorker::refine(const Spot& half, const Sample& from, const Sample& t
   if (0.5 * (from.margin + to.margin - path * steepest_fall()) >=
       context_.options.min_balance_margin)
     return;
-  Spot spot = half;
+  Spot spot = begin;
   spot.fraction = 0.5 * (from.fraction + to.fraction);
   if (spot.fraction <= from.fraction || spot.fraction >= to.fraction) return;
   const Sample between = sample(spot);
-  refine(half, from, between);
-  refine(half, between, to);
+  refine(begin, from, between);
+  refine(begin, between, to);
 }
 
 }  // namespace locograph

@@ -2,13 +2,12 @@
 /// What one thread needs to judge balance at vertices and in steps of a motion, see
 /// balance_along.h.
 ///
-///     BalanceWorker worker(context, rates);
+///     BalanceWorker worker(context);
 ///     worker.judge_vertices(17, 32, found);  // writes only what is of these
 ///     worker.judge_steps(16, 32, found);     // once all vertices are judged
 
 #include <locograph/check/balance_certificate.h>
 #include <locograph/check/check_context.h>
-#include <locograph/check/motion_rates.h>
 #include <locograph/check/nearby_balance.h>
 
 #include <array>
@@ -50,8 +49,8 @@ struct BalanceFindings {
   using List = std::list<BalanceFinding>;  // whose entries stay where they are
 
   std::vector<List> at_vertices, in_steps;
-  /// At each vertex on the stances of the steps before and after it; lower bounds where no
-  /// programme was needed.
+  /// At each vertex as the step before it ends and as the one after it begins; lower bounds where
+  /// no programme was needed.
   std::vector<std::array<double, 2>> margins;
   /// At each vertex, of the stance of the step after it, where they are asked for.
   std::vector<StanceWrenches> wrenches;
@@ -63,7 +62,7 @@ struct BalanceFindings {
 
 class BalanceWorker {
  public:
-  BalanceWorker(CheckContext& context, const MotionRates& rates);
+  explicit BalanceWorker(CheckContext& context);
 
   /// Vertices from first to before last, with wrenches found at one before and at `last`. What is
   /// found is added, also where it is already known: beyond `found.known` it goes by that only.
@@ -72,7 +71,6 @@ class BalanceWorker {
   void judge_steps(std::size_t first, std::size_t last, BalanceFindings& found);
 
  private:
-  using Half = MotionRates::Half;
   struct Sample {
     double fraction = 0.0;
     double margin = 0.0;                // or a lower bound of it
@@ -80,8 +78,8 @@ class BalanceWorker {
   };
   struct Spot {
     int vertex = 0;
-    double fraction = 0.0;
-    std::optional<Half> half = {};  // of the step from the vertex; none: at it
+    double fraction = 0.0;  // of the step from the vertex
+    bool at_rest = false;   // there, whatever the curve says
     const JudgedStance* stance = nullptr;
   };
 
@@ -94,14 +92,15 @@ class BalanceWorker {
   bool violates(const BalanceFinding& finding) const;
   BalanceFinding programme(const Spot& spot, BalanceOptions options, bool torques);
   BalanceOptions options_for(const Spot& spot);
-  void judge_half(const Spot& half, double margin_at_vertex);
+  void judge_step(const Spot& begin, double margin_from, double margin_to);
+  std::vector<Eigen::Vector3d> arms(const Spot& spot);
   Sample sample(const Spot& spot);
-  void refine(const Spot& half, const Sample& from, const Sample& to);
+  void refine(const Spot& begin, const Sample& from, const Sample& to);
   double steepest_fall() const;
 
   CheckContext& context_;
-  const MotionRates& rates_;
   MotionSampler sampler_;
+  CurvePoint point_;
   std::optional<MovingShapes> shapes_;
   LinkPoses poses_;
   NearbyBalance nearby_;

@@ -1,7 +1,7 @@
 #pragma once
 /// What the rooms of the judge share while one motion is checked.
 ///
-///     CheckContext context{robot, world, exact, motion, options, &shapes, sampler, job};
+///     CheckContext context{robot, world, exact, motion, options, &shapes, curve, job};
 ///     for (const Stance& stance : motion.stances)
 ///       context.stances.emplace_back(robot, world, stance, options.known);
 ///     for (std::size_t i = 0; i < context.vertices(); ++i)
@@ -9,7 +9,7 @@
 
 #include <locograph/check/check_report.h>
 #include <locograph/check/judged_stance.h>
-#include <locograph/check/motion.h>
+#include <locograph/check/motion_curve.h>
 #include <locograph/check/moving_shapes.h>
 #include <locograph/common/job_control.h>
 #include <locograph/world/collision_world.h>
@@ -36,7 +36,7 @@ struct CheckContext {
   const Motion& motion;
   const CheckOptions& options;
   MovingShapes* shapes;  ///< null for a single configuration
-  MotionSampler& sampler;
+  const MotionCurve& curve;
   const JobControl& job;
   double cutoff_m = 0.5;  ///< of distances
   bool single = false;    ///< one configuration, not a motion

@@ -69,7 +69,13 @@ std::string violation_text(const Violation& v) {
 
 const Violation& CheckReport::worst() const {
   const std::vector<const Violation*> all = violated();
-  return all.empty() ? violations.front() : *all.front();
+  if (!all.empty()) return *all.front();
+  // Without a violation it is one of these that was required and not judged.
+  for (const Violation& v : violations)
+    if (!feasible && !v.judged &&
+        (v.constraint == "obstacle_distance" || v.constraint == "static_balance"))
+      return v;
+  return violations.front();
 }
 
 std::vector<const Violation*> CheckReport::violated() const {

@@ -56,8 +56,8 @@ struct CheckOptions {
   bool certify_only_if_rest_holds = false;
 
   /// Sampling between vertices, for everything but distances: no point of a collision shape moves
-  /// more than max_step_m from one sample to the next, and neither base nor joints turn more than
-  /// max_step_rad (a wheel about its own axle: 0.25).
+  /// more than max_step_m from one sample to the next, or 0.1 mm from the chord between them, and
+  /// neither base nor joints turn more than max_step_rad (a wheel about its own axle: 0.25).
   double max_step_m = 0.01;
   double max_step_rad = std::numbers::pi / 180.0;
   /// A step between vertices that would need more samples than this violates `step_size`; nothing
@@ -144,7 +144,7 @@ struct CheckReport {
   double geometry_s = 0.0, balance_s = 0.0;  ///< what the check took
 
   /// The one that is violated most, by its unit: 0.01 m, 0.1 rad and 0.1 of a ratio count alike.
-  /// Where all hold, the first.
+  /// Where none is, what was required and not judged; where all hold, the first.
   const Violation& worst() const;
   /// Those that are violated, the worst first by the same measure.
   std::vector<const Violation*> violated() const;

@@ -1,6 +1,8 @@
 #include <locograph/check/clearance_search.h>
+#include <locograph/check/limits.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace locograph {
 namespace {
@@ -9,30 +11,24 @@ namespace {
 /// by as much before an interval has to be halved.
 constexpr double kFurther_m = 0.25;
 
-/// The motion, and the robot standing on at its end while obstacles still move.
-std::optional<Motion> with_standing(const CheckContext& context) {
-  const std::optional<double>& until = context.options.until_s;
-  if (!until || !context.usable.vertices.back() || context.motion.stances_only ||
-      context.shapes == nullptr || !(*until > context.motion.time_s.back()))
-    return std::nullopt;
-  Motion motion;
-  motion.time_s = context.motion.time_s;
-  motion.configurations = context.motion.configurations;
-  motion.time_s.push_back(*until);
-  motion.configurations.push_back(motion.configurations.back());
-  return motion;
+/// One of the stance's contacts, or of its grasps, is of these links.
+bool holds(const JudgedStance* stance, const std::vector<int>& links, bool grasps = false) {
+  return stance != nullptr &&
+         std::ranges::any_of(stance->contacts, [&](const JudgedContact& contact) {
+           return (contact.is_grasp() || !grasps) &&
+                  std::ranges::find(links, contact.link) != links.end();
+         });
 }
 
 }  // namespace
 
 ClearanceSearch::ClearanceSearch(CheckContext& context)
     : context_(context),
-      standing_(with_standing(context)),
-      sampler_(context.robot, standing_ ? *standing_ : context.motion),
+      sampler_(context.curve),
       obstacle_path_(context.world.obstacles),
-      way_s_(context.motion.stances_only && context.shapes != nullptr ? obstacle_path_.end_s()
-                                                                      : 0.0),
-      further_m_(context.moves() || standing_ || way_s_ > 0.0 ? kFurther_m : 0.0) {
+      further_m_(context.moves() || (context.shapes != nullptr && obstacle_path_.end_s() > 0.0)
+                     ? kFurther_m
+                     : 0.0) {
   if (context.shapes != nullptr) shapes_ = *context.shapes;
 }
 
@@ -55,11 +51,10 @@ void ClearanceSearch::add(std::size_t channel, CollisionWorld::Closest closest, 
 
 ClearanceSearch::Sample ClearanceSearch::sample(int vertex, double fraction,
                                                 const JudgedStance* stance) {
-  context_.go_on(self_ ? "judging self-collisions" : "judging distances",
-                 std::min(vertex, int(context_.vertices())));
+  context_.go_on(self_ ? "judging self-collisions" : "judging distances", vertex);
   Sample sample;
   sample.fraction = fraction;
-  sampler_.link_poses(vertex, way_s_ > 0.0 ? 0.0 : fraction, sample.world_from_link);
+  sampler_.link_poses(vertex, standing_ ? 0.0 : fraction, sample.world_from_link);
   const double time_s = this->time_s(vertex, fraction);
   ++samples_;
   if (self_) {
@@ -70,8 +65,8 @@ ClearanceSearch::Sample ClearanceSearch::sample(int vertex, double fraction,
     return sample;
   }
   std::vector<CollisionWorld::Touch> touches;
-  if (stance != nullptr) touches = stance->touches(sample.world_from_link);
-  if (context_.motion.stances_only) add_grasps(vertex, stance, sample.world_from_link, touches);
+  if (stance != nullptr) touches = stance->touches(context_.world, sample.world_from_link);
+  add_changing(vertex, fraction, stance, sample.world_from_link, touches);
   CollisionWorld::Query query{.world_from_link = sample.world_from_link,
                               .time_s = time_s,
                               .touches = touches,
@@ -86,17 +81,29 @@ ClearanceSearch::Sample ClearanceSearch::sample(int vertex, double fraction,
   return sample;
 }
 
-void ClearanceSearch::add_grasps(int vertex, const JudgedStance* stance, const LinkPoses& poses,
-                                 std::vector<CollisionWorld::Touch>& touches) const {
-  for (const JudgedStance* other : context_.stances_at(vertex)) {
-    if (other == stance) continue;
-    const std::vector<CollisionWorld::Touch> there = other->touches(poses);
-    for (std::size_t i = 0; i < there.size(); ++i) {
-      const JudgedContact& hand = other->contacts[i];
-      const bool held = stance != nullptr &&
-                        std::ranges::find(stance->contacts, hand.body, &JudgedContact::body) !=
-                            stance->contacts.end();
-      if (hand.is_grasp() && !hand.bars.empty() && !held) touches.push_back(there[i]);
+int ClearanceSearch::step_of(int vertex, const JudgedStance* stance) const {
+  // The end of a step is looked at with the step's stance.
+  return vertex > 0 && stance != context_.stance_from(vertex) ? vertex - 1 : vertex;
+}
+
+void ClearanceSearch::add_changing(int vertex, double fraction, const JudgedStance* stance,
+                                   const LinkPoses& poses,
+                                   std::vector<CollisionWorld::Touch>& touches) const {
+  const int at = step_of(vertex, stance);
+  const std::size_t step = std::size_t(at);
+  const int next = at < vertex || fraction >= 0.5 ? at + 1 : at - 1;
+  const JudgedStance* around[] = {leaves_[step] ? before_[step] : nullptr,
+                                  arrives_[step] ? after_[step] : nullptr};
+  for (const JudgedStance* other : around) {
+    if (other == nullptr) continue;
+    for (CollisionWorld::Touch& touch : other->touches(context_.world, poses)) {
+      if (holds(stance, touch.links)) continue;
+      // In a plan of stances a hand that takes or leaves a bar is closed round it.
+      const bool takes = context_.motion.stances_only && next >= 0 &&
+                         next < int(context_.vertices()) && other == context_.stance_from(next);
+      const bool is_grasp = !touch.bars.empty() && holds(other, touch.links, true);
+      touch.barely = touch.barely || !(takes && is_grasp);
+      touches.push_back(std::move(touch));
     }
   }
 }
@@ -104,13 +111,12 @@ void ClearanceSearch::add_grasps(int vertex, const JudgedStance* stance, const L
 void ClearanceSearch::keep_from_surfaces(int vertex, const JudgedStance* stance,
                                          CollisionWorld::Query query,
                                          CollisionWorld::Closest& nearest) const {
-  // The end of a step is looked at with the step's stance.
-  const bool ends_step = vertex > 0 && stance != context_.stance_from(vertex);
-  const std::size_t from = std::size_t(ends_step ? vertex - 1 : vertex);
+  const std::size_t from = std::size_t(step_of(vertex, stance));
   std::vector<CollisionWorld::Touch> touches(query.touches.begin(), query.touches.end());
   for (const JudgedStance* other : {before_[from], after_[from]}) {
     if (other == nullptr) continue;
-    const std::vector<CollisionWorld::Touch> more = other->touches(query.world_from_link);
+    const std::vector<CollisionWorld::Touch> more =
+        other->touches(context_.world, query.world_from_link);
     touches.insert(touches.end(), more.begin(), more.end());
   }
   query.touches = touches;
@@ -130,6 +136,25 @@ void ClearanceSearch::find_stances_around() {
   for (std::size_t i = vertices; i-- > 1;) {
     after_[i - 1] = stance(i) == stance(i - 1) ? after_[i] : stance(i);
   }
+  leaves_.assign(vertices, true);
+  arrives_.assign(vertices, true);
+  for (std::size_t i = 1; i < vertices; ++i) {
+    if (stance(i) == stance(i - 1)) leaves_[i] = leaves_[i - 1] && is_near(before_[i], int(i));
+  }
+  for (std::size_t i = vertices; i-- > 1;) {
+    if (stance(i) == stance(i - 1)) arrives_[i - 1] = arrives_[i] && is_near(after_[i], int(i));
+  }
+}
+
+bool ClearanceSearch::is_near(const JudgedStance* other, int vertex) {
+  if (other == nullptr || !context_.usable.vertices[std::size_t(vertex)]) return false;
+  const JudgedStance* stance = context_.stance_from(vertex);
+  LinkPoses poses;
+  sampler_.link_poses(vertex, 0.0, poses);
+  return std::ranges::any_of(other->contacts, [&](const JudgedContact& contact) {
+    const Eigen::Vector3d off = touching_point(contact, poses) - contact.contact.position;
+    return !holds(stance, contact.links) && std::abs(contact.normal.dot(off)) <= limits::kClosed_m;
+  });
 }
 
 double ClearanceSearch::path_bound(int step, const Sample& from, const Sample& to,
@@ -168,10 +193,13 @@ void ClearanceSearch::refine(int step, const JudgedStance* stance, const Sample&
 
 void ClearanceSearch::run_step(int step, const JudgedStance* stance, const Sample& from,
                                const Sample& to) {
-  const std::vector<Eigen::VectorXd>& configurations =
-      standing_ ? standing_->configurations : context_.motion.configurations;
-  shapes_->set_step(configuration_step(context_.robot, configurations[std::size_t(step)],
-                                       configurations[std::size_t(step) + 1]));
+  if (standing_) {
+    StepBounds still;
+    still.joints = still.joint_bends = Eigen::VectorXd::Zero(context_.robot.active_joint_count());
+    shapes_->set_step(still);
+  } else {
+    shapes_->set_step(context_.curve.step(step).bounds());
+  }
   if (!self_) channels_[2].links = stance == nullptr ? nullptr : &stance->touching;
   Sample begin = from, end = to;
   begin.fraction = 0.0;
@@ -179,11 +207,16 @@ void ClearanceSearch::run_step(int step, const JudgedStance* stance, const Sampl
   refine(step, stance, begin, end);
 }
 
-void ClearanceSearch::run_way(int vertex, const JudgedStance* stance, const Sample& from) {
-  const Eigen::VectorXd& held = context_.motion.configurations[std::size_t(vertex)];
-  shapes_->set_step(configuration_step(context_.robot, held, held));
-  const Sample to = sample(vertex, 1.0, stance);
-  refine(vertex, stance, from, to);
+void ClearanceSearch::stand(int vertex, const JudgedStance* stance, double from_s, double to_s) {
+  // By then each obstacle has been wherever it gets to, from then on.
+  to_s = std::min(to_s, from_s + obstacle_path_.end_s());
+  if (!shapes_ || !(to_s > from_s)) return;
+  standing_ = true;
+  from_s_ = from_s;
+  to_s_ = to_s;
+  const Sample from = sample(vertex, 0.0, stance);
+  run_step(vertex, stance, from, sample(vertex, 1.0, stance));
+  standing_ = false;
 }
 
 void ClearanceSearch::run_around(ViolationTally& obstacle, ViolationTally& surface,
@@ -192,7 +225,7 @@ void ClearanceSearch::run_around(ViolationTally& obstacle, ViolationTally& surfa
   const World& world = context_.world;
   channels_ = {{&obstacle, 1.0, true}, {&surface, -1.0, false}, {&touching, -1.0, false}};
   keeps_from_surfaces_ = context_.options.min_clearance_m > 0.0 && has_places(world);
-  if (keeps_from_surfaces_) find_stances_around();
+  find_stances_around();
   channels_[0].exists = world.map != nullptr || !world.obstacles.empty() || keeps_from_surfaces_;
   const std::size_t vertices = context_.vertices();
   const JudgedStance* stance = nullptr;
@@ -205,20 +238,24 @@ void ClearanceSearch::run_around(ViolationTally& obstacle, ViolationTally& surfa
       continue;
     }
     const JudgedStance* next = context_.stance_from(vertex);
+    if (context_.motion.stances_only) {
+      stand(vertex, next, 0.0, obstacle_path_.end_s());
+    } else if (i == 0 && context_.options.starts_at_rest) {
+      stand(vertex, next, 0.0, context_.motion.time_s[i]);
+    }
     if (!sampled || next != stance) here = sample(vertex, 0.0, next);
     stance = next;
-    if (way_s_ > 0.0) run_way(vertex, stance, here);
-    if (i + 1 == vertices) break;
+    if (i + 1 == vertices) {
+      if (context_.options.until_s && !context_.motion.stances_only)
+        stand(vertex, stance, context_.motion.time_s[i], *context_.options.until_s);
+      break;
+    }
     if (!context_.usable.vertices[i + 1]) continue;
     // The next vertex as the end of this step; there it is looked at with this step's stance.
     Sample there = sample(vertex + 1, 0.0, stance);
     if (context_.usable.steps[i]) run_step(vertex, stance, here, there);
     here = std::move(there);
     sampled = true;
-  }
-  if (standing_) {
-    const int last = int(vertices) - 1;
-    run_step(last, stance, here, sample(last, 1.0, stance));
   }
 }
 

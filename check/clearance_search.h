@@ -12,16 +12,20 @@
 /// violation, and for a new smallest distance to obstacles and of the robot to itself.
 ///
 /// What a link may touch is what the stance of the step says, at a vertex the stances on both
-/// sides. In a plan of stances a grasp that begins or ends at a vertex is closed there: its hand
-/// touches what it holds in both stances, as deep as a hand may. Tallies get depths as positive
-/// numbers.
+/// sides. Links of a contact that has opened and has been in its plane at every vertex since, and
+/// of one that closes and stays in it until then, may be 0.1 mm in that plane, and those of a
+/// contact in what is in its plane beside its area. In a plan of stances a grasp that begins or
+/// ends at a vertex is closed there: its hand touches what it holds in both stances, as deep as a
+/// hand may. Tallies get depths as positive numbers.
 ///
 /// Where a clearance is asked for (CheckOptions::min_clearance_m), the distance to obstacles counts
 /// surfaces, bars and solids, too, but for what a link touches in this stance, the one before or
 /// the one after: it has to leave it and to get there.
 ///
-/// Nobody knows when a plan of stances is carried out: obstacles that move are looked at all along
-/// their way, as if each configuration was held for as long.
+/// Until the first time of a motion the robot stands in its first configuration, after the last one
+/// in the last until CheckOptions::until_s: obstacles that move are looked at all along their way,
+/// once round where they repeat it. Nobody knows when a plan of stances is carried out: they are
+/// looked at likewise in each configuration.
 
 #include <locograph/check/check_context.h>
 #include <locograph/check/obstacle_path.h>
@@ -62,35 +66,43 @@ class ClearanceSearch {
 
   Sample sample(int vertex, double fraction, const JudgedStance* stance);
   void add(std::size_t channel, CollisionWorld::Closest closest, int vertex, double time_s);
-  /// What hands hold that close or open here, in the other one of a vertex's stances.
-  void add_grasps(int vertex, const JudgedStance* stance, const LinkPoses& poses,
-                  std::vector<CollisionWorld::Touch>& touches) const;
+  /// The step that is looked at, at the vertex that it begins with or ends at.
+  int step_of(int vertex, const JudgedStance* stance) const;
+  /// What has opened and has not left its plane yet, and what closes and does not leave it any
+  /// more.
+  void add_changing(int vertex, double fraction, const JudgedStance* stance, const LinkPoses& poses,
+                    std::vector<CollisionWorld::Touch>& touches) const;
   /// `nearest` becomes what links are to keep away from of surfaces, bars and solids, if that is
   /// nearer.
   void keep_from_surfaces(int vertex, const JudgedStance* stance, CollisionWorld::Query query,
                           CollisionWorld::Closest& nearest) const;
   void find_stances_around();
+  /// A contact of another stance that is not held at a vertex is in its plane there.
+  bool is_near(const JudgedStance* other, int vertex);
   void run_step(int step, const JudgedStance* stance, const Sample& from, const Sample& to);
   void refine(int step, const JudgedStance* stance, const Sample& from, const Sample& to);
-  /// All along the way of the obstacles, in the configuration of a vertex, from where they begin.
-  void run_way(int vertex, const JudgedStance* stance, const Sample& from);
+  /// In the configuration of a vertex, while obstacles move.
+  void stand(int vertex, const JudgedStance* stance, double from_s, double to_s);
   double time_s(int step, double fraction) const {
-    return way_s_ > 0.0 ? fraction * way_s_ : sampler_.time_s(step, fraction);
+    return standing_ ? from_s_ + fraction * (to_s_ - from_s_)
+                     : context_.curve.time_s(step, fraction);
   }
   double path_bound(int step, const Sample& from, const Sample& to, const Channel& channel) const;
 
   CheckContext& context_;
-  // The motion, and standing on after the last vertex until CheckOptions::until_s.
-  std::optional<Motion> standing_;
   MotionSampler sampler_;
   std::optional<MovingShapes> shapes_;
   ObstaclePath obstacle_path_;
-  double way_s_;  // what fractions are of in a plan of stances where something moves; else 0
+  bool standing_ = false;  // fractions are of the time between these
+  double from_s_ = 0.0, to_s_ = 0.0;
   double further_m_;
   std::vector<Channel> channels_;
   bool keeps_from_surfaces_ = false;
   // Of each vertex: the other stances next to the one from there on; null: none.
   std::vector<const JudgedStance*> before_, after_;
+  // Of each step: a contact of the stance before has not left its plane, one of the stance after
+  // is in its plane to the end.
+  std::vector<bool> leaves_, arrives_;
   bool self_ = false;
   int samples_ = 0;
 };

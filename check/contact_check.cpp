@@ -109,7 +109,7 @@ ContactCheck::ContactCheck(CheckContext& context)
 
 void ContactCheck::run() {
   const Motion& motion = context_.motion;
-  MotionSampler& sampler = context_.sampler;
+  MotionSampler sampler(context_.curve);
   LinkPoses poses, before;
   for (std::size_t i = 0; i < context_.vertices(); ++i) {
     const int vertex = int(i);
@@ -139,7 +139,8 @@ void ContactCheck::run() {
       const double fraction = double(k) / samples;
       std::swap(before, poses);
       sampler.link_poses(vertex, fraction, poses);
-      const Sample now{vertex, sampler.time_s(vertex, fraction), poses, sampler.configuration()};
+      const Sample now{vertex, context_.curve.time_s(vertex, fraction), poses,
+                       sampler.configuration()};
       if (k < samples) {
         ++context_.samples;
         check_between(now);

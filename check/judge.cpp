@@ -7,6 +7,7 @@
 #include <locograph/common/deadline.h>
 #include <locograph/common/error.h>
 #include <locograph/common/thread_pool.h>
+#include <locograph/robots/names.h>
 
 #include <algorithm>
 
@@ -82,13 +83,15 @@ class Check {
 
     // Whatever else is not judged cannot be, of such a motion, or something is violated.
     const bool balance_required = context_.robot.floating_base();
-    report.feasible = holds(report.violations) &&
+    report.feasible = holds(report.violations) && has_shapes_ &&
                       (!balance_required || report.constraint("static_balance").judged);
     report.configurations = int(vertices_);
     report.samples = context_.samples + around.samples() + self.samples();
     report.trusted = trusted();
-    if (!obstacle_distance_.empty()) report.min_clearance_m = obstacle_distance_.worst();
-    if (!self_collision_.empty()) report.min_self_clearance_m = self_collision_.worst();
+    if (has_shapes_ && !obstacle_distance_.empty())
+      report.min_clearance_m = obstacle_distance_.worst();
+    if (has_shapes_ && !self_collision_.empty())
+      report.min_self_clearance_m = self_collision_.worst();
     report.min_balance_margin = balance.min_margin();
     report.max_torque_ratio = balance.max_torque_ratio();
     report.max_velocity_ratio = numbers.max_velocity_ratio();
@@ -131,6 +134,12 @@ class Check {
         has_places(context_.world) ? no_vertex : "the world has no surfaces"));
     violations.push_back(touching_depth_.result("no contact is known"));
     violations.push_back(self_collision_.result(no_vertex));
+    if (has_shapes_) return;
+    for (auto v = violations.end() - 4; v != violations.end(); ++v) {
+      v->judged = v->violated = false;
+      v->count = 0;
+      v->why_not = "no link of the robot has a collision shape";
+    }
   }
 
   /// Each once, in the order of the stances.
@@ -147,11 +156,17 @@ class Check {
           add(contact.name() + ": that there is a " + (contact.is_grasp() ? "bar" : "surface"));
       }
     }
+    const std::vector<std::string> shapeless = context_.robot.links_without_collision();
+    if (!shapeless.empty() && has_shapes_)
+      add(listed_names(shapeless) + ": that " +
+          (shapeless.size() > 1 ? "they touch nothing" : "it touches nothing") +
+          " (no collision shape)");
     return trusted;
   }
 
   CheckContext& context_;
   std::size_t vertices_;
+  bool has_shapes_ = context_.robot.has_collision_shapes();
   ViolationTally stance_{"stance", "count", 0.0, Worse::kHigher, vertices_};
   ViolationTally claims_{"contact_claims", "count", 0.0, Worse::kHigher, vertices_};
   ViolationTally obstacle_distance_{"obstacle_distance", "m", context_.options.min_clearance_m,
@@ -184,7 +199,7 @@ struct Judge::Parts {
     require_whole(motion);
     std::optional<MovingShapes> moving;  // it keeps numbers of a step
     if (!single) moving = shapes;
-    MotionSampler sampler(*robot, motion);
+    const MotionCurve curve(*robot, motion);
     const double cutoff = single ? kPostureCutoff_m : kMotionCutoff_m;
     CheckContext context{.robot = *robot,
                          .world = world,
@@ -192,7 +207,7 @@ struct Judge::Parts {
                          .motion = motion,
                          .options = options,
                          .shapes = moving ? &*moving : nullptr,
-                         .sampler = sampler,
+                         .curve = curve,
                          .job = job,
                          .cutoff_m = std::max({cutoff, 2.0 * options.min_clearance_m,
                                                2.0 * options.min_self_clearance_m}),

@@ -17,12 +17,13 @@
 ///   stance                 vertices that do not say where the robot stands, or steps (count)
 ///   contact_claims         contacts that claim more than CheckOptions::known (count)
 ///   base_orientation       | |quaternion| - 1 |
-///   time_order           * time between vertices must be positive (s)
+///   time_order           * time between vertices must be positive, and none before 0 (s)
 ///   step_size            * samples a step needs, see CheckOptions (count)
 ///   joint_limits           excess over a limit (rad, m)
 ///   velocity_limits      * joint velocity over its limit (ratio)
 ///   base_velocity        * of the base, linear or angular, over its limit (ratio)
 ///   acceleration_limits  * joint acceleration over its limit (ratio)
+///   end_at_rest          * how fast a whole motion begins and ends (rad/s, m/s)
 ///   contact_position     + of a contact to its place, at vertices (m)
 ///   contact_orientation  + of the directions that its kind holds, at vertices (rad)
 ///   contact_between     *+ the worst of both between vertices; an angle counts as the length that
@@ -44,11 +45,14 @@
 ///                          enforced, and with inertial forces where the motion has times (1)
 ///   torque_limits        + largest |torque| / limit; of a motion: the least that balances (ratio)
 ///
+/// Distances, the four from obstacle_distance on, are required: of a robot without any collision
+/// shape they are not judged. Links that have something to see and no shape are told as trusted.
 /// A vertex with a number that is not finite, of the wrong size, or with a quaternion near zero is
 /// reported; nothing else is checked there and next to it. Configuration i is held against the
-/// stances of the step before it and of the step after it. Joint limits and velocities are exact
-/// between vertices because joints are linear there; distances follow clearance_search.h; balance
-/// follows balance_along.h; the rest is sampled as CheckOptions say.
+/// stances of the step before it and of the step after it. Between vertices the curve is judged
+/// (motion_curve.h): limits exactly; distances as clearance_search.h says; balance, with inertia on
+/// both sides of each vertex, as balance_along.h does; the rest is sampled as CheckOptions say. A
+/// whole motion begins and ends at rest, balanced there; a part of one goes on at both ends.
 ///
 /// Deterministic, with any number of CheckOptions::threads; const members may be called by several
 /// threads at once.
@@ -56,7 +60,7 @@
 /// that does not exist or is not sound (robots/contact.h), and an option that makes no sense.
 
 #include <locograph/check/check_report.h>
-#include <locograph/check/motion.h>
+#include <locograph/check/motion_curve.h>
 #include <locograph/common/job_control.h>
 #include <locograph/robots/robot.h>
 #include <locograph/robots/robot_state.h>

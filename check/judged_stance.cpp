@@ -123,6 +123,32 @@ Polygon sole_on(const Surface& surface, const EndEffector& sole, const Eigen::Is
   return area;
 }
 
+/// Something of the contact's area is over the surface, as exactly as a contact is closed.
+bool is_over(const JudgedContact& contact, const Surface& surface,
+             std::span<const Eigen::Isometry3d> poses) {
+  const EndEffector& effector = contact.contact.effector;
+  if (effector.kind != ContactKind::kSurface)
+    return outside_border(surface, touching_point(contact, poses)) <= limits::kClosed_m;
+  Surface wider = surface;
+  wider.half_x_m += limits::kClosed_m;
+  wider.half_y_m += limits::kClosed_m;
+  return !sole_on(wider, effector, poses[std::size_t(contact.link)]).empty();
+}
+
+/// The body of an end effector and the bodies below it, as the fingers of a hand. The root's body
+/// carries everything: it alone touches.
+std::vector<int> links_of(const Robot& robot, int body) {
+  const std::vector<int>& body_of = robot.tree().body_of_link;
+  std::set<int> bodies = {body};
+  for (const Joint& joint : robot.joints())
+    if (body != 0 && body_of[std::size_t(joint.parent_link)] == body)
+      bodies.insert(body_of[std::size_t(joint.child_link)]);
+  std::vector<int> links;
+  for (std::size_t link = 0; link < body_of.size(); ++link)
+    if (bodies.contains(body_of[link])) links.push_back(int(link));
+  return links;
+}
+
 void place_on_surfaces(const World& world, JudgedContact& judged) {
   for (std::size_t s = 0; s < world.surfaces.size(); ++s) {
     const Eigen::Isometry3d& pose = world.surfaces[s].world_from_surface;
@@ -188,16 +214,15 @@ JudgedStance::JudgedStance(const Robot& robot, const World& world, const Stance&
         other.push_back(contact.name() + " is at a place that is not known");
     }
   }
-  touching = touching_links(robot, taken.contacts);
+  touching.assign(robot.links().size(), false);
   for (const Contact& contact : taken.contacts) {
     JudgedContact judged;
     judged.contact = contact;
     judged.link = robot.link_index(contact.effector.link);
     judged.body = robot.tree().body_of_link[std::size_t(judged.link)];
     judged.normal = contact.normal.stableNormalized();
-    const std::vector<bool> links = touching_links(robot, {&contact, 1});
-    for (std::size_t link = 0; link < links.size(); ++link)
-      if (links[link]) judged.links.push_back(int(link));
+    judged.links = links_of(robot, judged.body);
+    for (const int link : judged.links) touching[std::size_t(link)] = true;
     if (judged.is_wheel()) {
       const int above = robot.links()[std::size_t(judged.link)].parent_joint;
       const Joint& joint = robot.joints()[std::size_t(above)];
@@ -210,22 +235,31 @@ JudgedStance::JudgedStance(const Robot& robot, const World& world, const Stance&
 }
 
 std::vector<CollisionWorld::Touch> JudgedStance::touches(
-    std::span<const Eigen::Isometry3d> poses) const {
+    const World& world, std::span<const Eigen::Isometry3d> poses) const {
   std::vector<CollisionWorld::Touch> touches;
   for (const JudgedContact& contact : contacts) {
-    touches.push_back(
-        {.position = contact.is_wheel() ? touching_point(contact, poses) : contact.contact.position,
-         .normal = contact.normal,
-         .surfaces = contact.surfaces,
-         .bars = contact.bars,
-         .links = contact.links});
+    CollisionWorld::Touch touch;
+    touch.position = contact.is_wheel() ? touching_point(contact, poses) : contact.contact.position;
+    touch.normal = contact.normal;
+    touch.bars = contact.bars;
+    touch.links = contact.links;
+    std::vector<int> beside;
+    for (const int s : contact.surfaces) {
+      const bool under = is_over(contact, world.surfaces[std::size_t(s)], poses);
+      (under ? touch.surfaces : beside).push_back(s);
+    }
     const EndEffector& effector = contact.contact.effector;
-    touches.back().reach_m =
-        std::max(touches.back().reach_m, std::hypot(effector.half_x_m, effector.half_y_m));
+    touch.reach_m = std::max(touch.reach_m, std::hypot(effector.half_x_m, effector.half_y_m));
     // A wheel touches its plane, wherever its own height is.
     if (contact.is_wheel())
-      touches.back().position -=
-          contact.normal * contact.normal.dot(touches.back().position - contact.contact.position);
+      touch.position -=
+          contact.normal * contact.normal.dot(touch.position - contact.contact.position);
+    touches.push_back(touch);
+    if (beside.empty()) continue;
+    touch.surfaces = std::move(beside);
+    touch.bars.clear();
+    touch.barely = true;
+    touches.push_back(std::move(touch));
   }
   return touches;
 }

@@ -28,7 +28,7 @@ struct JudgedContact {
   Contact contact;  ///< its end effector is the known one, if there is one of its name
   int link = -1, body = -1;
   Eigen::Vector3d normal;  ///< of the contact in the world, of length 1
-  std::vector<int> links;  ///< that touch
+  std::vector<int> links;  ///< that touch: its body and those below it; no fork beside a wheel
   /// Of World::surfaces: those in the plane of the contact; a grasp is on none.
   std::vector<int> surfaces;
   std::vector<int> bars;  ///< of World::bars: those it is on, or beyond an end of
@@ -64,8 +64,10 @@ struct JudgedStance {
   JudgedStance(const Robot& robot, const World& world, const Stance& stance,
                std::span<const EndEffector> known, std::span<const Contact> places = {});
 
-  /// Where links touch in a configuration.
-  std::vector<CollisionWorld::Touch> touches(std::span<const Eigen::Isometry3d> poses) const;
+  /// Where links touch in a configuration, and which of the surfaces: those under the area of the
+  /// contact; barely, those beside it in the same plane. In the order of the contacts.
+  std::vector<CollisionWorld::Touch> touches(const World& world,
+                                             std::span<const Eigen::Isometry3d> poses) const;
 };
 
 struct ContactError {

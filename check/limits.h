@@ -16,6 +16,8 @@ inline constexpr double kSlip_m = 5e-3, kSlipStretch_m = 0.1, kSlipShare = 0.02;
 inline constexpr double kTouchingDepth_m = 0.012;
 // A drive's goal: where its base may end, in any direction, and its heading.
 inline constexpr double kGoal_m = 0.25, kGoal_rad = 0.25;
+// What a whole plan begins and ends with may move no faster [m/s, rad/s]: for rounding.
+inline constexpr double kAtRest = 1e-6;
 // For rounding: of a depth, and of what linear programmes balance.
 inline constexpr double kDepthRounding_m = 1e-6, kBalanceRounding = 1e-6;
 

@@ -86,35 +86,37 @@ void MovingShapes::add(const Robot& robot, const CollisionShape& collision) {
   shapes_.push_back(std::move(shape));
 }
 
-MovingShapes::Bound MovingShapes::bound(const Shape& shape, double base_distance, double base_angle,
-                                        const ConfigurationStep& step) {
+MovingShapes::Bound MovingShapes::bound(const Shape& shape, const StepBounds& step, bool in_world) {
   Bound bound;
   double turned = 0.0;  // by the base and the joints above
-  const auto turn = [&](double angle, double reach) {
+  const auto turn = [&](double angle, double bend, double reach) {
     bound.length += angle * reach;
-    bound.second_derivative += angle * (angle + 2.0 * turned) * reach;
+    bound.second_derivative += (angle * (angle + 2.0 * turned) + bend) * reach;
     turned += angle;
   };
-  const auto slide = [&](double distance) {
+  const auto slide = [&](double distance, double bend) {
     bound.length += distance;
-    bound.second_derivative += 2.0 * turned * distance;
+    bound.second_derivative += 2.0 * turned * distance + bend;
   };
-  slide(base_distance);
-  turn(base_angle, shape.base_reach);
+  if (in_world) {
+    slide(step.base_distance_m, step.base_bend_m);
+    turn(step.base_angle_rad, step.base_bend_rad, shape.base_reach);
+  }
   for (const Mover& mover : shape.movers) {
-    const double change = mover.rate * std::abs(step.joints[mover.active]);
+    const double change = mover.rate * step.joints[mover.active];
+    const double bend = mover.rate * step.joint_bends[mover.active];
     if (mover.prismatic)
-      slide(change);
+      slide(change, bend);
     else
-      turn(change, mover.reach);
+      turn(change, bend, mover.reach);
   }
   return bound;
 }
 
-void MovingShapes::set_step(const ConfigurationStep& step) {
+void MovingShapes::set_step(const StepBounds& step) {
   for (std::size_t i = 0; i < shapes_.size(); ++i) {
-    in_world_[i] = bound(shapes_[i], step.base_distance_m, step.base_angle_rad, step);
-    in_base_[i] = bound(shapes_[i], 0.0, 0.0, step);
+    in_world_[i] = bound(shapes_[i], step, true);
+    in_base_[i] = bound(shapes_[i], step, false);
   }
 }
 
@@ -135,6 +137,12 @@ double MovingShapes::path(const Shape& shape, const Bound& bound, const Eigen::I
                        shape.loose_radius * turned.norm() / std::sqrt(2.0);
   const double bend = bound.second_derivative * fraction * fraction;
   return std::min(std::sqrt(chord * chord + bend * bend / 12.0), bound.length * fraction);
+}
+
+double MovingShapes::bend(double fraction) const {
+  double largest = 0.0;
+  for (const Bound& bound : in_world_) largest = std::max(largest, bound.second_derivative);
+  return largest * fraction * fraction / 8.0;
 }
 
 double MovingShapes::step_length_bound_in_base() const {

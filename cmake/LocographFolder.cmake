@@ -112,6 +112,11 @@ target_compile_options(locograph_private_options INTERFACE -Wall -Wextra -Wpedan
 target_compile_options(locograph_private_options INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized -Wno-maybe-uninitialized -Wno-array-bounds
     -Wno-stringop-overread -Wno-stringop-overflow>)
+# Of a type whose members are of this source alone: a unity build takes sources for headers.
+if(CMAKE_UNITY_BUILD)
+  target_compile_options(locograph_private_options INTERFACE
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endif()
 # Instrumented code makes GCC 12 see more uninitialised values than there are; Release decides.
 if(LOCOGRAPH_WERROR AND NOT LOCOGRAPH_SANITIZE)
   target_compile_options(locograph_private_options INTERFACE -Werror)

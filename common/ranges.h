@@ -14,6 +14,8 @@ inline constexpr double kLeastSize_m = 1e-6, kMostSize_m = 1e6;
 inline constexpr double kJoint_rad = 1e6;
 /// Of a time, either sign: eleven days.
 inline constexpr double kTime_s = 1e6;
+/// Of how fast something changes: m/s and rad/s.
+inline constexpr double kSlope = 1e6;
 /// Of what contacts bear, and of friction.
 inline constexpr double kForce_N = 1e9, kMoment_Nm = 1e9, kFriction = 1e3;
 /// Of an obstacle, as fast as its fastest point: what the judge looks at grows with its way.

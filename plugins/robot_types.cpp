@@ -70,7 +70,7 @@ void add_robot_types(TypeRegistry& types) {
   types.add_edge<EdgeVelocityTracking>();
   types.add_edge<EdgeWrenchNorm>();
   for (const char* tag : {"PARAMS_WHEELS", "EDGE_WHEEL_CONTACT"}) {
-    types.retire(tag, "a plan of format version 2, which has contacts and stances: make it again");
+    types.retire(tag, "a plan of format version 3, which has contacts and stances: make it again");
   }
 }
 

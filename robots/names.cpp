@@ -39,4 +39,16 @@ std::string similar_names(const std::string& name, const std::vector<std::string
   return text;
 }
 
+std::string listed_names(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 8;
+  const std::size_t told = std::min(names.size(), kMost);
+  std::string text;
+  for (std::size_t i = 0; i < told; ++i) {
+    const bool last = i + 1 == names.size();
+    text += (i == 0 ? "" : last ? " and " : ", ") + names[i];
+  }
+  if (names.size() > told) text += " and " + std::to_string(names.size() - told) + " more";
+  return text;
+}
+
 }  // namespace locograph

@@ -149,6 +149,25 @@ std::span<const int> Robot::axes_of(int active) const {
   return axes_of_active_[static_cast<std::size_t>(active)];
 }
 
+bool Robot::has_collision_shapes() const {
+  return std::any_of(links_.begin(), links_.end(),
+                     [](const Link& link) { return !link.collision.empty(); });
+}
+
+void Robot::require_collision_shapes() const {
+  if (has_collision_shapes()) return;
+  throw Error(urdf_file_.string(), 0, "no link of the robot has a <collision>",
+              "collision shapes, which distances are judged by");
+}
+
+std::vector<std::string> Robot::links_without_collision() const {
+  std::vector<std::string> names;
+  for (const Link& link : links_) {
+    if (link.visible && link.collision.empty()) names.push_back(link.name);
+  }
+  return names;
+}
+
 std::vector<std::string> Robot::missing_meshes() const {
   std::vector<std::string> missing;
   for (const Link& link : links_) {

@@ -25,6 +25,9 @@
 /// joints take. The axes of a robot are the joints that move with a configuration: the active ones
 /// and the mimic joints of active ones, in the order of joints().
 ///
+/// Every <collision> of the URDF is among the shapes of its link, or the file is refused with the
+/// line of the one that cannot be read. Meshes are read by who needs them: missing_meshes().
+///
 /// Errors: locograph::Error with file and line for every unusable URDF or SRDF.
 /// Thread-safety: const, freely shared.
 
@@ -92,6 +95,8 @@ struct Link {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< kg m^2, about com, along the link axes
   int inertial_line = 0;  ///< of <inertial> in the URDF, of <link> if there is none
   std::vector<CollisionShape> collision;
+  int collision_elements = 0;  ///< <collision> elements of the URDF; a capsule may be three
+  bool visible = false;        ///< has a <visual>
 };
 
 /// An SRDF group, as the movable joints it stands for (indices into Robot::joints(), ascending).
@@ -176,6 +181,12 @@ class Robot {
   std::span<const int> support(int link) const;
 
   double total_mass() const { return total_mass_; }  ///< kg
+  /// Without any there is nothing to tell distances by.
+  bool has_collision_shapes() const;
+  /// Throws Error naming the URDF where there are none.
+  void require_collision_shapes() const;
+  /// Links with something to see and nothing to collide, as they move by without touching.
+  std::vector<std::string> links_without_collision() const;
   /// Collision meshes that could not be found, as written in the URDF, each once.
   std::vector<std::string> missing_meshes() const;
   /// What RobotOptions::lenient_srdf let pass, as FILE:LINE: text.

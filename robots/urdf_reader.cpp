@@ -1,16 +1,15 @@
-#include <console_bridge/console.h>
 #include <locograph/common/error.h>
 #include <locograph/robots/body_inertia.h>
 #include <locograph/robots/mimic_joints.h>
 #include <locograph/robots/names.h>
 #include <locograph/robots/urdf_reader.h>
+#include <locograph/robots/urdfdom_model.h>
 #include <locograph/robots/xml_file.h>
-#include <urdf_parser/urdf_parser.h>
+#include <urdf_model/model.h>
 
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <mutex>
 #include <set>
 
 namespace locograph {
@@ -72,16 +71,31 @@ class UrdfStructure {
     const Element* geometry = shape.FirstChildElement("geometry");
     const Element* kind = geometry == nullptr ? nullptr : geometry->FirstChildElement();
     const std::string name = kind == nullptr ? "" : kind->Name();
-    if (name != "sphere" && name != "cylinder" && name != "box" && name != "mesh") {
+    if (!is_geometry(name)) {
       const std::string found = name.empty() ? "no geometry" : "unknown geometry <" + name + ">";
       throw xml_.error(kind == nullptr ? shape : *kind,
                        "link '" + link + "' has a <" + shape.Name() + "> with " + found,
                        "sphere, cylinder, box or mesh");
     }
+    if (shape.Name() == std::string("collision")) check_single(shape, *geometry, link);
     if (name == "mesh") xml_.attribute(*kind, "filename");
     if (name == "sphere" || name == "cylinder") check_positive(*kind, "radius", 1);
     if (name == "cylinder") check_positive(*kind, "length", 1);
     if (name == "box") check_positive(*kind, "size", 3);
+  }
+
+  static bool is_geometry(const std::string& name) {
+    return name == "sphere" || name == "cylinder" || name == "box" || name == "mesh";
+  }
+
+  /// Of several, all but the first would be lost.
+  void check_single(const Element& shape, const Element& geometry, const std::string& link) const {
+    const auto kinds = xml_.children(geometry);
+    const auto count = std::count_if(kinds.begin(), kinds.end(),
+                                     [](const Element& kind) { return is_geometry(kind.Name()); });
+    if (count == 1 && geometry.NextSiblingElement("geometry") == nullptr) return;
+    throw xml_.error(shape, "link '" + link + "' has a <collision> with more than one geometry",
+                     "a <collision> for each");
   }
 
   void check_inertial(const Element& inertial, const std::string& link) {
@@ -282,37 +296,6 @@ class UrdfStructure {
   std::size_t shapes_ = 0;
 };
 
-/// Keeps what urdfdom would print.
-class SilentConsole : public console_bridge::OutputHandler {
- public:
-  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
-    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && first_error.empty()) {
-      first_error = text;
-    }
-  }
-  std::string first_error;
-};
-
-urdf::ModelInterfaceSharedPtr parse_with_urdfdom(const std::string& text, const std::string& file) {
-  static std::mutex console_mutex;  // console_bridge has one output handler per process
-  const std::lock_guard<std::mutex> lock(console_mutex);
-  SilentConsole console;
-  console_bridge::useOutputHandler(&console);
-  urdf::ModelInterfaceSharedPtr model;
-  std::string failure;
-  try {
-    model = urdf::parseURDF(text);
-  } catch (const std::exception& exception) {
-    failure = exception.what();
-  }
-  console_bridge::restorePreviousOutputHandler();
-  if (!model) {
-    if (failure.empty()) failure = console.first_error;
-    throw Error(file, 0, "urdfdom refuses it: " + failure, "a valid URDF");
-  }
-  return model;
-}
-
 Eigen::Isometry3d isometry(const urdf::Pose& pose) {
   Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
   result.translation() << pose.position.x, pose.position.y, pose.position.z;
@@ -381,7 +364,9 @@ Link convert(const urdf::Link& source, const XmlFile& xml, const Element& elemen
     shapes.push_back(
         convert(*source.collision_array[i], index, collisions[i].get().GetLineNum(), urdf));
   }
+  link.collision_elements = static_cast<int>(shapes.size());
   link.collision = merge_capsules(shapes);
+  link.visible = element.FirstChildElement("visual") != nullptr;
   return link;
 }
 
@@ -416,7 +401,7 @@ Error unreadable_name(const XmlFile& xml, const XmlFile::Element& element) {
 UrdfModel read_urdf(const std::filesystem::path& file) {
   const XmlFile xml(file, "robot");
   const UrdfStructure structure(xml);
-  const urdf::ModelInterfaceSharedPtr source = parse_with_urdfdom(xml.text(), file.string());
+  const std::shared_ptr<const urdf::ModelInterface> source = urdfdom_model(xml, file);
 
   UrdfModel model;
   model.name = source->getName();

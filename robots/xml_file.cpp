@@ -11,16 +11,16 @@ namespace locograph {
 
 XmlFile::XmlFile(const std::filesystem::path& file, const std::string& root_name)
     : file_(file.string()) {
-  text_ = read_file(file, kMostXmlBytes, "an XML file");
-  if (text_.find_first_not_of(" \t\r\n") == std::string::npos) {
+  const std::string text = read_file(file, kMostXmlBytes, "an XML file");
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     throw Error(file_, 0, "is empty", "XML with a <" + root_name + "> element");
   }
-  if (const int line = crowded_tag(text_)) {
+  if (const int line = crowded_tag(text)) {
     throw Error(file_, line,
                 "an element with more than " + std::to_string(kMostAttributes) + " attributes",
                 "those that are known");
   }
-  if (document_.Parse(text_.data(), text_.size()) != tinyxml2::XML_SUCCESS) {
+  if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     throw Error(file_, document_.ErrorLineNum(), "not well-formed XML",
                 "XML with a <" + root_name + "> element");
   }

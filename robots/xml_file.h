@@ -30,7 +30,6 @@ class XmlFile {
   /// XML, or its root element is not <root_name>.
   XmlFile(const std::filesystem::path& file, const std::string& root_name);
 
-  const std::string& text() const { return text_; }
   const Element& root() const { return *document_.RootElement(); }
   /// The children called `name`, in order; all child elements if name is null.
   std::vector<std::reference_wrapper<const Element>> children(const Element& parent,
@@ -51,7 +50,7 @@ class XmlFile {
  private:
   const char* value_of(const Element& element, const char* name) const;
 
-  std::string file_, text_;
+  std::string file_;
   tinyxml2::XMLDocument document_;
 };
 

@@ -11,7 +11,7 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 jobs=$(nproc)
 
-say() { printf '== %s\n' "$*" >&2; }
+say() { printf '== %d:%02d %s\n' $((SECONDS / 60)) $((SECONDS % 60)) "$*" >&2; }  # since the start
 die() {
   printf '%s: %s\n' "$(basename "$0")" "$*" >&2
   exit 1

@@ -14,7 +14,9 @@ run_tests() {
 }
 
 install_missing
-configure build -DLOCOGRAPH_BENCHMARKS=ON -DLOCOGRAPH_UNITY_TESTS=ON
+# Several sources at a time, as below: a third less to compile.
+configure build -DLOCOGRAPH_BENCHMARKS=ON -DLOCOGRAPH_UNITY_TESTS=ON -DCMAKE_UNITY_BUILD=ON \
+  -DCMAKE_UNITY_BUILD_BATCH_SIZE=4
 build build
 
 say "checking the layout of the sources"

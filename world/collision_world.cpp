@@ -17,10 +17,9 @@
 namespace locograph {
 namespace {
 
-/// What links may touch at a place reaches no further out of its plane.
-constexpr double kTouchedHeight_m = 0.012;
-/// Surfaces and boxes below the plane come no further out of it.
-constexpr double kBelow_m = 1e-3;
+/// As exact as the plane of a contact is: what comes no further out of it lies behind it; and how
+/// deep links may be in what they barely touch.
+constexpr double kFlush_m = 1e-4;
 
 struct Body {
   int link;
@@ -182,6 +181,7 @@ namespace {
 struct Touching {
   using Bits = std::uint64_t;  // one for each touch
   std::vector<Bits> of_link, of_obstacle, of_plate, of_rod, of_block;
+  Bits barely = 0;
 
   static Bits bit(std::size_t touch) { return Bits{1} << touch; }
 };
@@ -242,7 +242,7 @@ struct CollisionWorld::Parts::Search {
       const Obstacle& obstacle = parts.obstacles[o];
       if (!obstacle.motion.empty()) continue;
       if (obstacle.distance(touch.position, query.time_s) > touch.reach_m) continue;
-      if (out_of_plane(parts.obstacle_shapes[o], obstacle.world_from_obstacle) <= kTouchedHeight_m)
+      if (out_of_plane(parts.obstacle_shapes[o], obstacle.world_from_obstacle) <= kFlush_m)
         touching.of_obstacle[o] |= bit;
     }
     for (const int surface : touch.surfaces) {
@@ -251,24 +251,26 @@ struct CollisionWorld::Parts::Search {
       if (block >= 0) touching.of_block[static_cast<std::size_t>(block)] |= bit;
     }
     for (const int bar : touch.bars) touching.of_rod[static_cast<std::size_t>(bar)] |= bit;
-    // What lies below the plane: other surfaces, as the sides of a box that a foot stands on, and
-    // other boxes.
+    // The faces of a touched box that lie behind the plane within reach, as its sides.
     for (std::size_t p = 0; p < parts.plates.size(); ++p) {
       const PlateSolid& plate = parts.plates[p];
-      if (plate.endless) continue;
+      if (plate.block < 0 || (touching.of_block[static_cast<std::size_t>(plate.block)] & bit) == 0)
+        continue;
       double away = std::abs(plate.normal.dot(touch.position - plate.point));
       for (const SolidSide& side : plate.sides)
         away = std::max(away, side.out.dot(touch.position) - side.offset);
       if (away > touch.reach_m) continue;
-      if (out_of_plane(*plate.shape, plate.world_from_shape) <= kBelow_m)
+      if (out_of_plane(*plate.shape, plate.world_from_shape) <= kFlush_m)
         touching.of_plate[p] |= bit;
     }
-    for (std::size_t s = 0; s < parts.blocks.size(); ++s) {
-      const BoxSolid& block = parts.blocks[s];
-      if (block.at_least(touch.position) > touch.reach_m) continue;
-      if (out_of_plane(block.shape, block.world_from_shape) <= kBelow_m)
-        touching.of_block[s] |= bit;
-    }
+    if (touch.barely) touching.barely |= bit;
+  }
+
+  /// Which touches let a link be in something; those that open or close here do not.
+  Touching::Bits held(Touching::Bits touches) const { return touches & ~touching.barely; }
+  /// How deep a link may be in what it touches barely, and in nothing else.
+  double allowance(Touching::Bits touches) const {
+    return touches != 0 && held(touches) == 0 ? kFlush_m : 0.0;
   }
 
   /// A depth counts as no more than how far the body would have to be moved along the normal of one
@@ -297,18 +299,21 @@ struct CollisionWorld::Parts::Search {
       const ConvexShape& shape = parts.obstacle_shapes[o];
       for (std::size_t b = 0; b < parts.bodies.size(); ++b) {
         const Body& body = parts.bodies[b];
-        const Touching::Bits touches =
+        const Touching::Bits all =
             touching.of_link[static_cast<std::size_t>(body.link)] & touching.of_obstacle[o];
-        const double nearest = touches != 0 ? 0.0 : found.obstacle.distance_m;
+        const Touching::Bits touches = held(all);
+        const double nearest = touches != 0 ? 0.0 : found.obstacle.distance_m - allowance(all);
         if (sphere_bound(body.shape, world_from_body[b], shape, world_from_obstacle) >= nearest)
           continue;
-        const ShapeDistance distance =
+        ShapeDistance distance =
             shape_distance(body.shape, world_from_body[b], shape, world_from_obstacle);
         if (distance.distance >= nearest) continue;
-        if (touches != 0)
+        if (touches != 0) {
           touch(b, touches, distance, shape, world_from_obstacle, parts.obstacles[o].name);
-        else
-          found.obstacle = closest_to(distance, body.link, parts.obstacles[o].name);
+          continue;
+        }
+        distance.distance += allowance(all);
+        found.obstacle = closest_to(distance, body.link, parts.obstacles[o].name);
       }
     }
   }
@@ -320,18 +325,29 @@ struct CollisionWorld::Parts::Search {
       voxel.floor_z = parts.ground_z;
       if (parts.ignores_floor[static_cast<std::size_t>(body.link)])
         voxel.floor_z = std::max(voxel.floor_z, parts.options.floor_z_m);
+      std::vector<VoxelTree::Query::Behind> held, barely;
       for (std::size_t t = 0; t < query.touches.size(); ++t) {
         if ((touching.of_link[static_cast<std::size_t>(body.link)] & Touching::bit(t)) == 0)
           continue;
         const Touch& touch = query.touches[t];
-        voxel.behind.push_back({touch.position, touch.normal, kTouchedHeight_m, touch.reach_m});
+        (touch.barely ? barely : held)
+            .push_back({touch.position, touch.normal, kFlush_m, touch.reach_m});
       }
+      voxel.behind = held;
+      voxel.behind.insert(voxel.behind.end(), barely.begin(), barely.end());
       voxel.best.distance = found.obstacle.distance_m;
       if (parts.voxels->nearest(voxel)) found.obstacle = closest_to(voxel.best, body.link, "voxel");
-      if (voxel.behind.empty()) continue;
       voxel.only_behind = true;
+      voxel.behind = std::move(held);
       voxel.best.distance = found.touched.distance_m;
-      if (parts.voxels->nearest(voxel)) found.touched = closest_to(voxel.best, body.link, "voxel");
+      if (!voxel.behind.empty() && parts.voxels->nearest(voxel))
+        found.touched = closest_to(voxel.best, body.link, "voxel");
+      voxel.behind = std::move(barely);
+      voxel.best.distance = found.obstacle.distance_m - kFlush_m;
+      if (!voxel.behind.empty() && parts.voxels->nearest(voxel)) {
+        voxel.best.distance += kFlush_m;
+        found.obstacle = closest_to(voxel.best, body.link, "voxel");
+      }
     }
   }
 
@@ -362,20 +378,23 @@ struct CollisionWorld::Parts::Search {
       const BarSolid& rod = parts.rods[r];
       for (std::size_t b = 0; b < parts.bodies.size(); ++b) {
         const Body& body = parts.bodies[b];
-        const Touching::Bits touches =
+        const Touching::Bits all =
             touching.of_link[static_cast<std::size_t>(body.link)] & touching.of_rod[r];
-        const double nearest = touches != 0 ? 0.0 : found.surface.distance_m;
+        const Touching::Bits touches = held(all);
+        const double nearest = touches != 0 ? 0.0 : found.surface.distance_m - allowance(all);
         // A lower bound: the bar is within a capsule, the body within a ball.
         const double least = rod.distance_from_axis(world_from_body[b] * body.shape.center()) -
                              rod.shape.radius() - body.shape.bounding_radius();
         if (least >= nearest) continue;
-        const ShapeDistance distance =
+        ShapeDistance distance =
             shape_distance(body.shape, world_from_body[b], rod.shape, rod.world_from_shape);
         if (distance.distance >= nearest) continue;
-        if (touches != 0)
+        if (touches != 0) {
           touch(b, touches, distance, rod.shape, rod.world_from_shape, rod.name);
-        else
-          found.surface = closest_to(distance, body.link, rod.name);
+          continue;
+        }
+        distance.distance += allowance(all);
+        found.surface = closest_to(distance, body.link, rod.name);
       }
     }
   }
@@ -387,18 +406,22 @@ struct CollisionWorld::Parts::Search {
       for (std::size_t b = 0; b < parts.bodies.size(); ++b) {
         const Body& body = parts.bodies[b];
         const Eigen::Isometry3d& pose = world_from_body[b];
-        const Touching::Bits touches =
+        const Touching::Bits all =
             touching.of_link[static_cast<std::size_t>(body.link)] & touching.of_block[s];
-        const double nearest = touches != 0 ? found.touched.distance_m : found.surface.distance_m;
+        const Touching::Bits touches = held(all);
+        const double nearest =
+            touches != 0 ? found.touched.distance_m : found.surface.distance_m - allowance(all);
         if (block.at_least(pose * body.shape.center()) - body.shape.bounding_radius() >= nearest)
           continue;
-        const ShapeDistance distance =
+        ShapeDistance distance =
             shape_distance(body.shape, pose, block.shape, block.world_from_shape);
         if (distance.distance >= nearest) continue;
-        if (touches != 0)
+        if (touches != 0) {
           touch(b, touches, distance, block.shape, block.world_from_shape, block.name);
-        else
-          found.surface = closest_to(distance, body.link, block.name);
+          continue;
+        }
+        distance.distance += allowance(all);
+        found.surface = closest_to(distance, body.link, block.name);
       }
     }
   }
@@ -411,10 +434,12 @@ struct CollisionWorld::Parts::Search {
     if (out > distance.distance) distance = {out, where, {}};
   }
 
-  void surface(const PlateSolid& plate, std::size_t b, Touching::Bits touches) {
+  void surface(const PlateSolid& plate, std::size_t b, Touching::Bits all) {
     const Body& body = parts.bodies[b];
     const Eigen::Isometry3d& pose = world_from_body[b];
-    const double nearest = touches != 0 ? found.touched.distance_m : found.surface.distance_m;
+    const Touching::Bits touches = held(all);
+    const double nearest =
+        touches != 0 ? found.touched.distance_m : found.surface.distance_m - allowance(all);
     const double height = plate.normal.dot(pose * body.shape.center() - plate.point);
     const double radius = body.shape.bounding_radius();
     // A plate bounds from both sides, what is below an endless surface is in it.
@@ -429,6 +454,7 @@ struct CollisionWorld::Parts::Search {
     }
     if (distance.distance >= nearest) return;
     if (touches == 0) {
+      distance.distance += allowance(all);
       found.surface = closest_to(distance, body.link, plate.name);
     } else if (plate.endless) {
       found.touched = closest_to(distance, body.link, plate.name);

@@ -59,12 +59,12 @@ class CollisionWorld {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< on the link's shape, nearest to the other
   };
 
-  /// A place that links may touch, and which links. What they touch there is what lies behind the
-  /// plane through `position` along `normal`: the surfaces named; obstacles at rest that come no
-  /// further than 12 mm out of the plane, voxels whose centres do not, and surfaces that end and
-  /// boxes that lie below it, all within reach_m of the position. A solid box with a surface that
-  /// they touch is touched as a whole, but for its faces further away. Of bars, those named, and no
-  /// other: one may hold what is in front of the next one.
+  /// A place that links may touch, and which links. What they touch there are the surfaces and
+  /// bars named, and no other: one may hold what is in front of the next one. A solid box with a
+  /// surface that they touch is touched as a whole, but for its faces further away than reach_m and
+  /// those that come out of the plane through `position` along `normal`. Obstacles at rest and
+  /// voxels are as much of the ground as the surface is where they come no further than 0.1 mm out
+  /// of that plane, within reach_m of the position.
   struct Touch {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< of length 1
@@ -72,6 +72,9 @@ class CollisionWorld {
     std::vector<int> bars = {};                         ///< of World::bars
     std::vector<int> links = {};
     double reach_m = 0.3;  ///< how far from the position; a sole reaches as far as its corners
+    /// Links may be 0.1 mm in what they touch, as where a contact opens or closes, and what is
+    /// deeper counts as of any other link.
+    bool barely = false;
   };
   struct Query {
     std::span<const Eigen::Isometry3d> world_from_link;
@@ -83,7 +86,8 @@ class CollisionWorld {
   };
   struct Surroundings {
     Closest obstacle;  ///< of the voxels and obstacles that the link does not touch
-    Closest surface;   ///< of the surfaces, bars and boxes that it does not touch
+    Closest surface;   ///< of the surfaces, bars and boxes that it does not touch; of those that it
+                       ///< touches barely, 0.1 mm more than the distance
     /// Minus the largest depth of a link in what it touches; 0 and link -1 if there is none.
     Closest touched;
   };

@@ -76,7 +76,7 @@ struct VoxelTree::Search {
     for (const Query::Behind& part : query.behind) {
       const Eigen::Vector3d normal = part.normal.cwiseAbs();
       const double out = part.normal.dot(centre - part.point) + normal.dot(half);
-      if (out > part.height + 0.5 * tree.resolution_ * normal.sum()) continue;
+      if (out > part.height) continue;
       const Eigen::Vector3d apart = ((part.point - centre).cwiseAbs() - half).cwiseMax(0.0);
       if (apart.norm() <= part.reach) return true;
     }

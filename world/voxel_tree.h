@@ -26,7 +26,7 @@ class VoxelTree {
     /// Voxels whose top is at or below this height do not count.
     double floor_z = -std::numeric_limits<double>::infinity();
     /// Voxels in these parts do not count, or, with `only_behind`, no others: those that come out
-    /// of the plane by no more than `height` and half a voxel, and have a point within `reach`.
+    /// of the plane by no more than `height`, and have a point within `reach`.
     struct Behind {
       Eigen::Vector3d point, normal;
       double height = 0.0, reach = 0.0;

@@ -371,6 +371,14 @@ std::optional<Lie> call_a_wheel_locked(const Honest& honest, Random& random) {
 
 // Time ------------------------------------------------------------------------------------------
 
+/// The same way in another time.
+void compress(Motion& motion, double factor) {
+  for (double& time : motion.time_s) time *= factor;
+  for (Eigen::VectorXd& slope : motion.slopes) slope /= factor;
+}
+
+bool moves(const Honest& honest) { return vertices(honest) > 1 && !honest.motion.stances_only; }
+
 std::optional<Lie> compress_time(const Honest& honest, Random&) {
   if (vertices(honest) < 2 || honest.motion.stances_only) return std::nullopt;
   double fastest = 0.0;
@@ -388,7 +396,7 @@ std::optional<Lie> compress_time(const Honest& honest, Random&) {
   }
   if (fastest < 1e-9) return std::nullopt;
   Lie lie = lie_about(honest, {"velocity_limits"});
-  for (double& time : lie.motion.time_s) time *= fastest / kBeyond;
+  compress(lie.motion, fastest / kBeyond);
   return lie;
 }
 
@@ -402,7 +410,7 @@ std::optional<Lie> hurry_the_base(const Honest& honest, Random&) {
                                         .norm() /
                                     (honest.motion.time_s[i] - honest.motion.time_s[i - 1]));
   Lie lie = lie_about(honest, {"base_velocity"});
-  for (double& time : lie.motion.time_s) time *= fastest / (kBeyond * limit);
+  compress(lie.motion, fastest / (kBeyond * limit));
   return lie;
 }
 
@@ -434,7 +442,7 @@ std::optional<Lie> thin_obstacle(const Honest& honest, Random& random) {
   Vector3d across = any_direction(random);
   if (vertex + 1 < vertices(honest)) {
     const Eigen::VectorXd& next = honest.motion.configurations[vertex + 1];
-    interpolate(robot, honest.motion.configurations[vertex], next, 0.5, q);
+    MotionCurve(robot, honest.motion).step(static_cast<int>(vertex)).configuration(0.5, q);
     const Vector3d way = next.head<3>() - honest.motion.configurations[vertex].head<3>();
     if (way.norm() > 1e-3) across = way.normalized();
   }
@@ -462,6 +470,128 @@ std::optional<Lie> obstacle_afterwards(const Honest& honest, Random& random) {
   plate.world_from_obstacle.translation().z() += 20.0;
   plate.motion = {arrives};
   lie->options.until_s = arrives.time_s + 1.0;
+  return lie;
+}
+
+// What lies between the vertices, before and after them ------------------------------------------
+
+/// The curve is faster at a vertex than a joint may be; the vertices are the same.
+std::optional<Lie> dash_between(const Honest& honest, Random& random) {
+  if (!moves(honest) || vertices(honest) < 3) return std::nullopt;
+  const Robot& robot = *honest.robot;
+  std::vector<int> limited;
+  for (int i = 0; i < robot.active_joint_count(); ++i)
+    if (std::isfinite(robot.active_joint(i).max_velocity)) limited.push_back(i);
+  if (limited.empty()) return std::nullopt;
+  Lie lie = lie_about(honest, {"velocity_limits"});
+  const MotionCurve curve(robot, honest.motion);
+  lie.motion = part_of(curve, 0, static_cast<int>(vertices(honest)) - 1);
+  const int joint = limited[any_below(random, limited.size())];
+  lie.motion
+      .slopes[1 + any_below(random, vertices(honest) - 2)][robot.base_tangent_size() + joint] =
+      kBeyond * robot.active_joint(joint).max_velocity;
+  return lie;
+}
+
+/// A joint swings beyond its limit between two vertices that are within.
+std::optional<Lie> swing_beyond_limit(const Honest& honest, Random& random) {
+  if (!moves(honest)) return std::nullopt;
+  const Robot& robot = *honest.robot;
+  const MotionCurve curve(robot, honest.motion);
+  const std::size_t i = any_below(random, vertices(honest) - 1);
+  const double h = honest.motion.time_s[i + 1] - honest.motion.time_s[i];
+  for (int tries = 0; tries < 20; ++tries) {
+    const int k =
+        static_cast<int>(any_below(random, static_cast<std::size_t>(robot.active_joint_count())));
+    const Joint& joint = robot.active_joint(k);
+    if (joint.type == JointType::kContinuous || !std::isfinite(joint.upper)) continue;
+    Lie lie = lie_about(honest, {"joint_limits"});
+    lie.motion = part_of(curve, 0, static_cast<int>(vertices(honest)) - 1);
+    const int at = robot.base_configuration_size() + k, slope = robot.base_tangent_size() + k;
+    const double room = joint.upper - honest.motion.configurations[i][at];
+    // Half-way the slopes m and -m lift it by m h / 4.
+    const double m = 4.0 * (room + 0.01) / h;
+    lie.motion.slopes[i][slope] = m;
+    lie.motion.slopes[i + 1][slope] = -m;
+    const double below =
+        honest.motion.configurations[i + 1][at] - honest.motion.configurations[i][at];
+    if (below < -0.01) continue;
+    return lie;
+  }
+  return std::nullopt;
+}
+
+/// The motion stops being told while the robot is on its way.
+std::optional<Lie> end_on_the_way(const Honest& honest, Random& random) {
+  if (!moves(honest) || vertices(honest) < 3) return std::nullopt;
+  const MotionCurve curve(*honest.robot, honest.motion);
+  const int last = 1 + static_cast<int>(any_below(random, vertices(honest) - 2));
+  if (curve.slope(last).lpNorm<Eigen::Infinity>() < kBeyond * limits::kAtRest) return std::nullopt;
+  Lie lie = lie_about(honest, {"end_at_rest"});
+  lie.motion = random() % 2 == 0 ? part_of(curve, 0, last)
+                                 : part_of(curve, last, static_cast<int>(vertices(honest)) - 1);
+  return lie;
+}
+
+std::optional<Lie> begin_before_time(const Honest& honest, Random& random) {
+  if (!moves(honest)) return std::nullopt;
+  Lie lie = lie_about(honest, {"time_order"});
+  const double earlier_s = honest.motion.time_s.front() + uniform(random, 0.01, 100.0);
+  for (double& time : lie.motion.time_s) time -= earlier_s;
+  return lie;
+}
+
+/// Something passes through the robot before the plan begins.
+std::optional<Lie> obstacle_before(const Honest& honest, Random& random) {
+  if (!moves(honest)) return std::nullopt;
+  Honest parked = honest;
+  parked.motion = {};
+  parked.motion.time_s = {0.0};
+  parked.motion.configurations = {honest.motion.configurations.front()};
+  parked.motion.stances = honest.motion.stances;
+  parked.motion.stance_from = {honest.motion.stance_from.front()};
+  std::optional<Lie> lie = thin_obstacle(parked, random);
+  if (!lie) return std::nullopt;
+  Obstacle& plate = lie->world->obstacles.back();
+  const KeyFrame there{5.0, plate.world_from_obstacle};
+  plate.world_from_obstacle.translation().z() += 20.0;
+  plate.motion = {there, {10.0, plate.world_from_obstacle}};
+  lie->motion = honest.motion;
+  for (double& time : lie->motion.time_s) time += 1000.0;
+  return lie;
+}
+
+/// A slab of some millimetres lies on what a contact touches.
+std::optional<Lie> stand_in_a_slab(const Honest& honest, Random& random) {
+  const std::size_t vertex = any_below(random, vertices(honest));
+  const std::vector<Contact>& contacts = stance_at(honest.motion, vertex).contacts;
+  const Contact& contact = contacts[any_below(random, contacts.size())];
+  if (contact.effector.kind == ContactKind::kRung) return std::nullopt;
+  const Link& link =
+      honest.robot
+          ->links()[static_cast<std::size_t>(honest.robot->link_index(contact.effector.link))];
+  if (link.collision.empty()) return std::nullopt;
+  Eigen::VectorXd q = honest.motion.configurations[vertex];
+  q.segment<4>(3).normalize();
+  RobotState state(*honest.robot);
+  state.update(q.data());
+  const Vector3d normal = contact.normal.normalized();
+  Vector3d at = contact.position;
+  if (contact.effector.kind == ContactKind::kWheel) {
+    at = state.world_from_link(honest.robot->link_index(contact.effector.link)) *
+         contact.effector.point;
+    at -= normal * normal.dot(at - contact.position);
+  }
+  Lie lie = lie_about(honest, {"obstacle_distance"});
+  lie.world = honest.world;
+  Obstacle slab;
+  slab.name = "slab";
+  const double height = uniform(random, 0.002, 0.0118);
+  slab.size = {0.2, 0.2, height};
+  slab.world_from_obstacle.linear() =
+      Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal).toRotationMatrix();
+  slab.world_from_obstacle.translation() = at + 0.5 * height * normal;
+  lie.world->obstacles.push_back(slab);
   return lie;
 }
 
@@ -517,6 +647,12 @@ const std::vector<Corruption>& corruptions() {
       {"turn_back_time", turn_back_time},
       {"thin_obstacle", thin_obstacle},
       {"obstacle_afterwards", obstacle_afterwards},
+      {"dash_between", dash_between},
+      {"swing_beyond_limit", swing_beyond_limit},
+      {"end_on_the_way", end_on_the_way},
+      {"begin_before_time", begin_before_time},
+      {"obstacle_before", obstacle_before},
+      {"stand_in_a_slab", stand_in_a_slab},
       {"ground_ends", ground_ends},
   };
   return all;

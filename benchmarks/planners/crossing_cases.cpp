@@ -1,7 +1,9 @@
 #include "crossing_cases.h"
 
 #include <locograph/check/judge.h>
+#include <locograph/check/motion_curve.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
+#include <locograph/planners/plan/slope_limits.h>
 
 namespace locograph {
 namespace {
@@ -35,14 +37,28 @@ CheckOptions window_options(const Scenario& scenario) {
   return options;
 }
 
-/// From the executed configuration to the last one of the window.
+/// From the executed configuration to the last one of the window, with the slopes that `refine`
+/// would give them. It passes the last one as it moved before: what comes after it will change.
 Motion window_of(const Graph& graph, const Plan& plan, const CycleReport& cycle) {
-  const auto first = static_cast<std::size_t>(cycle.executed);
-  const std::size_t end = first + static_cast<std::size_t>(cycle.window) + 1;
-  Plan window = plan;
-  window.slots = {plan.slots.begin() + first, plan.slots.begin() + end};
-  window.stance_from = {plan.stance_from.begin() + first, plan.stance_from.begin() + end};
-  return motion_of(graph, window);
+  const Robot& robot = *plan.robot->robot;
+  const int last = cycle.executed + cycle.window;
+  Motion whole = motion_of(graph, plan);
+  const int planned = static_cast<int>(whole.configurations.size());
+  const auto next = static_cast<std::size_t>(last) + 1;
+  if (next < whole.configurations.size()) {
+    const Eigen::VectorXd &before = whole.configurations[next - 2],
+                          &at = whole.configurations[next - 1];
+    Eigen::VectorXd moved(robot.tangent_size());
+    robot.difference(before.data(), at.data(), moved.data());
+    robot.integrate(at.data(), moved.data(), whole.configurations[next].data());
+    whole.time_s[next] = 2.0 * whole.time_s[next - 1] - whole.time_s[next - 2];
+    whole.slopes[next - 1] = {};
+  }
+  for (int i = std::max(1, cycle.executed); i <= last && i + 1 < planned; ++i) {
+    Eigen::VectorXd& slope = whole.slopes[static_cast<std::size_t>(i)];
+    if (slope.size() == 0) slope = careful_slope(robot, whole, i);
+  }
+  return part_of(MotionCurve(robot, whole), cycle.executed, last);
 }
 
 std::string first_refusal(const CheckReport& report) {

@@ -231,9 +231,15 @@ bool LocalPlanner::take_if_better(const WindowQuality& quality) {
 }
 
 /// The best window so far, into the graph.
+/// Slopes are those of the plan as it came: what has moved goes by the rule of the curve.
 void LocalPlanner::store_best() {
   workspace_.state() = best_state_;
   workspace_.store_state();
+  for (const int slot : window_) {
+    const int i = index_of_slot_[static_cast<std::size_t>(slot)];
+    if (i < 0 || configuration(i) == planned_[static_cast<std::size_t>(i)]) continue;
+    graph_.vertex(VertexId<VertexConfiguration>{slot}).slopes.resize(0);
+  }
 }
 
 /// A cycle goes on near where the last one was: a step that was refused there will be here.

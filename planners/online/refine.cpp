@@ -1,5 +1,8 @@
+#include <locograph/check/limits.h>
+#include <locograph/check/motion_curve.h>
 #include <locograph/planners/online/refine.h>
 #include <locograph/planners/online/window_cause.h>
+#include <locograph/planners/plan/slope_limits.h>
 
 #include <algorithm>
 #include <sstream>
@@ -29,24 +32,40 @@ std::string describe(const CheckReport& check) {
   return text.str();
 }
 
-/// The motion from one configuration of the plan to the next, and the step before it: only now is
-/// it known how the robot accelerates between the two.
-Motion step_of(const Graph& graph, const Plan& plan, int executed) {
-  Plan step = plan;
-  step.slots.clear();
-  step.stance_from.clear();
-  for (int i = std::max(0, executed - 1); i <= executed + 1; ++i) {
-    step.slots.push_back(plan.slots[static_cast<std::size_t>(i)]);
-    step.stance_from.push_back(plan.stance_from[static_cast<std::size_t>(i)]);
-  }
-  return motion_of(graph, step);
+/// The plan from one of its configurations to another.
+Motion part_of_plan(const Graph& graph, const Plan& plan, int first, int last) {
+  Plan part = plan;
+  part.slots.assign(plan.slots.begin() + first, plan.slots.begin() + last + 1);
+  part.stance_from.assign(plan.stance_from.begin() + first, plan.stance_from.begin() + last + 1);
+  return motion_of(graph, part);
+}
+
+/// Steps before the executed one are judged with it, at most so many.
+constexpr int kMostVerifiedSteps = 12;
+/// Motions that come to rest within one to so many steps are tried.
+constexpr int kMostBrakingSteps = 12;
+
+/// How many times as fast as another one a slope is, along it; up to twice, as on any ramp.
+double ratio(const Eigen::VectorXd& slope, const Eigen::VectorXd& along) {
+  const double length = along.squaredNorm();
+  return length > 0.0 ? std::clamp(slope.dot(along) / length, 0.0, 2.0) : 1.0;
 }
 
 /// Walks along the plan and keeps the report.
 class Walk {
  public:
   Walk(Graph& graph, const RefineOptions& options)
-      : graph_(graph), options_(options), planner_(graph, options.planner) {
+      : graph_(graph),
+        options_(options),
+        planner_(graph, options.planner),
+        model_(*planner_.plan().robot->robot),
+        planned_(motion_of(graph, planner_.plan())) {
+    const MotionCurve curve(model_, planned_);
+    for (int i = 0; i < planner_.plan_size(); ++i) {
+      vertex(i).slopes = curve.slope(i);
+      const bool inside = i > 0 && i + 1 < planner_.plan_size();
+      faster_.push_back(inside ? ratio(curve.slope(i), careful_slope(model_, planned_, i)) : 0.0);
+    }
     report_.dof = planner_.dimension_of_configuration();
     report_.success = true;
     report_.reason = "every configuration is feasible";
@@ -84,12 +103,78 @@ class Walk {
       stop(executed, describe(*cycle.violation, graph_.vertex_record(slot).id));
       return false;
     }
+    pass_through(executed + 1);
     if (!options_.verify) return true;
     const Stopwatch verify_watch;
-    const CheckReport check = options_.verify(step_of(graph_, planner_.plan(), executed));
+    const CheckReport check = options_.verify(
+        part_of_plan(graph_, planner_.plan(), stretch_before(executed), executed + 1));
     report_.verify_s.push_back(verify_watch.seconds());
     if (!check.feasible) stop(executed, describe(check));
     return check.feasible;
+  }
+
+  /// The configuration from which the robot has gone the stretch within which slip of wheels
+  /// counts.
+  int stretch_before(int executed) {
+    int first = executed;
+    double way_m = 0.0;
+    while (first > 0 && executed - first < kMostVerifiedSteps && way_m < limits::kSlipStretch_m) {
+      way_m += (vertex(first).state - vertex(first - 1).state).head<3>().norm();
+      --first;
+    }
+    return first;
+  }
+
+  VertexConfiguration& vertex(int i) {
+    const int slot = planner_.plan().slots[static_cast<std::size_t>(i)];
+    return graph_.vertex(VertexId<VertexConfiguration>{slot});
+  }
+
+  /// Decides how fast the robot passes a configuration: as the window says it goes on from there,
+  /// and as the plan did where nothing has moved. That stays so, whatever the next cycles change.
+  void pass_through(int i) {
+    if (i + 1 >= planner_.plan_size()) return;  // at rest
+    const Motion around = part_of_plan(graph_, planner_.plan(), i - 1, i + 1);
+    VertexConfiguration& here = vertex(i);
+    here.slopes = careful_slope(model_, around, 1) * faster_[static_cast<std::size_t>(i)];
+    const double before_s = here.time_s - around.time_s[0],
+                 after_s = around.time_s[2] - here.time_s;
+    keep_within_limits(model_, here.state, std::max(before_s, after_s), here.slopes);
+  }
+
+  /// Lets the robot come to rest at a configuration, over some steps: on the same way, slower and
+  /// slower.
+  void brake(int last, int steps) {
+    double time_s = vertex(last - steps).time_s, before_s = time_s, faster = 1.0;
+    for (int i = last - steps + 1; i <= last; ++i) {
+      const double slower = std::sqrt(static_cast<double>(last - i) / steps);
+      const double duration_s = vertex(i).time_s - before_s;
+      before_s = vertex(i).time_s;
+      time_s += duration_s * 2.0 / (faster + slower);
+      vertex(i).time_s = time_s;
+      vertex(i).slopes *= slower;
+      faster = slower;
+    }
+  }
+
+  /// The last configuration, up to `executed`, at which the robot can come to rest; it does so.
+  int come_to_rest(int executed) {
+    for (int last = executed; last > 0; --last) {
+      if (vertex(last).slopes.isZero()) return last;
+      for (int steps = 1; steps <= std::min(last, kMostBrakingSteps); ++steps) {
+        const Motion moving = part_of_plan(graph_, planner_.plan(), last - steps, last);
+        brake(last, steps);
+        if (!options_.verify ||
+            options_.verify(part_of_plan(graph_, planner_.plan(), last - steps, last)).feasible) {
+          return last;
+        }
+        for (int i = 0; i <= steps; ++i) {
+          vertex(last - steps + i).time_s = moving.time_s[static_cast<std::size_t>(i)];
+          vertex(last - steps + i).slopes = moving.slopes[static_cast<std::size_t>(i)];
+        }
+      }
+    }
+    return 0;
   }
 
   void measure_goal(int at) {
@@ -118,8 +203,9 @@ class Walk {
     end_at(executed, (cause.empty() ? "" : cause + "; what gave way is ") + symptom);
   }
 
-  /// The rest of the plan is removed.
-  void end_at(int executed, const std::string& why) {
+  /// The rest of the plan is removed, and the robot comes to rest: where it is, or earlier.
+  void end_at(int arrived, const std::string& why) {
+    const int executed = come_to_rest(arrived);
     measure_goal(executed);
     report_.success = false;
     report_.reason = "stopped at configuration " + std::to_string(executed) + ": " + why +
@@ -155,6 +241,9 @@ class Walk {
   Graph& graph_;
   const RefineOptions& options_;
   LocalPlanner planner_;
+  const Robot& model_;
+  const Motion planned_;
+  std::vector<double> faster_;  // than careful, of slopes of the plan
   RefineReport report_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 
@@ -70,6 +71,27 @@ void require_wrenches_of_stances(const Graph& graph, const Plan& plan) {
   }
 }
 
+/// What a plan of stances is: at times 0, 1, 2, …, each step with one contact more or less than the
+/// one before, and no segments. Anything else is a motion.
+bool is_stance_sequence(const Graph& graph, const std::vector<int>& slots) {
+  if (graph.parameters().find<SegmentParameter>()) return false;
+  std::vector<int> before;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const VertexConfiguration& vertex = configuration(graph, slots[i]);
+    if (vertex.time_s != static_cast<double>(i) || vertex.slopes.size() > 0) return false;
+    std::vector<int> contacts;
+    if (vertex.stance_number != kNoStance) {
+      contacts = graph.parameters().get<StanceParameter>(vertex.stance_number)->contact_numbers;
+    }
+    std::ranges::sort(contacts);
+    std::vector<int> changed;
+    std::ranges::set_symmetric_difference(before, contacts, std::back_inserter(changed));
+    if (i > 0 && changed.size() != 1) return false;
+    before = std::move(contacts);
+  }
+  return true;
+}
+
 /// As exactly as hand-written files and those of nanoseconds have times.
 constexpr double kSameTime_s = 1e-6;
 
@@ -106,7 +128,6 @@ std::vector<PlanSegment> segments_of(const Graph& graph, const Plan& plan) {
   std::size_t at = 0;
   for (const GivenSegment& one : given) {
     const int expected = static_cast<int>(segments.size());
-    if (plan.stances_only) one.fail(" of a plan of stances", "a plan with a motion");
     if (one.segment->segment < expected) one.fail(" is there twice", "it once");
     if (one.segment->segment > expected) {
       one.fail(" without those before it", "a segment " + std::to_string(expected));
@@ -182,11 +203,11 @@ Plan plan_of(const Graph& graph) {
   if (!format) throw Error("a plan without a format version", "a PARAMS_PLAN line");
   only<ScenarioParameter>(parameters);
   only<ContactsParameter>(parameters);
-  plan.stances_only = format->stances_only;
   plan.incomplete = format->incomplete;
   plan.moves = format->moves;
   plan.world = only<WorldParameter>(parameters);
   only<RobotParameter>(parameters);
+  plan.stances_only = format->stances_only && is_stance_sequence(graph, plan.slots);
   if (!plan.stances_only) {
     std::stable_sort(plan.slots.begin(), plan.slots.end(), [&graph](int a, int b) {
       return configuration(graph, a).time_s < configuration(graph, b).time_s;
@@ -243,6 +264,7 @@ Motion motion_of(const Graph& graph, const Plan& plan) {
     const VertexConfiguration& vertex = configuration(graph, plan.slots[i]);
     motion.time_s.push_back(vertex.time_s);
     motion.configurations.push_back(vertex.state);
+    motion.slopes.push_back(vertex.slopes);
     const StanceParameter* stance = plan.stance_from[i].get();
     if (stance == nullptr) {
       motion.stance_from.push_back(-1);

@@ -33,6 +33,8 @@ struct Plan {
   std::shared_ptr<const WorldParameter> world;  ///< null: nothing in the way
   /// Of each configuration the stance that is held from it to the next one; null: not known.
   std::vector<std::shared_ptr<const StanceParameter>> stance_from;
+  /// Its file says so, and its times are 0, 1, 2, …, each step changes one contact, and it has no
+  /// segments: else it is a motion.
   bool stances_only = false;
   bool incomplete = false;       ///< it ends before its goal
   bool states_wrenches = false;  ///< it has some

@@ -254,6 +254,7 @@ PostureSolver::PostureSolver(std::shared_ptr<const RobotParameter> robot, World 
     throw Error("a posture of a robot with a fixed base", "a floating base");
   }
   RobotState(model).require_mass();
+  model.require_collision_shapes();
 }
 
 PostureSolver::~PostureSolver() = default;

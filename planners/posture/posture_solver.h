@@ -105,7 +105,7 @@ class PostureSolver {
   struct Shapes;  ///< of the robot, for its own use
 
   /// files: what graph() is saved with. Throws Error for a robot without a floating base, without
-  /// masses, or with shapes that cannot be used.
+  /// masses, without collision shapes, or with shapes that cannot be used.
   explicit PostureSolver(std::shared_ptr<const RobotParameter> robot, World world = posture_world(),
                          const WorldFiles& files = {});
   ~PostureSolver();

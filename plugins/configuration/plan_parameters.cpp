@@ -35,9 +35,9 @@ void refuse_older_plan(const FieldReader& in, std::string_view tag) {
 
 void PlanParameter::read(FieldReader& in) {
   const int version = in.integer();
-  if (version != kPlanFormat) {
+  if (version < kOldestPlanFormat || version > kPlanFormat) {
     in.fail("a plan of format version " + std::to_string(version),
-            "version " + std::to_string(kPlanFormat));
+            "version " + std::to_string(kOldestPlanFormat) + " or " + std::to_string(kPlanFormat));
   }
   while (!in.at_end()) {
     const std::string word = in.word();

@@ -1,14 +1,15 @@
 #pragma once
 /// What a plan file says about itself: its format, and whose word it goes by.
 ///
-///     PARAMS_PLAN 1 2                          (format version 2)
-///     PARAMS_PLAN 1 2 stances_only             (transitions: nothing moves between configurations)
-///     PARAMS_PLAN 1 2 incomplete               (the first part of a plan: the rest was not found)
-///     PARAMS_PLAN 1 2 moved_contacts 0.05 3 1  (of the scenario's start and goals: ContactMoves)
+///     PARAMS_PLAN 1 3                          (format version 3)
+///     PARAMS_PLAN 1 3 stances_only             (transitions: nothing moves between configurations)
+///     PARAMS_PLAN 1 3 incomplete               (the first part of a plan: the rest was not found)
+///     PARAMS_PLAN 1 3 moved_contacts 0.05 3 1  (of the scenario's start and goals: ContactMoves)
 ///     PARAMS_SCENARIO 3 centauro_drive         (made for this scenario: a name, or a file)
 ///     PARAMS_CONTACTS 4 ../standing.xml        (a posture for this contacts file)
 ///
-/// A plan of format version 2 says where it stands: PARAMS_CONTACT, PARAMS_STANCE and a stance in
+/// Version 3 has slopes in its configurations; version 2, which is read as well, says nothing of
+/// them. Both say where the plan stands: PARAMS_CONTACT, PARAMS_STANCE and a stance in
 /// every VERTEX_CONFIGURATION. Plans of version 1, which had PARAMS_WHEELS instead, are refused.
 
 #include <locograph/core/parameters.h>
@@ -19,7 +20,7 @@
 
 namespace locograph {
 
-inline constexpr int kPlanFormat = 2;
+inline constexpr int kPlanFormat = 3, kOldestPlanFormat = 2;
 
 inline constexpr int kMostDraws = 20;
 

@@ -92,6 +92,7 @@ void VertexConfiguration::read(FieldReader& in) {
   state.resize(robot->robot->configuration_size());
   for (Eigen::Index i = 0; i < state.size(); ++i) state[i] = in.number();
   require_range(in, "a time of", time_s, ranges::kTime_s, " s");
+  if (time_s < 0.0) in.fail("a time of " + std::to_string(time_s) + " s", "0 or later");
   if (robot->robot->floating_base()) {
     for (const double x : state.head<3>()) {
       require_range(in, "a base at", x, ranges::kCoordinate_m, " m");
@@ -100,6 +101,11 @@ void VertexConfiguration::read(FieldReader& in) {
   }
   for (const double joint : state.tail(robot->robot->active_joint_count())) {
     require_range(in, "a joint at", joint, ranges::kJoint_rad, "");
+  }
+  slopes.resize(in.at_end() ? 0 : robot->robot->tangent_size());
+  for (double& slope : slopes) {
+    slope = in.number();
+    require_range(in, "a slope of", slope, ranges::kSlope, " per second");
   }
 }
 
@@ -119,7 +125,8 @@ void VertexConfiguration::write(FieldWriter& out) const {
   } else {
     out.integer(stance_number);
   }
-  for (Eigen::Index i = 0; i < state.size(); ++i) out.number(state[i]);
+  for (const double number : state) out.number(number);
+  for (const double number : slopes) out.number(number);
 }
 
 }  // namespace locograph

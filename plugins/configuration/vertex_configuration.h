@@ -1,7 +1,12 @@
 #pragma once
 /// VERTEX_CONFIGURATION: where a robot is, base pose and active joints, at one moment of a plan.
 ///
-///     VERTEX_CONFIGURATION id robot time stance  x y z qx qy qz qw  joints…      (m, rad, s)
+///     VERTEX_CONFIGURATION id robot time stance  x y z qx qy qz qw  joints…  slopes…  (m, rad, s)
+///
+/// time: 0 or later. slopes: all or none, of the curve that the plan defines
+/// (check/motion_curve.h): of the base's position in the world [m/s], its angular velocity along
+/// its own axes [rad/s], rates of the joints. Without them the curve has them by its rule. They are
+/// those of the configuration as it is written: whoever moves it takes them away.
 ///
 /// stance: number of the PARAMS_STANCE that is held from here to the next configuration, of the
 /// last one the stance that the robot ends in; `-` where it is not known.
@@ -53,6 +58,7 @@ struct VertexConfiguration : Vertex<Eigen::Dynamic, Eigen::Dynamic> {
   double time_s = 0.0;
   int stance_number = kNoStance;
   std::shared_ptr<const RobotParameter> robot;
+  Eigen::VectorXd slopes;  ///< Robot::tangent_size() numbers, or none
 
   VertexConfiguration() = default;
   VertexConfiguration(int number, std::shared_ptr<const RobotParameter> parameter, double time,

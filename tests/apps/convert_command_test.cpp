@@ -156,8 +156,11 @@ TEST(ConvertCommand, JsonIsLaidOutLikeAJointTrajectory) {
   }
   EXPECT_EQ(json["points"][3]["time_from_start"]["sec"], 1);
   EXPECT_EQ(json["points"][3]["time_from_start"]["nanosec"], 500000000);
-  EXPECT_NEAR(json["points"][2]["velocities"][0].get<double>(), 0.4, 1e-9);
-  EXPECT_NEAR(json["points"][2]["accelerations"][0].get<double>(), 0.4, 1e-9);
+  EXPECT_NEAR(json["points"][1]["velocities"][0].get<double>(), 0.2, 1e-9);
+  EXPECT_NEAR(json["points"][0]["accelerations"][0].get<double>(), 0.4, 1e-9);
+  // It stands still where its stance changes, and brakes for that.
+  EXPECT_EQ(json["points"][2]["velocities"][0], 0.0);
+  EXPECT_NEAR(json["points"][1]["accelerations"][0].get<double>(), 2.0, 1e-9);
   EXPECT_EQ(json["points"][0]["velocities"][0], 0.0);
   EXPECT_EQ(json["points"][4]["velocities"][0], 0.0);
   ASSERT_EQ(json["base"].size(), 5U);
@@ -219,7 +222,7 @@ TEST(ConvertCommand, RefusesTablesThatAreWrongWithTheirLine) {
   runner.expect_bad_table(table.substr(table.find("time_s")), "",
                           "names neither robot nor contacts");
   runner.expect_bad_table(table.substr(0, last + 1), line(0), "no configurations");
-  runner.expect_bad_table(replaced(table, "PARAMS_PLAN 1 2", "PARAMS_PLAN 1 9"), ":3",
+  runner.expect_bad_table(replaced(table, "PARAMS_PLAN 1 3", "PARAMS_PLAN 1 9"), ":3",
                           "a plan of format version 9");
 }
 
@@ -295,13 +298,7 @@ TEST(ConvertCommand, WhatItDoesNotConvert) {
   expect_refusal(runner.run("convert plan.g2o -o again.g2o"), "again.g2o", "another one");
   runner.write("words.csv", "");
   expect_refusal(runner.run("convert words.csv -o x.g2o"), "words.csv", "names neither robot");
-  PlanText stances = standing_segments();
-  std::erase_if(stances.parameters,
-                [](const std::string& line) { return line.starts_with("PARAMS_SEGMENT"); });
-  for (std::string& line : stances.parameters) {
-    if (line.starts_with("PARAMS_PLAN")) line += " stances_only";
-  }
-  runner.write("stances.g2o", stances.text());
+  ASSERT_EQ(runner.run("plan standing_up --stances-only -o stances.g2o").exit_code, 0);
   expect_refusal(runner.run("convert stances.g2o -o x.csv"), "stances.g2o",
                  "is a plan of stances, which has no motion");
   PlanText at_once = standing_segments();

@@ -82,7 +82,7 @@ std::string drive(const std::string& attributes, const std::string& environment 
          "/>\n</scenario>\n";
 }
 
-const char kCart[] = "PARAMS_ROBOT 0 cart.urdf cart.srdf floating 0\nPARAMS_PLAN 1 2\n";
+const char kCart[] = "PARAMS_ROBOT 0 cart.urdf cart.srdf floating 0\nPARAMS_PLAN 1 3\n";
 const char kAtRest[] = "VERTEX_CONFIGURATION 0 0 0 - 0 0 0 0 0 0 1 0.1 0.2 0.3\n";
 
 struct HostileCase {

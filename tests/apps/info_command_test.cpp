@@ -97,8 +97,30 @@ TEST(Info, DescribesTheRobotThatComesAlong) {
       info(runner, "'" LOCOGRAPH_SOURCE_DIR "/robots/models/centauro/centauro.urdf'");
   EXPECT_EQ(json["name"], "centauro");
   EXPECT_EQ(json["missing_meshes"], nlohmann::json::array());
+  EXPECT_EQ(json["links_without_collision"], nlohmann::json::array());
   EXPECT_EQ(json["names_unknown_to_the_urdf"], nlohmann::json::array());
   EXPECT_EQ(json["configurations"], nlohmann::json({"home"}));
+}
+
+TEST(Info, NamesWhatIsSeenAndCannotCollide) {
+  const CommandRunner runner;
+  runner.write("arm.urdf", with(kArm, "<link name=\"base\">",
+                                "<link name=\"base\"><visual><geometry><box size=\"1 1 1\"/>"
+                                "</geometry><material/></visual>"));
+  nlohmann::json json = info(runner, "arm.urdf");
+  EXPECT_EQ(json["collision_elements"], 1);
+  EXPECT_EQ(json["collision_shapes"], 1);
+  EXPECT_EQ(json["links_without_collision"], nlohmann::json({"base"}));
+  EXPECT_FALSE(json.contains("warnings"));
+  runner.write("bare.urdf", with(kArm,
+                                 "<collision><geometry><mesh filename=\"package://arm/hand.stl\"/>"
+                                 "</geometry></collision>",
+                                 ""));
+  json = info(runner, "bare.urdf");
+  EXPECT_EQ(json["collision_elements"], 0);
+  ASSERT_EQ(json["warnings"].size(), 1u);
+  EXPECT_NE(json["warnings"][0].get<std::string>().find("no link has a <collision>"),
+            std::string::npos);
 }
 
 TEST(Info, TellsHowCloselyTheDistanceEdgesSeeEachLink) {

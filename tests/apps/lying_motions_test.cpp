@@ -108,9 +108,12 @@ TEST(LyingMotion, ASegmentTakesNoTime) {
 }
 
 TEST(LyingMotion, APlanOfStancesHasSegments) {
+  // It is a motion, then, and judged as one.
   PlanText plan = standing_segments();
-  replace_line(plan, "PARAMS_PLAN", "PARAMS_PLAN 1 2 stances_only");
-  expect_no_plan(plan, "PARAMS_SEGMENT 20", "segment 0 of a plan of stances");
+  replace_line(plan, "PARAMS_PLAN", "PARAMS_PLAN 1 3 stances_only");
+  plan.configurations[3].time_s = plan.configurations[2].time_s + 1e-3;
+  plan.configurations[3].q[20] += 0.3;
+  EXPECT_NE(violated_by(plan).find(" velocity_limits "), std::string::npos);
 }
 
 TEST(LyingMotion, TimesStandStill) {

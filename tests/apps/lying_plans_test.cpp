@@ -177,6 +177,7 @@ TEST(LyingPlan, LinksMayMeetAndJointsMoveAsTheScenariosRobotSays) {
                with_robot(runner.plan(), stem + ".urdf other.srdf floating 1 lower_body"));
   EXPECT_EQ(runner.run("check same.g2o").exit_code, 0);
   PlanText fewer = runner.plan();
+  fewer.without_slopes();
   for (PlanText::Configuration& c : fewer.configurations) c.q.resize(8);
   runner.write("fewer.g2o", with_robot(fewer, stem + ".urdf other.srdf floating 1 fewer"));
   const Outcome outcome = runner.run("check fewer.g2o");
@@ -261,7 +262,7 @@ class StandingUp : public CommandRunner {
   PlanText plan_that_says(const std::string& words) const {
     PlanText text = plan();
     for (std::string& line : text.parameters) {
-      if (line.starts_with("PARAMS_PLAN ")) line = "PARAMS_PLAN 1 2 stances_only " + words;
+      if (line.starts_with("PARAMS_PLAN ")) line = "PARAMS_PLAN 1 3 stances_only " + words;
     }
     return text;
   }
@@ -322,6 +323,9 @@ TEST(LyingPlan, AClearanceIsJudgedHoweverOftenAStanceComesBack) {
     again.id = back.id + 1;
     back.stance = number;
     plan.configurations.insert(plan.configurations.begin() + 2, {back, again});
+  }
+  for (std::size_t i = 0; i < plan.configurations.size(); ++i) {
+    plan.configurations[i].time_s = static_cast<double>(i);
   }
   runner.write("often.g2o", plan.text());
   EXPECT_EQ(runner.run("check often.g2o").exit_code, 0);

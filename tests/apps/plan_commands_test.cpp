@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <sstream>
+#include <utility>
 
+#include "apps/shipped_scenario.h"
 #include "apps/standing_plan.h"
 
 namespace locograph {
@@ -62,7 +66,7 @@ TEST(PlanCommands, PlanPrintsOneJsonObjectWithEveryField) {
   EXPECT_TRUE(json["reason"].is_string());
   EXPECT_EQ(json["seed"], 7);
   EXPECT_EQ(json["configurations"], 50);
-  EXPECT_NEAR(json["duration_s"], 40.0, 1e-9);
+  EXPECT_NEAR(json["duration_s"], 40.0 + 2.0 * 4.0 / 49.0 / 0.1, 1e-9);
   for (const char* field : {"stances", "vertices_in_tree", "iterations", "segments"}) {
     EXPECT_TRUE(json[field].is_number_integer()) << field;
   }
@@ -224,7 +228,7 @@ TEST(PlanCommands, APlanOfAnOlderFormatIsRefusedByName) {
   const CommandRunner runner;
   runner.write("old.g2o", "PARAMS_WHEELS 1 0 1 wheel 0.1\n");
   expect_refusal(runner.run("check old.g2o"), "old.g2o:1",
-                 "PARAMS_WHEELS of an older format, expected a plan of format version 2");
+                 "PARAMS_WHEELS of an older format, expected a plan of format version 3");
 }
 
 TEST(PlanCommands, APlanDoesNotVouchForItself) {
@@ -266,7 +270,8 @@ TEST(PlanCommands, PlanSaysNoToWhatTheJudgeRefuses) {
   drive << "<scenario version=\"1\" name=\"fast\">\n<robot model=\"centauro\" "
            "active=\"lower_body\"/>\n<wheels>\n";
   for (int i = 1; i <= 4; ++i) drive << "<wheel link=\"wheel_" << i << "\" radius=\"0.078\"/>\n";
-  drive << "</wheels>\n<drive distance=\"4\" speed=\"10\" configurations=\"50\"/>\n"
+  drive << "</wheels>\n<limits base_linear=\"0.5\"/>\n"
+           "<drive distance=\"4\" speed=\"10\" configurations=\"50\"/>\n"
            "</scenario>\n";
   runner.write("fast.xml", drive.str());
   const Outcome outcome = runner.run("plan fast.xml -o plan.g2o --json");
@@ -276,6 +281,45 @@ TEST(PlanCommands, PlanSaysNoToWhatTheJudgeRefuses) {
   EXPECT_NE(json["reason"].get<std::string>().find("refused: "), std::string::npos);
   EXPECT_GT(json["time"]["judge"].get<double>(), 0.0);
   EXPECT_FALSE(runner.exists("plan.g2o"));
+}
+
+/// The URDF of a robot that comes along, without its collision shapes.
+std::string without_shapes(const std::string& robot) {
+  std::ifstream in(LOCOGRAPH_SOURCE_DIR "/robots/models/" + robot + "/" + robot + ".urdf");
+  std::string text((std::istreambuf_iterator<char>(in)), {});
+  const std::string end = "</collision>";
+  for (std::size_t at = 0; (at = text.find("<collision", at)) != std::string::npos;) {
+    text.erase(at, text.find(end, at) + end.size() - at);
+  }
+  return text;
+}
+
+TEST(PlanCommands, PlanRefusesARobotWithoutShapes) {
+  const CommandRunner runner;
+  for (const auto& [scenario, robot] :
+       {std::pair<std::string, std::string>{"standing_up", "coman_plus"},
+        {"centauro_drive", "centauro"}}) {
+    const std::string srdf = LOCOGRAPH_SOURCE_DIR "/robots/models/" + robot + "/" + robot + ".srdf";
+    runner.write("bare.urdf", without_shapes(robot));
+    runner.write("bare.xml", test::with(test::shipped(scenario), "model=\"" + robot + "\"",
+                                        "urdf=\"bare.urdf\" srdf=\"" + srdf + "\""));
+    const int before = runner.files();
+    expect_refusal(runner.run("plan bare.xml -o plan.g2o"), "bare.urdf",
+                   "no link of the robot has a <collision>");
+    EXPECT_EQ(runner.files(), before);
+  }
+}
+
+TEST(PlanCommands, PlanNamesLinksThatTouchNothing) {
+  const CommandRunner runner;
+  const std::string call = "plan standing_up --stances-only --seed 3 -o plan.g2o";
+  const Outcome planned = runner.run(call + " --json");
+  EXPECT_EQ(planned.json()["links_without_collision"], nlohmann::json({"HeadHokuyo"}));
+  const nlohmann::json trusted = runner.run("check plan.g2o --json").json()["trusted"];
+  EXPECT_NE(std::find(trusted.begin(), trusted.end(),
+                      "HeadHokuyo: that it touches nothing (no collision shape)"),
+            trusted.end())
+      << trusted;
 }
 
 TEST(PlanCommands, RefinePrintsOneJsonObjectWithEveryField) {

@@ -19,10 +19,13 @@ std::string contacts(const std::string& lines) {
   return "<contacts version=\"1\">\n" + lines + "</contacts>\n";
 }
 
-/// Two spheres on a fixed mast: as small as a robot on two points can be.
-std::string small_robot(const std::string& effort, const std::string& inertial) {
-  return "<robot name=\"small\">\n<link name=\"base\">" + inertial +
-         "</link>\n<link name=\"arm\">" + inertial +
+/// Two spheres with a hinge: as small as a robot can be. shape: of each, if they are to have one.
+std::string small_robot(const std::string& effort, const std::string& inertial,
+                        const std::string& shape =
+                            "<collision><origin xyz=\"0 0 0.1\"/><geometry>"
+                            "<sphere radius=\"0.05\"/></geometry></collision>") {
+  return "<robot name=\"small\">\n<link name=\"base\">" + inertial + shape +
+         "</link>\n<link name=\"arm\">" + inertial + shape +
          "</link>\n<joint name=\"hinge\" type=\"revolute\"><parent link=\"base\"/>"
          "<child link=\"arm\"/><origin xyz=\"0 0 0.5\"/><axis xyz=\"0 1 0\"/>"
          "<limit lower=\"-1\" upper=\"1\" velocity=\"1\" effort=\"" +
@@ -78,6 +81,8 @@ TEST(PostureCommand, SaysInWordsWhatItFound) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   EXPECT_NE(outcome.out.find("posture found"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("written: out.g2o"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("without a collision shape: HeadHokuyo"), std::string::npos)
+      << outcome.out;
   EXPECT_TRUE(runner.exists("out.g2o"));
 }
 
@@ -126,6 +131,57 @@ TEST(PostureCommand, ReadsARobotFromItsUrdf) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
 }
 
+// The shapes go from its file, for whatever reason, after there is a posture.
+TEST(PostureCommand, IsNotBelievedByCheckOfARobotWithoutShapes) {
+  const CommandRunner runner;
+  runner.write("small.urdf", small_robot("5", kBody));
+  runner.write("base.xml", kOnItsBase);
+  ASSERT_EQ(runner.run("posture small.urdf --contacts base.xml -o out.g2o").exit_code, 0);
+  EXPECT_EQ(runner.run("check out.g2o").exit_code, 0);
+  runner.write("small.urdf", small_robot("5", kBody, ""));
+  // Its edges say how many shapes there were; without them nothing does.
+  EXPECT_EQ(runner.run("check out.g2o").exit_code, 2);
+  std::istringstream posture(runner.read("out.g2o"));
+  std::string rest;
+  for (std::string line; std::getline(posture, line);) {
+    const bool counts = line.starts_with("EDGE_SELF_") || line.starts_with("EDGE_GROUND_");
+    if (!counts) rest += line + '\n';
+  }
+  runner.write("out.g2o", rest);
+  const Outcome checked = runner.run("check out.g2o");
+  EXPECT_EQ(checked.exit_code, 1) << checked.err;
+  EXPECT_NE(checked.out.find("NOT feasible"), std::string::npos) << checked.out;
+  EXPECT_NE(checked.out.find("not judged: obstacle_distance, ground_penetration, touching_depth, "
+                             "self_collision, because no link of the robot has a collision shape"),
+            std::string::npos)
+      << checked.out;
+  const nlohmann::json json = runner.run("check out.g2o --json").json();
+  EXPECT_EQ(json["feasible"], false);
+  EXPECT_TRUE(json["min_clearance_m"].is_null());
+  for (const auto& violation : json["violations"]) {
+    if (violation["constraint"] != "obstacle_distance") continue;
+    EXPECT_EQ(violation["judged"], false);
+    EXPECT_TRUE(violation["worst"].is_null());
+  }
+}
+
+// A hand in the wall is in the wall, whatever comes before its shape in the file.
+TEST(PostureCommand, SeesShapesBelowVisualsWhoseMaterialsHaveNoName) {
+  const CommandRunner runner;
+  const std::string nameless =
+      "<visual><geometry><sphere radius=\"0.05\"/></geometry><material><color rgba=\"1 0 0 1\"/>"
+      "</material></visual><collision><origin xyz=\"0 0 0.1\"/><geometry><sphere "
+      "radius=\"0.05\"/></geometry></collision>";
+  runner.write("small.urdf", small_robot("5", kBody, nameless));
+  runner.write("base.xml", kOnItsBase);
+  runner.write("box.xml",
+               "<obstacles version=\"1\">\n"
+               "  <box name=\"box\" center=\"0 0 0.6\" size=\"1 1 0.5\"/>\n"
+               "</obstacles>\n");
+  EXPECT_EQ(runner.run("posture small.urdf --contacts base.xml").exit_code, 0);
+  EXPECT_EQ(runner.run("posture small.urdf --contacts base.xml --obstacles box.xml").exit_code, 1);
+}
+
 // Statics asks for masses only.
 TEST(PostureCommand, TakesARobotWithAnInertiaThatNoBodyHas) {
   const CommandRunner runner;
@@ -143,6 +199,7 @@ TEST(PostureCommand, RefusesBadInputOnOneLineAndWritesNothing) {
   runner.write("base.xml", kOnItsBase);
   runner.write("feet.xml", contacts(sole("l_sole", 0.12) + sole("r_sole", -0.12)));
   runner.write("weak.urdf", small_robot("0", kBody));
+  runner.write("shapeless.urdf", small_robot("5", kBody, ""));
   runner.write("empty.urdf", small_robot("5", ""));
   runner.write("massless.urdf",
                small_robot("5",
@@ -159,6 +216,8 @@ TEST(PostureCommand, RefusesBadInputOnOneLineAndWritesNothing) {
     expect_refusal(runner.run("posture " + arguments + " -o out.g2o"), place, words);
   };
   refused("weak.urdf --contacts base.xml", "weak.urdf", "effort limit of 0");
+  refused("shapeless.urdf --contacts base.xml", "shapeless.urdf",
+          "no link of the robot has a <collision>");
   refused("empty.urdf --contacts base.xml", "empty.urdf", "mass");
   refused("massless.urdf --contacts base.xml", "massless.urdf:2", "mass");
   refused("coman_minus --contacts base.xml", "coman_minus", "no such robot");

@@ -26,7 +26,7 @@ inline std::string squat(const std::string& contacts) {
   state.update(q.data());
   std::ostringstream text;
   text.precision(17);
-  text << "PARAMS_ROBOT 0 " << stem << ".urdf " << stem << ".srdf floating 0\nPARAMS_PLAN 1 2\n";
+  text << "PARAMS_ROBOT 0 " << stem << ".urdf " << stem << ".srdf floating 0\nPARAMS_PLAN 1 3\n";
   for (const int number : {4, 5}) {
     const char* link = number == 4 ? "l_sole" : "r_sole";
     const Eigen::Isometry3d& sole = state.world_from_link(robot.link_index(link));
@@ -47,6 +47,7 @@ struct PlanText {
     double time_s;
     std::string stance;
     std::vector<double> q;
+    std::vector<double> slopes = {};  ///< none: by the rule
   };
   std::vector<std::string> parameters;
   std::vector<Configuration> configurations;
@@ -61,13 +62,30 @@ struct PlanText {
       if (!(fields >> tag) || tag != "VERTEX_CONFIGURATION") continue;
       fields >> c.id >> robot >> c.time_s >> c.stance;
       for (double value; fields >> value;) c.q.push_back(value);
+      // COMAN+ has 7 + 28 numbers, CENTAURO on its legs 7 + 24: more are slopes.
+      if (c.q.size() > 40) {
+        const std::size_t positions = (c.q.size() + 1) / 2;
+        c.slopes.assign(c.q.begin() + static_cast<std::ptrdiff_t>(positions), c.q.end());
+        c.q.resize(positions);
+      }
       configurations.push_back(c);
     }
   }
 
-  /// `count` copies of the first configuration, `step_s` apart.
+  void without_slopes() {
+    for (Configuration& c : configurations) c.slopes.clear();
+  }
+
+  /// One more word in its PARAMS_PLAN.
+  void mark(const std::string& word) {
+    for (std::string& line : parameters)
+      if (line.starts_with("PARAMS_PLAN ")) line += ' ' + word;
+  }
+
+  /// `count` copies of the first configuration, `step_s` apart, with slopes by the rule.
   void repeat_first(int count, double step_s) {
     configurations.resize(1);
+    configurations.front().slopes.clear();
     for (int i = 1; i < count; ++i) {
       Configuration c = configurations.front();
       c.id += i;
@@ -83,6 +101,7 @@ struct PlanText {
     for (const Configuration& c : configurations) {
       out << "VERTEX_CONFIGURATION " << c.id << " 0 " << c.time_s << ' ' << c.stance;
       for (const double value : c.q) out << ' ' << value;
+      for (const double value : c.slopes) out << ' ' << value;
       out << '\n';
     }
     return out.str();

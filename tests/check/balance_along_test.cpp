@@ -77,7 +77,7 @@ TEST(BalanceAlong, ReportsTheSameWithoutTheProgrammesThatAreNotNeeded) {
     for (const bool enforce : {true, false}) {
       CheckOptions options;
       options.enforce_torque_limits = enforce;
-      const Motion motion = arms(50, falls ? 1.0 : 0.05, falls);
+      const Motion motion = arms(50, falls ? 1.0 : 0.01, falls);
       EXPECT_EQ(judge.check(motion, options).constraint("static_balance").violated, falls);
       expect_one_report(judge, motion, options);
     }

@@ -111,7 +111,8 @@ inline std::set<std::string> violated(const CheckReport& report) {
     EXPECT_EQ(violation.judged, violation.why_not.empty()) << violation.constraint;
     if (violation.violated) names.insert(violation.constraint);
   }
-  EXPECT_EQ(report.feasible, names.empty() && report.constraint("static_balance").judged);
+  EXPECT_EQ(report.feasible, names.empty() && report.constraint("obstacle_distance").judged &&
+                                 report.constraint("static_balance").judged);
   return names;
 }
 

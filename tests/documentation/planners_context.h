@@ -466,6 +466,12 @@ struct Context : DriveContext {
   const Judging judging = judging_of(graph, plan, {.data_folder = data_folder});
 };
 }  // namespace plan_seen_world_h
+namespace plan_slope_limits_h {
+struct Context : StepContext {
+  const Motion motion{{0, 1, 2, 3, 4, 5, 6, 7, 8}, std::vector<Eigen::VectorXd>(9, q), {}, {}};
+  const MotionCurve curve{robot, motion};
+};
+}  // namespace plan_slope_limits_h
 
 /// COMAN+ on both soles.
 inline constexpr std::string_view kStanding = R"(<contacts version="1" name="standing">

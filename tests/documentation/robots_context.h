@@ -114,5 +114,8 @@ struct Context {
   Context() { write_example_file("robot.urdf", "<robot><link name='pelvis'/></robot>"); }
 };
 }  // namespace xml_file_h
+namespace urdfdom_model_h {
+using Context = xml_file_h::Context;
+}
 
 }  // namespace locograph::documentation::in_robots

@@ -219,16 +219,18 @@ TEST(LocalPlanner, CallsFeasibleWhatTheJudgeAccepts) {
   CrossingOptions options;
   options.every = 6;
   int called = 0, wrongly = 0, judged = 0, agreed = 0;
+  std::string refused;
   for (const Crossing& crossing : crossings(6)) {
     const CrossingResult result = run_crossing(centauro_drive(), crossing, options);
     called += result.called_feasible;
     wrongly += result.wrongly_feasible;
     judged += result.judged_feasible;
     agreed += result.agreed_feasible;
+    if (!result.refused.empty()) refused += result.refused + "; ";
   }
   EXPECT_GT(judged, 20);
   EXPECT_GE(agreed, 0.95 * judged);
-  EXPECT_LE(wrongly, 0.05 * called);
+  EXPECT_LE(wrongly, 0.05 * called) << refused;
 }
 
 }  // namespace local_planner_test

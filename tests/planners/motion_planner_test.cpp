@@ -1,6 +1,7 @@
 // Whole motions: stances, paths and times, judged here by other means than the planner's.
 #include <gtest/gtest.h>
 #include <locograph/check/judge.h>
+#include <locograph/check/motion_curve.h>
 #include <locograph/common/error.h>
 #include <locograph/planners/offline/motion/motion_planner.h>
 #include <locograph/planners/offline/motion/segment_motion.h>
@@ -188,7 +189,8 @@ TEST_P(MotionPlanTest, AccelerationsOfJointsDoNotJump) {
 }
 
 TEST_P(MotionPlanTest, ContactsHoldBetweenVertices) {
-  MotionSampler sampler(robot, motion);
+  const MotionCurve curve(robot, motion);
+  MotionSampler sampler(curve);
   std::vector<Eigen::Isometry3d> poses;
   double most_m = 0.0, most_rad = 0.0;
   for (int i = 0; i + 1 < static_cast<int>(motion.configurations.size()); ++i) {
@@ -214,33 +216,25 @@ TEST_P(MotionPlanTest, ContactsHoldBetweenVertices) {
   EXPECT_LT(most_rad, 5e-3);
 }
 
-/// At every vertex whose steps are as long: forces on the base, gravity and inertia included.
+/// As the step from each vertex on begins: forces on the base, gravity and inertia included.
 TEST_P(MotionPlanTest, WrenchesBalanceGravityAndInertia) {
   ASSERT_EQ(plan.wrenches.size(), motion.configurations.size());
   RobotDynamics dynamics(robot);
   RobotState state(robot);
   const double weight_N = robot.total_mass() * standard_gravity().norm();
-  const int size = robot.tangent_size();
-  Eigen::VectorXd velocity(size), acceleration(size), asked(size);
+  const MotionCurve curve(robot, motion);
+  CurvePoint point;
+  Eigen::VectorXd asked(robot.tangent_size());
   double inertia = 0.0;
   for (std::size_t i = 0; i < motion.configurations.size(); ++i) {
     const auto stance = static_cast<std::size_t>(motion.stance_from[i]);
     const std::vector<Contact>& contacts = motion.stances[stance].contacts;
     ASSERT_EQ(plan.wrenches[i].size(), contacts.size()) << i;
-    if (i == 0 || i + 1 == motion.configurations.size()) continue;
-    const double before_s = motion.time_s[i] - motion.time_s[i - 1];
-    const double after_s = motion.time_s[i + 1] - motion.time_s[i];
-    if (std::abs(before_s - after_s) > 1e-9) continue;
+    if (i + 1 == motion.configurations.size()) continue;
+    curve.step(static_cast<int>(i)).at(0.0, point);  // as the step from here on begins
     state.update(motion.configurations[i].data());
     const Eigen::Isometry3d base = state.world_from_link(0);
-    const Eigen::Matrix3d to_base = base.linear().transpose();
-    const StepRates a = rates_of(robot, motion, i - 1), b = rates_of(robot, motion, i);
-    const Eigen::Vector3d linear = to_base * (0.5 * (a.linear + b.linear));
-    const Eigen::Vector3d angular = 0.5 * (a.angular + b.angular);
-    velocity << linear, angular, 0.5 * (a.joints + b.joints);
-    acceleration << to_base * (b.linear - a.linear) / after_s - angular.cross(linear),
-        (b.angular - a.angular) / after_s, (b.joints - a.joints) / after_s;
-    dynamics.inverse_dynamics(state, velocity, acceleration, {}, asked);
+    dynamics.inverse_dynamics(state, point.velocity, point.acceleration, {}, asked);
     Eigen::Vector3d force = -base.linear() * asked.head<3>();
     Eigen::Vector3d moment = -base.linear() * asked.segment<3>(3);
     inertia = std::max(inertia, (force - robot.total_mass() * standard_gravity()).norm());

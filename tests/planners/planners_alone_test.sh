@@ -13,8 +13,8 @@ fail() {
   exit 1
 }
 
-# Motions, options, reports, tolerances and tasks; and who is asked.
-values='check_report|judge|limits|motion|plan_ends'
+# Motions, the one curve that they define, options, reports, tolerances and tasks; and who is asked.
+values='check_report|judge|limits|motion|motion_curve|plan_ends'
 ! grep -rnE '#include [<"]([^>"]*/)?check/' "$source"/{planners,plugins} --include='*.h' \
   --include='*.cpp' | grep -vE "#include <locograph/check/($values)\.h>" ||
   fail "planners include formulas of the judge"
@@ -22,6 +22,7 @@ values='check_report|judge|limits|motion|plan_ends'
 # Functions that the judge defines and a library of planners needs; signatures left out.
 ours() { nm -C "$@" 2>/dev/null | sed -nE "s/^[0-9a-f ]* $kind (locograph::[^([]*).*/\1/p" | sort -u; }
 asked='Judge::.*|CheckReport::.*|CheckOptions::validate|violation_text|plan_ends|end_violations'
+asked+='|MotionCurve::.*|CurveStep::.*|part_of'
 for library; do
   needed=$(comm -12 <(kind='U' ours "$library") <(kind='[TtWVu]' ours "$check"))
   formulas=$(grep -vE "^locograph::($asked)$" <<<"$needed" || true)

@@ -23,7 +23,10 @@ TEST(WheeledDrive, StraightOnIsFiftyConfigurationsOverFourMetresAtOneHeight) {
     const Eigen::VectorXd& q = motion.configurations[i];
     const Eigen::VectorXd& first = motion.configurations.front();
     const double distance = 4.0 * i / 49.0;
-    EXPECT_NEAR(motion.time_s[i], distance / 0.1, 1e-12);
+    // The first and the last step take twice as long as the others: it speeds up, and brakes.
+    const double later_m = (i == 0 ? 0.0 : 4.0 / 49.0) + (i == 49 ? 4.0 / 49.0 : 0.0);
+    EXPECT_NEAR(motion.time_s[i], (distance + later_m) / 0.1, 1e-12);
+    EXPECT_EQ(motion.slopes[i][0], i == 0 || i == 49 ? 0.0 : 0.1);
     EXPECT_NEAR(q[0], distance, 1e-12);
     EXPECT_EQ(q[1], 0.0);
     EXPECT_EQ(q[2], first[2]) << "height";

@@ -7,7 +7,7 @@ namespace {
 // A good plan: parameters 0 to 4 and vertices 0 and 1.
 constexpr const char* kGood =
     "PARAMS_ROBOT 0 cart.urdf cart.srdf floating 0\n"
-    "PARAMS_PLAN 1 2\n"
+    "PARAMS_PLAN 1 3\n"
     "PARAMS_WORLD 2 - -\n"
     "PARAMS_CONTACT 3 0 wheel wheel wheel 0.1 0.8 100 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 free\n"
     "PARAMS_STANCE 5 1 3\n"
@@ -21,8 +21,16 @@ const BadLine kBadLines[] = {
     {"VertexOfAParameterThatIsNoRobot", "VERTEX_CONFIGURATION 9 2 0 - 0 0 0 0 0 0 1 0 0 0",
      "parameter 2 is a PARAMS_WORLD"},
     {"VertexWithTooFewJoints", "VERTEX_CONFIGURATION 9 0 0 - 0 0 0 0 0 0 1 0 0", "too few fields"},
-    {"VertexWithTooManyJoints", "VERTEX_CONFIGURATION 9 0 0 - 0 0 0 0 0 0 1 0 0 0 7",
+    {"VertexWithTooManyJoints",
+     "VERTEX_CONFIGURATION 9 0 0 - 0 0 0 0 0 0 1 0 0 0 1 2 3 4 5 6 7 8 9 7",
      "too many fields, from '7' on"},
+    {"VertexWithTooFewSlopes", "VERTEX_CONFIGURATION 9 0 0 - 0 0 0 0 0 0 1 0 0 0 7",
+     "too few fields"},
+    {"VertexFasterThanAnything",
+     "VERTEX_CONFIGURATION 9 0 0 - 0 0 0 0 0 0 1 0 0 0 1 2 3 4 5 6 7 8 1e7",
+     "a slope of 1e+07 per second, expected at most 1e+06 per second"},
+    {"VertexBeforeTheClock", "VERTEX_CONFIGURATION 9 0 -0.5 - 0 0 0 0 0 0 1 0 0 0",
+     "a time of -0.500000 s, expected 0 or later"},
     {"VertexWithoutTime", "VERTEX_CONFIGURATION 9 0", "too few fields"},
     {"VertexWithAZeroQuaternion", "VERTEX_CONFIGURATION 9 0 0 - 1 2 3 0 0 0 0 0 0 0",
      "quaternion of length zero"},
@@ -64,13 +72,14 @@ const BadLine kBadLines[] = {
      "parameter 0 is given twice"},
     // Plans of version 1
     {"WheelsOfAnOlderPlan", "PARAMS_WHEELS 4 0 1 wheel 0.1",
-     "PARAMS_WHEELS of an older format, expected a plan of format version 2"},
+     "PARAMS_WHEELS of an older format, expected a plan of format version 3"},
     {"WheelContactOfAnOlderPlan", "EDGE_WHEEL_CONTACT 0 2 1 scalar 1",
      "EDGE_WHEEL_CONTACT of an older format"},
     {"ContactOfAnOlderPlan", "PARAMS_CONTACT 9 0 arm 0 0 0 link 0 0 1 1 0 0 point .5 1",
      "PARAMS_CONTACT of a plan of format version 1"},
-    {"PlanOfAnotherVersion", "PARAMS_PLAN 9 1", "a plan of format version 1, expected version 2"},
-    {"PlanOfAVersionToCome", "PARAMS_PLAN 9 3", "a plan of format version 3"},
+    {"PlanOfAnotherVersion", "PARAMS_PLAN 9 1",
+     "a plan of format version 1, expected version 2 or 3"},
+    {"PlanOfAVersionToCome", "PARAMS_PLAN 9 4", "a plan of format version 4"},
     {"PlanWithAnUnknownWord", "PARAMS_PLAN 9 2 stances", "'stances', expected 'stances_only'"},
     {"PlanWithAWordTwice", "PARAMS_PLAN 9 2 stances_only stances_only", "a second 'stances_only'"},
     {"PlanMovedTwice", "PARAMS_PLAN 9 2 moved_contacts 0.1 3 1 moved_contacts 0.1 3 1",

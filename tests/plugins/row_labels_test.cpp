@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kPlan =
     "PARAMS_ROBOT 0 cart.urdf cart.srdf floating 0\n"
-    "PARAMS_PLAN 1 2\n"
+    "PARAMS_PLAN 1 3\n"
     "PARAMS_WORLD 2 - -\n"
     "PARAMS_FRAME 3 0 arm 0 0 0.1 0 0 0 1\n"
     "PARAMS_CONTACT 4 0 \"\" arm surface 0.1 0.1 0.5 100 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0\n"

@@ -251,9 +251,8 @@ TEST_F(BadInput, GeometryThatIsNone) {
 }
 
 TEST_F(BadInput, WhatOnlyUrdfdomNotices) {
-  expect_urdf(changed("<link name=\"tip\"/>",
-                      "<material name='m'/><material name='m'/><link name=\"tip\"/>"),
-              0, "urdfdom refuses it: ");
+  expect_urdf(changed("<axis xyz=\"1 0 1\"/>", "<axis xyz=\"1 0 1\"/><safety_controller/>"), 0,
+              "urdfdom refuses it: ");
 }
 
 TEST_F(BadInput, MimicJointThatNobodyLeads) {

@@ -54,14 +54,14 @@ TEST_F(HostileRobot, IsALongerChain) {
   expect_refusal("long.urdf: has ", folder.write("long.urdf", chain_urdf(200000)));
 }
 
-// urdfdom takes a bare & and what follows for something else than we do.
+// urdfdom would take a bare & and what follows for something else than we do.
 TEST_F(HostileRobot, HasNamesThatAreNoText) {
   const auto robot = [](const std::string& joint) {
     return "<robot name='r'><link name='a'/><link name='b'/>\n<joint name='" + joint +
            "' type='fixed'><parent link='a'/><child link='b'/></joint></robot>";
   };
-  expect_refusal("names.urdf:2: <joint> with the name 'ma&st_joint'",
-                 folder.write("names.urdf", robot("ma&st_joint")));
+  EXPECT_EQ(Robot::load(folder.write("names.urdf", robot("ma&st_joint"))).joints()[0].name,
+            "ma&st_joint");
   for (const char* name : {"&#0;", "a\xff\xff\xff\xff", "\xf4\xff\xff"}) {
     const std::string what = refusal(folder.write("names.urdf", robot(name)));
     EXPECT_TRUE(what == "not refused" || what.find("names.urdf:2: ") != std::string::npos) << what;

@@ -218,15 +218,13 @@ TEST_F(BallAround, TouchesTheSolidThatItStandsOnAndNoOther) {
   EXPECT_NEAR(at(on_cube(), 0.0, -0.5, true).touched.distance_m, -0.5, 1e-9);
   // Beside the cube that it touches it is free.
   EXPECT_EQ(at(on_cube(), 0.65, -0.3, true).touched.link, -1);
-  // A neighbour that comes up beside the contact is in the way, one that lies below it may be
-  // touched like the cube itself.
+  // A neighbour is in the way, whether it comes up beside the contact or lies below it.
   World world = on_cube();
   world.solids.push_back({.name = "next"});
   world.solids[1].world_from_box.translation() << 1.0, 0.0, -0.45;
   EXPECT_NEAR(at(world, 0.45, 0.0, true).surface.distance_m, std::hypot(0.05, 0.05) - 0.1, 1e-9);
   world.solids[1].world_from_box.translation().z() = -0.55;
-  EXPECT_GT(at(world, 0.45, 0.0, true).surface.distance_m, 0.1);
-  EXPECT_NEAR(at(world, 0.6, -0.06, true).touched.distance_m, -0.01, 1e-9);
+  EXPECT_NEAR(at(world, 0.6, -0.06, true).surface.distance_m, -0.01, 1e-9);
 }
 
 TEST_F(BallAround, FarFacesOfTheSolidThatItTouchesAreStillInTheWay) {

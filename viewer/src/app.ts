@@ -272,6 +272,8 @@ export class App implements PageActions {
     const rows: Record<string, ArrayLike<number>> = {};
     for (let i = 0; i < count; ++i) rows[i] = this.initial.subarray(i * size, (i + 1) * size);
     this.applyLive(rows, 0, 0);
+    plan.restoreSlopes();
+    this.views.path?.place();
   }
 
   /** Takes over configurations, by their index, that a running refinement has changed. */

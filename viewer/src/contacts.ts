@@ -34,8 +34,14 @@ export class ContactTrack {
   private readonly moments: [number, number, number][];
   private readonly point = new Vector3();
   private readonly inverse = new Matrix4();
+  /** Of a plan with a curve, for each configuration: where the links of its contacts are. */
+  private readonly links: Float64Array[] = [];
 
-  constructor(private readonly plan: Plan) {
+  /** Moves the kinematics about, here and in replace(). */
+  constructor(
+    private readonly plan: Plan,
+    kinematics: Kinematics,
+  ) {
     this.most = plan.contacts.reduce((most, contacts) => Math.max(most, contacts.length), 0);
     const some = (has: (contact: Contact) => unknown) => plan.contacts.some((c) => c.some(has));
     this.hasForces = some((contact) => contact.force);
@@ -44,9 +50,26 @@ export class ContactTrack {
     this.pool = Array.from({ length: this.most }, emptyContact);
     this.forces = this.pool.map(() => [0, 0, 0]);
     this.moments = this.pool.map(() => [0, 0, 0]);
+    if (!plan.slopes || !some(({ kind }) => kind === 'wheel')) return;
+    const configuration = new Float32Array(plan.size);
+    plan.contacts.slice(0, plan.count).forEach((contacts, i) => {
+      plan.copyConfiguration(i, configuration);
+      kinematics.update(configuration);
+      this.links.push(new Float64Array(3 * contacts.length));
+      this.noteLinks(i, kinematics);
+    });
   }
 
-  update(time: number): void {
+  private noteLinks(index: number, kinematics: Kinematics): void {
+    const links = this.links[index];
+    if (!links) return;
+    this.plan.contacts[index].forEach(({ link }, i) => {
+      this.point.setFromMatrixPosition(kinematics.worldFromLink[link]).toArray(links, 3 * i);
+    });
+  }
+
+  /** Brings the contacts to a time [s] that the kinematics has been brought to. */
+  update(time: number, kinematics: Kinematics): void {
     const index = this.plan.indexAt(time);
     const fraction = this.plan.fractionAt(time, index);
     const now = this.plan.contacts[index] ?? [];
@@ -74,7 +97,28 @@ export class ContactTrack {
           this.moments[i][k] = a.moment[k] + fraction * (b.moment[k] - a.moment[k]);
         }
       }
+      if (same && a.kind === 'wheel' && fraction > 0) {
+        this.rollAlong(contact, index, i, fraction, kinematics);
+      }
       this.current.push(contact);
+    }
+  }
+
+  /** Puts what rolls, and is now on the straight way, where the curve has it. */
+  private rollAlong(
+    contact: Contact,
+    index: number,
+    i: number,
+    fraction: number,
+    kinematics: Kinematics,
+  ): void {
+    const from = this.links[index];
+    const to = this.links[index + 1];
+    if (!from || !to) return;
+    this.point.setFromMatrixPosition(kinematics.worldFromLink[contact.link]);
+    for (let k = 0; k < 3; ++k) {
+      const straight = from[3 * i + k] + fraction * (to[3 * i + k] - from[3 * i + k]);
+      contact.position[k] += this.point.getComponent(k) - straight;
     }
   }
 
@@ -99,6 +143,7 @@ export class ContactTrack {
       );
     });
     kinematics.update(configuration);
+    this.noteLinks(index, kinematics);
     contacts.forEach((contact, i) => {
       corners[i]?.forEach((corner, k) => {
         corner.applyMatrix4(kinematics.worldFromLink[contact.link]).toArray(contact.area![k]);

@@ -15,6 +15,10 @@ import { Kinematics } from './kinematics';
 import { Plan } from './plan';
 import { Theme } from './theme';
 
+/** Of the base's line, where it is curved. */
+const MOST_POINTS = 4000;
+const MOST_POINTS_A_STEP = 8;
+
 export function fatLine(width: number, opacity = 1): LineMaterial {
   return new LineMaterial({ linewidth: width, transparent: opacity < 1, opacity });
 }
@@ -73,6 +77,26 @@ export class PathView {
     return positions;
   }
 
+  /** The same along the plan's curve. */
+  private curvePositions(): Float32Array {
+    const { plan } = this;
+    const steps = plan.count - 1;
+    const pieces = Math.min(Math.floor(MOST_POINTS / Math.max(steps, 1)), MOST_POINTS_A_STEP);
+    if (!plan.slopes || !this.kinematics.floating || steps < 1 || pieces < 2) {
+      return this.basePositions(plan.configurations);
+    }
+    const configuration = new Float32Array(plan.size);
+    const positions = new Float32Array(3 * (steps * pieces + 1));
+    for (let i = 0; i <= steps * pieces; ++i) {
+      const index = Math.floor(i / pieces);
+      const begin = plan.times[index];
+      const end = plan.times[Math.min(index + 1, steps)];
+      plan.sample(begin + ((i % pieces) / pieces) * (end - begin), configuration);
+      positions.set(configuration.subarray(0, 3), 3 * i);
+    }
+    return positions;
+  }
+
   /** Puts dots and lines where the plan has them now. */
   place(): void {
     let dot = 0;
@@ -85,7 +109,7 @@ export class PathView {
     this.base.visible = this.kinematics.floating;
     this.base.geometry.dispose();
     this.base.geometry = new LineGeometry();
-    this.base.geometry.setPositions(this.basePositions(this.plan.configurations));
+    this.base.geometry.setPositions(this.curvePositions());
   }
 
   /** Colours by what has been executed up to a configuration. */

@@ -1,12 +1,12 @@
 /**
- * A plan: configurations over time, interpolated (linear, and slerp for the base). In a plan of
- * stances nothing lies between configurations: each is shown for a second.
+ * A plan: configurations over time, and the curve between them. In a plan of stances nothing lies
+ * between configurations: each is shown for a second.
  *
- *     const plan = new Plan(scene.plan, scene.robot.floating_base);
+ *     const plan = new Plan(scene.plan, scene.robot.floating_base, scene.stances);
  *     plan.sample(12.3, configuration);   // into an array of plan.size numbers
  */
-import { Quaternion } from 'three';
-import { Contact, PlanDescription, SceneError, Series, unpackFloats } from './scene_format';
+import { Curve } from './curve';
+import { Contact, PlanDescription, SceneError, Series, Stance, unpackFloats } from './scene_format';
 
 export type Part = 'executed' | 'window' | 'rest';
 
@@ -24,6 +24,8 @@ export class Plan {
   readonly steps: boolean;
   readonly times: Float64Array;
   readonly configurations: Float32Array;
+  /** Of the curve, a row for each configuration; null: the straight way. */
+  readonly slopes: Float32Array | null;
   readonly reference: Float32Array | null;
   readonly torques: Float32Array | null;
   readonly contacts: Contact[][];
@@ -33,10 +35,14 @@ export class Plan {
   window: number;
 
   private readonly floating: boolean;
-  private readonly from = new Quaternion();
-  private readonly to = new Quaternion();
+  private readonly curve: Curve;
+  private readonly given: Float32Array | null;
+  /** Configurations whose slopes follow from their neighbours. */
+  private readonly byRule = new Set<number>();
+  /** Configurations at which stances change. */
+  private readonly rests: Set<number>;
 
-  constructor(description: PlanDescription, floating: boolean) {
+  constructor(description: PlanDescription, floating: boolean, stances: Stance[] = []) {
     this.size = description.configuration_size;
     this.floating = floating;
     this.configurations = unpackFloats(description.configurations, this.size, 'configurations');
@@ -46,6 +52,11 @@ export class Plan {
     this.times = this.steps
       ? Float64Array.from({ length: this.count }, (_, i) => i)
       : timesOf(description.times, this.count);
+    this.slopes =
+      description.slopes && !this.steps ? slopesOf(description, this.count, floating) : null;
+    this.given = this.slopes?.slice() ?? null;
+    this.curve = new Curve(this.configurations, this.slopes, this.size, floating);
+    this.rests = new Set(stances.flatMap(({ from, to }) => [from, to]));
     this.reference = description.reference
       ? unpackFloats(description.reference, this.size, 'the reference plan')
       : null;
@@ -103,20 +114,12 @@ export class Plan {
     return step > 0 ? Math.min(Math.max((time - begin) / step, 0), 1) : 0;
   }
 
+  /** The configuration at a time [s]. */
   sample(time: number, configuration: Float32Array): void {
     const index = this.indexAt(time);
     const fraction = this.fractionAt(time, index);
-    const a = index * this.size;
-    const b = Math.min(index + 1, this.count - 1) * this.size;
-    const values = this.configurations;
-    for (let k = 0; k < this.size; ++k) {
-      configuration[k] = values[a + k] + fraction * (values[b + k] - values[a + k]);
-    }
-    if (this.floating) {
-      this.from.fromArray(values, a + 3).normalize();
-      this.to.fromArray(values, b + 3).normalize();
-      this.from.slerp(this.to, fraction).toArray(configuration, 3);
-    }
+    if (fraction === 0) this.copyConfiguration(index, configuration);
+    else this.curve.configuration(index, this.stepAfter(index), fraction, configuration);
   }
 
   copyConfiguration(index: number, configuration: Float32Array): void {
@@ -124,18 +127,12 @@ export class Plan {
     for (let k = 0; k < this.size; ++k) configuration[k] = this.configurations[first + k];
   }
 
-  /** Joint velocities [rad/s] between the configurations around a time; zero at the end. */
+  /** Joint velocities [rad/s] at a time [s]; zero where there is no step. */
   velocities(time: number, velocities: Float32Array): void {
     const index = Math.min(this.indexAt(time), Math.max(this.count - 2, 0));
-    const next = Math.min(index + 1, this.count - 1);
-    const step = this.steps ? 0 : this.times[next] - this.times[index];
-    const offset = this.floating ? 7 : 0;
-    for (let k = 0; k < this.size - offset; ++k) {
-      const change =
-        this.configurations[next * this.size + offset + k] -
-        this.configurations[index * this.size + offset + k];
-      velocities[k] = step > 0 ? change / step : 0;
-    }
+    const step = this.steps ? 0 : this.stepAfter(index);
+    if (step > 0) this.curve.jointRates(index, step, this.fractionAt(time, index), velocities);
+    else velocities.fill(0, 0, this.size - (this.floating ? 7 : 0));
   }
 
   partOf(index: number, executed = this.executed): Part | null {
@@ -144,11 +141,41 @@ export class Plan {
     return index <= executed + this.window ? 'window' : 'rest';
   }
 
+  /** Puts in another configuration; its slope is from now on the one of three points. */
   replace(index: number, configuration: ArrayLike<number>): boolean {
     if (!Number.isInteger(index) || index < 0 || index >= this.count) return false;
     if (configuration.length !== this.size) return false;
     this.configurations.set(configuration, index * this.size);
+    this.byRule.add(index);
+    for (const at of [index - 1, index, index + 1]) {
+      if (this.byRule.has(at)) this.followRule(at);
+    }
     return true;
+  }
+
+  /** Slopes as they were at first, for when all configurations are. */
+  restoreSlopes(): void {
+    this.byRule.clear();
+    if (this.given) this.slopes?.set(this.given);
+  }
+
+  /** Seconds from a configuration to the next; 0 at the last one. */
+  private stepAfter(index: number): number {
+    return this.times[Math.min(index + 1, this.count - 1)] - this.times[index];
+  }
+
+  /** Of three points; zero at both ends and where the stance changes. */
+  private followRule(index: number): void {
+    if (!this.slopes) return;
+    const { tangentSize } = this.curve;
+    const slope = this.slopes.subarray(index * tangentSize, (index + 1) * tangentSize);
+    const before = index > 0 ? this.stepAfter(index - 1) : 0;
+    const after = this.stepAfter(index);
+    if (before > 0 && after > 0 && !this.rests.has(index)) {
+      this.curve.threePointSlope(index, before, after, slope);
+    } else {
+      slope.fill(0);
+    }
   }
 }
 
@@ -163,6 +190,17 @@ function timesOf(times: number[] | undefined, count: number): Float64Array {
     }
   }
   return Float64Array.from(times);
+}
+
+function slopesOf(description: PlanDescription, count: number, floating: boolean): Float32Array {
+  const width = description.configuration_size - (floating ? 1 : 0);
+  const slopes = unpackFloats(description.slopes!, width, 'slopes');
+  if (slopes.length !== count * width) {
+    throw new SceneError(
+      `The plan has ${count} configurations but slopes of ${slopes.length / width}.`,
+    );
+  }
+  return slopes;
 }
 
 function unpackSeries(series: Series): PlanSeries {

@@ -78,6 +78,8 @@ export interface PlanDescription {
   times?: number[];
   configurations: string;
   configuration_size: number;
+  /** Of the plan's curve; without them the way between configurations is straight. */
+  slopes?: string;
   /** Nothing moves between configurations, and times mean nothing. */
   stances_only?: boolean;
   reference?: string;

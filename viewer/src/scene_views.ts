@@ -48,14 +48,14 @@ export class SceneViews {
       drawing.add(this.robot.group, this.robot.ghosts);
     }
     if (scene.plan && this.kinematics) {
-      this.plan = new Plan(scene.plan, this.kinematics.floating);
+      this.plan = new Plan(scene.plan, this.kinematics.floating, scene.stances);
       if (this.plan.size < this.kinematics.configurationSize) {
         throw new SceneError(
           `A configuration has ${this.plan.size} numbers; robot "${scene.robot!.name}" needs ` +
             `${this.kinematics.configurationSize}.`,
         );
       }
-      this.track = new ContactTrack(this.plan);
+      this.track = new ContactTrack(this.plan, this.ghostKinematics!);
       this.path = new PathView(this.plan, this.ghostKinematics!);
       drawing.add(this.path.dots, this.path.lines, this.path.referenceLine);
     }
@@ -195,7 +195,7 @@ export class SceneViews {
       this.plan?.sample(time, this.configuration);
       this.kinematics.update(this.configuration);
       this.robot.update();
-      this.track?.update(time);
+      this.track?.update(time, this.kinematics);
       this.contactView?.update();
       this.base.setFromMatrixPosition(this.worldFromBase!);
     }

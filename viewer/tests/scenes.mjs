@@ -235,6 +235,22 @@ export function planScene({ count = 41, step = 0.5, perLeg = 3, voxels = 300 } =
   };
 }
 
+/** Sets off from rest and speeds up, in two steps of 2 s; the base is at x = distance(t). */
+export function rollingScene() {
+  const distance = (t) => 0.05 * t * t;
+  const { check, ...scene } = planScene({ count: 3, step: 2 });
+  const { joints } = scene.robot;
+  const row = (x) => joints.map(({ type }) => (type === 'continuous' ? x / WHEEL_RADIUS : 0));
+  const { plan } = scene;
+  const places = plan.times.map(distance);
+  plan.configurations = pack(places.flatMap((x) => [...pose(x, 0, BASE_HEIGHT), ...row(x)]));
+  plan.slopes = pack(plan.times.flatMap((t) => [0.1 * t, 0, 0, 0, 0, 0, ...row(0.1 * t)]));
+  plan.contacts.forEach((contacts, i) =>
+    contacts.forEach(({ position }, k) => (position[0] = places[i] + (k < 2 ? 0.35 : -0.35))),
+  );
+  return { scene, distance };
+}
+
 /** Ten metres in 40 s, past an orange box that stands beside the way after five metres. */
 export function farScene() {
   const { map, surfaces, check, ...scene } = planScene({ step: 1 });

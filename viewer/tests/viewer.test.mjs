@@ -11,6 +11,7 @@ import {
   pack,
   page as pageText,
   planScene,
+  rollingScene,
   SPEED,
   sphereGraph,
   squareGraph,
@@ -126,6 +127,23 @@ describe('viewer', () => {
         assert.ok(centreOfMass[2] < BASE_HEIGHT - 0.05);
       }
     }));
+
+  it('puts the base on the curve of the plan, and says how fast the joints are there', () => {
+    const { scene, distance } = rollingScene();
+    return shown(scene, {}, async ({ page }) => {
+      for (const time of [0.5, 2, 3.1]) {
+        const { base } = await page.evaluate((t) => {
+          window.locograph.setTime(t);
+          return window.locograph.state();
+        }, time);
+        assert.ok(Math.abs(base[0] - distance(time)) < 1e-5);
+      }
+      // At 3 s, of a wheel with a radius of 0.1 m: 0.3 m/s.
+      await page.evaluate(() => window.locograph.setTime(3));
+      const title = await page.getAttribute('.joint:has-text("axle_1")', 'title');
+      assert.match(title, /axle_1: 4\.5\d* rad, 3(\.0*)? rad\/s/);
+    });
+  });
 
   it('moves mimic joints with the joint that leads them', () =>
     shown(mimicScene([0, 0.4, 0.8]), {}, async ({ page }) => {
@@ -572,6 +590,33 @@ describe('viewer', () => {
         await page.waitForFunction(
           () => document.querySelector('.live').textContent === 'stopped: no way',
         );
+      });
+    } finally {
+      await server.close();
+    }
+  });
+
+  it('bends the curve to what a run replaces, and has it back when the run begins anew', async () => {
+    const { scene, distance } = rollingScene();
+    scene.live = '/live';
+    const server = await serveLive(pageText(scene));
+    const baseAt = (page, time) =>
+      page.evaluate((t) => {
+        window.locograph.setTime(t);
+        return window.locograph.state().base[0];
+      }, time);
+    try {
+      await shown(scene, { url: server.address }, async ({ page }) => {
+        await server.connection;
+        const last = [1, 0, BASE_HEIGHT, 0, 0, 0, 1, ...Array(12).fill(0)];
+        server.send({ type: 'start', count: 3 });
+        server.send({ type: 'cycle', configurations: { 2: last }, executed: 1, window: 1 });
+        await page.waitForFunction(() => window.locograph.state().executed === 1);
+        // From 0.2 m at 0.2 m/s to 1 m, where it comes to rest.
+        assert.ok(Math.abs((await baseAt(page, 3)) - (0.6 + 0.25 * 0.2)) < 1e-5);
+        server.send({ type: 'start', count: 3 });
+        await page.waitForFunction(() => window.locograph.state().executed === 0);
+        assert.ok(Math.abs((await baseAt(page, 3)) - distance(3)) < 1e-5);
       });
     } finally {
       await server.close();

@@ -4,12 +4,17 @@
 #include <locograph/planners/plan/plan.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace locograph {
 namespace {
 
 constexpr double kLevelTolerance_m = 1e-3, kGround_m = 0.0;
+/// Of the base while it speeds up and brakes, at most; of the accelerations that a scenario allows
+/// its wheels, a share.
+constexpr double kAcceleration_m_s2 = 0.5, kShareOfLimit = 0.8;
 
 /// A base pose on the path, in the plane.
 struct PathPoint {
@@ -32,35 +37,83 @@ Stance all_wheels(const Scenario& scenario) {
   return stance;
 }
 
+/// Time and speed at each of several places at equal distances: from rest to rest, at a constant
+/// speed but for whole steps of constant acceleration at both ends.
+struct Ramp {
+  std::vector<double> time_s = {0.0}, speed_m_s = {0.0};
+
+  Ramp(int steps, double step_m, double speed, double acceleration) {
+    if (steps == 1) {  // one cubic: 1.5 times its mean speed half-way, 6 d / T^2 at its ends
+      time_s.push_back(std::max(1.5 * step_m / speed, std::sqrt(6.0 * step_m / acceleration)));
+      speed_m_s.push_back(0.0);
+      return;
+    }
+    const double needed = std::ceil(speed * speed / (2.0 * acceleration * step_m));
+    const int ramp = static_cast<int>(std::clamp(needed, 1.0, std::floor(0.5 * steps)));
+    const double most = std::min(speed, std::sqrt(2.0 * acceleration * step_m * ramp));
+    for (int i = 1; i <= steps; ++i) {
+      const double share = static_cast<double>(std::min({i, steps - i, ramp})) / ramp;
+      speed_m_s.push_back(most * std::sqrt(share));
+      time_s.push_back(time_s.back() +
+                       2.0 * step_m / (speed_m_s.back() + speed_m_s[speed_m_s.size() - 2]));
+    }
+  }
+};
+
 class WheeledDrive {
  public:
   WheeledDrive(const Scenario& scenario, const Robot& robot, const Stance& stance)
-      : drive_(*scenario.drive), motion_(robot, stance) {
+      : drive_(*scenario.drive),
+        robot_(robot),
+        motion_(robot, stance),
+        wheel_limit_rad_s2_(scenario.limits.joint_acceleration_rad_s2) {
     stand_ = robot.named_configuration(scenario.start_state);
     put_on_ground();
     steer();
   }
 
-  /// As far as the job lets it.
-  std::vector<Eigen::VectorXd> configurations(const JobControl& job) {
-    std::vector<Eigen::VectorXd> all;
-    const std::size_t count = static_cast<std::size_t>(drive_.configurations);
-    for (int i = 0; i < drive_.configurations; ++i) {
-      if (!job.go_on("rolling", all.size(), count)) break;
-      const double distance = drive_.distance_m * i / (drive_.configurations - 1);
-      const PathPoint at = path_point(drive_, distance);
+  /// As far as the job lets it: times, configurations and slopes.
+  void drive(const JobControl& job, Motion& motion) {
+    const int steps = drive_.configurations - 1;
+    const double step_m = drive_.distance_m / steps;
+    const Ramp ramp(steps, step_m, drive_.speed_m_s, acceleration());
+    std::vector<Eigen::VectorXd>& all = motion.configurations;
+    Eigen::VectorXd along = Eigen::VectorXd::Zero(robot_.tangent_size());  // for one unit of speed
+    for (std::size_t i = 0; i < ramp.time_s.size(); ++i) {
+      if (!job.go_on("rolling", i, ramp.time_s.size())) return;
+      const PathPoint at = path_point(drive_, step_m * static_cast<double>(i));
       Eigen::VectorXd q = stand_;
       q[0] = at.x;
       q[1] = at.y;
       q[5] = std::sin(0.5 * at.heading);
       q[6] = std::cos(0.5 * at.heading);
-      if (i > 0) motion_.roll(all.back(), q);
+      if (i > 0) {
+        motion_.roll(all.back(), q);
+        const int joints = robot_.active_joint_count();
+        along.tail(joints) = (q.tail(joints) - all.back().tail(joints)) / step_m;
+      }
+      along.head<6>() << std::cos(at.heading), std::sin(at.heading), 0.0, 0.0, 0.0,
+          drive_.curvature_1_m;
       all.push_back(q);
+      motion.time_s.push_back(ramp.time_s[i]);
+      motion.slopes.push_back(ramp.speed_m_s[i] * along);
+      motion.stance_from.push_back(0);
     }
-    return all;
   }
 
  private:
+  /// Of the base, so that no wheel accelerates too much: one on the outside of an arc goes faster.
+  double acceleration() {
+    double most = kAcceleration_m_s2;
+    for (int w = 0; w < motion_.wheels() && wheel_limit_rad_s2_ > 0.0; ++w) {
+      const double way =
+          std::max(1e-3, 1.0 - drive_.curvature_1_m * motion_.pose(stand_, w).centre.y());
+      most = std::min(most,
+                      kShareOfLimit * wheel_limit_rad_s2_ * motion_.wheel(w).wheel.radius_m / way);
+    }
+    return most;
+  }
+
   void put_on_ground() {
     double lowest = 0.0, highest = 0.0;
     for (int w = 0; w < motion_.wheels(); ++w) {
@@ -90,7 +143,9 @@ class WheeledDrive {
   }
 
   const DriveTask& drive_;
+  const Robot& robot_;
   WheelMotion motion_;
+  double wheel_limit_rad_s2_;  // 0: none
   Eigen::VectorXd stand_;
 };
 
@@ -106,6 +161,7 @@ std::optional<Graph> plan_wheeled_drive(const Scenario& scenario, const JobContr
   const auto robot =
       std::make_shared<const RobotParameter>(scenario.urdf, scenario.srdf, scenario.robot);
   require_camera_links(scenario, *robot->robot);
+  robot->robot->require_collision_shapes();
   graph.parameters().set(kRobotNumber, robot);
   // Where the scenario names what there is to stand on, that is all there is, as in world_of().
   const bool on_ground = scenario.surfaces.empty() && scenario.scanned.empty();
@@ -120,13 +176,8 @@ std::optional<Graph> plan_wheeled_drive(const Scenario& scenario, const JobContr
   Motion motion;
   motion.stances = {all_wheels(scenario)};
   require_sound_stance(*robot->robot, motion.stances.front());
-  motion.configurations =
-      WheeledDrive(scenario, *robot->robot, motion.stances.front()).configurations(job);
+  WheeledDrive(scenario, *robot->robot, motion.stances.front()).drive(job, motion);
   if (motion.configurations.size() < static_cast<std::size_t>(drive.configurations)) return {};
-  for (int i = 0; i < drive.configurations; ++i) {
-    motion.time_s.push_back(drive.distance_m / drive.speed_m_s * i / (drive.configurations - 1));
-    motion.stance_from.push_back(0);
-  }
   if (!add_wheeled_plan(graph, motion, {}, job)) return {};
   return graph;
 }

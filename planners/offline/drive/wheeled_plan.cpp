@@ -113,9 +113,10 @@ bool add_wheeled_plan(Graph& graph, const Motion& motion, const PlanEdgeOptions&
   std::vector<VertexId<VertexConfiguration>> ids;
   for (std::size_t i = 0; i < configurations.size(); ++i) {
     if (!job.go_on("placing configurations", i, configurations.size())) return false;
-    ids.push_back(graph.add_vertex(static_cast<int>(i),
-                                   VertexConfiguration(kRobotNumber, robot, motion.time_s[i],
-                                                       configurations[i], number_from[i])));
+    VertexConfiguration vertex(kRobotNumber, robot, motion.time_s[i], configurations[i],
+                               number_from[i]);
+    if (!motion.slopes.empty()) vertex.slopes = motion.slopes[i];
+    ids.push_back(graph.add_vertex(static_cast<int>(i), std::move(vertex)));
   }
   graph.set_fixed(ids.front(), true);
   Eigen::VectorXd goal = track;

@@ -119,9 +119,10 @@ Graph motion_graph(const Scenario& scenario, const StanceProblem& problem, const
       throw Error("a step whose stance is not known", "a stance for each step");
     }
     const int stance = numbers.at(static_cast<std::size_t>(motion.stance_from[i]));
-    graph.add_vertex(static_cast<int>(i),
-                     VertexConfiguration(kRobotNumber, problem.robot, motion.time_s[i],
-                                         motion.configurations[i], stance));
+    VertexConfiguration vertex(kRobotNumber, problem.robot, motion.time_s[i],
+                               motion.configurations[i], stance);
+    if (!motion.slopes.empty()) vertex.slopes = motion.slopes.at(i);
+    graph.add_vertex(static_cast<int>(i), std::move(vertex));
   }
   graph.set_fixed(graph.slot_of(0), true);
   add_motion_edges(graph, problem.check, plan.wrenches);

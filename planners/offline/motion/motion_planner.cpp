@@ -119,6 +119,7 @@ class MotionSearch {
       const std::size_t steps = way.configurations.size() - 1;
       for (std::size_t i = 0; i < steps; ++i) {
         motion.configurations.push_back(way.configurations[i]);
+        motion.slopes.push_back(way.slopes[i]);
         motion.time_s.push_back(time_s + way.duration_s * static_cast<double>(i) /
                                              static_cast<double>(steps));
         motion.stance_from.push_back(record.stance);
@@ -137,6 +138,7 @@ class MotionSearch {
     const std::size_t done = plan_.segments.size();
     motion.stances.resize(done + 1);
     motion.configurations.push_back(configurations[done]);
+    motion.slopes.push_back(Eigen::VectorXd::Zero(problem_.robot->robot->tangent_size()));
     motion.time_s.push_back(time_s);
     motion.stance_from.push_back(static_cast<int>(done));
   }
@@ -322,6 +324,7 @@ class MotionSearch {
       Motion alone;
       alone.stances = {stances[j], stances[j + 1]};
       alone.configurations = way.configurations;
+      alone.slopes = way.slopes;
       const std::size_t last = way.configurations.size() - 1;
       for (std::size_t i = 0; i <= last; ++i) {
         alone.time_s.push_back(way.duration_s * static_cast<double>(i) / static_cast<double>(last));

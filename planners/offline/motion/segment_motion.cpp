@@ -1,6 +1,8 @@
+#include <locograph/check/motion_curve.h>
 #include <locograph/planners/offline/motion/segment_motion.h>
 #include <locograph/planners/offline/motion/swing.h>
 #include <locograph/planners/offline/timing/balance_rows.h>
+#include <locograph/planners/plan/slope_limits.h>
 #include <locograph/robots/wheel.h>
 
 #include <algorithm>
@@ -19,11 +21,13 @@ constexpr int kMostRounds = 8;
 constexpr double kSparse = 0.35, kDense = 0.02;
 constexpr std::size_t kFiner = 4;
 constexpr double kSlowly = 2.0;
+constexpr int kMostSampled = 4;
 constexpr int kMostBroughtBack = 4;
 constexpr int kOffGround = 3;  ///< more in the first and the last part
 /// Both ends of a segment are the same: one contact more and another one less at once.
 constexpr double kNoWay = 1e-6;
 constexpr std::size_t kLooks = 8;  ///< at what swings
+constexpr double kRounding = 1e-9;
 
 /// Splines may swing a little beyond limits. False: nothing was to be done.
 bool bring_within_limits(const Robot& robot, Eigen::VectorXd& q) {
@@ -38,6 +42,26 @@ bool bring_within_limits(const Robot& robot, Eigen::VectorXd& q) {
     moved = true;
   }
   return moved;
+}
+
+/// The slope of the curve at a point of a path: the base's velocity in the world.
+Eigen::VectorXd slope_of(const Robot& robot, const TimedPoint& point) {
+  Eigen::VectorXd slope = point.velocity;
+  if (!robot.floating_base()) return slope;
+  const Eigen::Quaterniond base(Eigen::Vector4d(point.configuration.segment<4>(3)));
+  slope.head<3>() = base * Eigen::Vector3d(point.velocity.head<3>());
+  return slope;
+}
+
+Motion as_motion(const SegmentMotion& way) {
+  Motion motion;
+  motion.configurations = way.configurations;
+  motion.slopes = way.slopes;
+  const double last = static_cast<double>(way.configurations.size() - 1);
+  for (std::size_t i = 0; i < way.configurations.size(); ++i) {
+    motion.time_s.push_back(way.duration_s * static_cast<double>(i) / last);
+  }
+  return motion;
 }
 
 }  // namespace
@@ -68,6 +92,7 @@ SegmentMotion SegmentMover::move(const Segment& segment, std::span<const Bearing
     motion.found = true;
     motion.planner = planners_.front()->name();
     motion.waypoints = motion.configurations = {segment.from, segment.to};
+    motion.slopes.assign(2, Eigen::VectorXd::Zero(space_.robot().tangent_size()));
     motion.duration_s = options_.step_s;
     return motion;
   }
@@ -219,25 +244,98 @@ bool SegmentMover::time(const PathSpline& path, std::span<const BearingContact> 
     slower *= kSlowly;
   }
   if (!timing->feasible()) return false;
-  motion.duration_s = slower * timing->duration_s();
-  const int steps = std::max(2, static_cast<int>(std::ceil(motion.duration_s / options_.step_s)));
+  const double duration_s = slower * timing->duration_s();
+  const auto steps_in = [&](double seconds) {
+    return std::max(2, static_cast<int>(std::ceil(seconds / options_.step_s)));
+  };
+  int steps = steps_in(duration_s);
+  // Where the cubics through the samples have to be slower, there are more of them.
+  for (int i = 0; i < kMostSampled; ++i) {
+    sample(*timing, slower, steps, motion);
+    keep_limits(motion);
+    if (steps >= steps_in(motion.duration_s)) break;
+    steps = steps_in(motion.duration_s);
+  }
+  return true;
+}
+
+void SegmentMover::sample(const PathTiming& timing, double slower, int steps,
+                          SegmentMotion& motion) {
+  motion.duration_s = slower * timing.duration_s();
   motion.configurations.clear();
+  motion.slopes.clear();
   motion.length = 0.0;
   for (int i = 0; i <= steps; ++i) {
-    motion.configurations.push_back(timing->at(timing->duration_s() * i / steps).configuration);
+    const TimedPoint point = timing.at(timing.duration_s() * i / steps);
+    motion.configurations.push_back(point.configuration);
+    motion.slopes.push_back(slope_of(space_.robot(), point) / slower);
     if (i == 0) continue;
     motion.length += space_.distance(motion.configurations[static_cast<std::size_t>(i) - 1],
                                      motion.configurations.back());
   }
   motion.configurations.front() = space_.segment().from;
   motion.configurations.back() = space_.segment().to;
+  motion.slopes.front().setZero();
+  motion.slopes.back().setZero();
   hold_wheels(motion.configurations);
+  std::vector<bool> moved;
   for (Eigen::VectorXd& q : motion.configurations) {
+    bool within = true;
     for (int i = 0; i < kMostBroughtBack && bring_within_limits(space_.robot(), q); ++i) {
       space_.project(q);
+      within = false;
     }
+    moved.push_back(!within);
   }
-  return true;
+  take_slopes(moved, motion);
+}
+
+/// Of what was moved after it was timed, by the rule of the curve: of wheels in contact, and of
+/// configurations that were brought within limits.
+void SegmentMover::take_slopes(const std::vector<bool>& moved, SegmentMotion& motion) {
+  const Robot& robot = space_.robot();
+  std::vector<int> turned;
+  for (const Contact& contact : space_.segment().held) {
+    if (contact.effector.kind != ContactKind::kWheel) continue;
+    const Wheel wheel = wheel_of(robot, contact.effector);
+    if (wheel.joint >= 0) turned.push_back(robot.base_tangent_size() + wheel.joint);
+  }
+  Motion plain = as_motion(motion);
+  plain.slopes.clear();
+  const MotionCurve curve(robot, plain);
+  const double step_s = plain.time_s[1] - plain.time_s[0];
+  for (std::size_t i = 1; i + 1 < motion.configurations.size(); ++i) {
+    const Eigen::VectorXd& by_rule = curve.slope(static_cast<int>(i));
+    if (moved[i]) {
+      motion.slopes[i] = by_rule;
+      keep_within_limits(robot, motion.configurations[i], step_s, motion.slopes[i]);
+    }
+    for (const int k : turned) motion.slopes[i][k] = by_rule[k];
+  }
+}
+
+/// Limits hold on the path; accelerations of the cubics through its samples are a little larger.
+void SegmentMover::keep_limits(SegmentMotion& motion) {
+  const Motion timed = as_motion(motion);
+  const MotionCurve curve(space_.robot(), timed);
+  double most = 1.0;  // of accelerations, and of velocities squared
+  const auto squared = [](double ratio) { return ratio * ratio; };
+  for (std::size_t i = 0; i + 1 < timed.time_s.size(); ++i) {
+    const CurveStep step = curve.step(static_cast<int>(i));
+    const StepBounds bounds = step.bounds();
+    const double h = step.duration_s();
+    const int base = space_.robot().base_tangent_size();
+    for (Eigen::Index j = 0; j < bounds.joints.size(); ++j) {
+      most = std::max({most, bounds.joint_bends[j] / (h * h * limits_.acceleration[base + j]),
+                       squared(bounds.joints[j] / (h * limits_.velocity[base + j]))});
+    }
+    most = std::max({most, squared(bounds.base_distance_m / (h * limits_.base_linear_m_s)),
+                     squared(bounds.base_angle_rad / (h * limits_.base_angular_rad_s))});
+  }
+  if (most == 1.0) return;
+  const double slower = std::sqrt(most * (1.0 + kRounding));
+  motion.duration_s *= slower;
+  for (Eigen::VectorXd& slope : motion.slopes) slope /= slower;
 }
 
 /// A wheel in contact stands still: what its carrier pitches, its joint turns back.

@@ -6,8 +6,9 @@
 ///     if (motion.found) std::cout << motion.configurations.size() << " configurations\n";
 ///
 /// The waypoints of a path become a spline through few of them: where it is off the contacts or
-/// does not hold, more are added. It is timed from rest to rest (timing/path_timing.h) and sampled
-/// evenly. The outcome depends on the arguments alone. One for each thread.
+/// does not hold, more are added. It is timed from rest to rest (timing/path_timing.h), sampled
+/// evenly, and slowed down by what the curve through the samples (check/motion_curve.h) is faster
+/// than limits allow. The outcome depends on the arguments alone. One for each thread.
 
 #include <locograph/planners/offline/motion/motion_planner.h>
 #include <locograph/planners/offline/motion/segment_planner.h>
@@ -34,6 +35,7 @@ struct SegmentMotion {
   bool no_arc = false;                          ///< see SegmentPath
   std::vector<Eigen::VectorXd> waypoints;       ///< of the path
   std::vector<Eigen::VectorXd> configurations;  ///< equispaced in time, both ends included
+  std::vector<Eigen::VectorXd> slopes;          ///< of each, as Motion::slopes; zero at both ends
   double duration_s = 0.0;
   double length = 0.0, straight = 0.0;  ///< SegmentSpace::distance, of the path and of its ends
   /// How far what swings from one place to another gets from all else, at most 0.1 m; of several
@@ -76,8 +78,11 @@ class SegmentMover {
              SegmentMotion& motion);
   bool time(const PathSpline& path, std::span<const BearingContact> bearing, double slower,
             SegmentMotion& motion);
+  void sample(const PathTiming& timing, double slower, int steps, SegmentMotion& motion);
   std::optional<double> clear_of(const SegmentMotion& motion);
   void hold_wheels(std::vector<Eigen::VectorXd>& configurations);
+  void take_slopes(const std::vector<bool>& moved, SegmentMotion& motion);
+  void keep_limits(SegmentMotion& motion);
 
   const StanceProblem& problem_;
   const MotionOptions& options_;

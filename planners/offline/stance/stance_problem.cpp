@@ -54,6 +54,7 @@ StanceProblem problem_of(const Scenario& scenario, const Deadline& deadline) {
   StanceProblem problem;
   problem.robot =
       std::make_shared<const RobotParameter>(scenario.urdf, scenario.srdf, scenario.robot);
+  problem.robot->robot->require_collision_shapes();
   problem.world = world_of(scenario, deadline);
   problem.end_effectors = scenario.end_effectors;
   TaskStances task = task_stances(scenario, problem.world);

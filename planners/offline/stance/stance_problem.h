@@ -18,8 +18,9 @@ struct StartedProblem {
 
 /// Loads robot and world. Where the scenario's start configuration misses its contacts, touches
 /// something or does not balance, the nearest one is found that does not. Throws Error for a
-/// scenario without a contact task, for unknown links and joints, contacts that are on nothing, and
-/// a start for which no configuration is found: with the line and by how much.
+/// scenario without a contact task, for a robot without collision shapes, for unknown links and
+/// joints, contacts that are on nothing, and a start for which no configuration is found: with the
+/// line and by how much.
 ///
 /// moves: of the contacts, see task_stances.h; its draws are found, not asked for. A start in which
 /// no configuration is found to stand is drawn again, up to kMostDraws times in all, as without one

@@ -10,8 +10,8 @@
 namespace locograph {
 namespace {
 
-/// As the judge: links that touch are exempt from what lies below the plane of their contact, so
-/// far away, or as far as a sole's corners.
+/// As the judge: links that touch may be in the surfaces under their contact's area and in the box
+/// with such a face, but for its faces so far away, or further than a sole's corners.
 constexpr double kTouchedReach_m = 0.3, kBelow_m = 1e-3, kSamePlane_m = 1e-4, kSamePlane_rad = 1e-3;
 /// So deep below a plate a sphere is still above it; deeper, it is below.
 constexpr double kPlateDepth_m = 0.15, kPlateDepthShare = 0.3;
@@ -133,42 +133,53 @@ void TransitionPlaces::find_relations() {
 }
 
 void TransitionPlaces::relate(const Touch& touch) {
-  const auto set = [&](std::size_t i, Relation relation, bool in_plane) {
+  const auto set = [&](std::size_t i, Relation relation) {
+    const bool touched = relation == Relation::kTouches;
     for (const int b : touch.bounds) {
       const std::size_t bound = static_cast<std::size_t>(b);
       const std::size_t at = i * robot_->bounds.size() + bound;
-      relations_[at] = in_plane && touch.closed[bound] ? Relation::kNone : relation;
+      relations_[at] = touched && touch.closed[bound] ? Relation::kNone : relation;
       if (touch.held) continue;
       const bool own =
           touch.is_closed ? robot_->bounds[bound].link == touch.link : touch.fixed[bound];
-      deepest_m_[at] = (own && in_plane ? 0.0 : -kTouchedAbove_m) - touch.above_m;
+      deepest_m_[at] = (own && touched ? 0.0 : -kTouchedAbove_m) - touch.above_m;
     }
   };
   std::vector<std::size_t> far_faces;
-  std::vector<int> touched_boxes;  // with a face in the plane
+  // As deep in what is only flush, beside the contact's area, as a contact is closed: as good as
+  // its place on the plane.
+  const auto set_flush = [&](std::size_t i) {
+    for (const int b : touch.bounds) {
+      const std::size_t bound = static_cast<std::size_t>(b);
+      if (touch.closed[bound]) relations_[i * robot_->bounds.size() + bound] = Relation::kNone;
+    }
+  };
+  std::vector<int> touched_boxes, flush_boxes;  // with a face in the plane
   for (std::size_t i = 0; i < near_.size(); ++i) {
     const int place = near_[i];
     if (is_surface(place)) {
       const Surface& surface = surfaces_[static_cast<std::size_t>(place)];
       const int of = plates_[static_cast<std::size_t>(place)].box;
-      const bool in = in_plane(surface, touch);
-      if (of >= 0 && in) touched_boxes.push_back(of);
-      const bool touched = in || is_below(surface, touch);
-      if (of >= 0 && !touched) far_faces.push_back(i);
-      if (of < 0 && touched) set(i, Relation::kTouches, in);
+      const bool flush = in_plane(surface, touch), touched = flush && is_under(surface, touch);
+      if (of < 0 && touched) set(i, Relation::kTouches);
+      if (of < 0 && flush && !touched) set_flush(i);
+      if (of >= 0 && flush) (touched ? touched_boxes : flush_boxes).push_back(of);
+      if (of >= 0 && !flush && !is_below(surface, touch)) far_faces.push_back(i);
     } else if (is_solid(place)) {
       const int number = place - first_solid_;
-      const bool in = std::ranges::find(touched_boxes, number) != touched_boxes.end();
-      if (!in && !is_below(box(place), touch)) continue;
-      set(i, Relation::kTouches, in);
+      if (std::ranges::find(touched_boxes, number) == touched_boxes.end()) {
+        if (std::ranges::find(flush_boxes, number) != flush_boxes.end()) set_flush(i);
+        continue;
+      }
+      set(i, Relation::kTouches);
       for (const std::size_t face : far_faces) {
         if (plates_[static_cast<std::size_t>(near_[face])].box == number) {
-          set(face, Relation::kApart, false);
+          set(face, Relation::kApart);
         }
       }
     } else if (touch.above_m == 0.0 &&
                is_on_bar(bars_[static_cast<std::size_t>(place) - plates_.size()], touch.contact)) {
-      set(i, Relation::kNone, false);
+      set(i, Relation::kNone);
     }
   }
 }
@@ -178,6 +189,30 @@ bool TransitionPlaces::in_plane(const Surface& surface, const Touch& touch) cons
   const Eigen::Vector3d own = pose.linear().col(2);
   return angle_between(own, touch.normal) <= kSamePlane_rad &&
          std::abs(own.dot(touch.contact.position - pose.translation())) <= kSamePlane_m;
+}
+
+/// Two rectangles in a plane overlap unless one of their four directions separates them.
+bool TransitionPlaces::is_under(const Surface& surface, const Touch& touch) const {
+  const EndEffector& effector = touch.contact.effector;
+  const Eigen::Isometry3d surface_from_world = surface.world_from_surface.inverse();
+  const Eigen::Vector3d at = surface_from_world * touch.contact.position;
+  const double x_m = surface.half_x_m + kSamePlane_m, y_m = surface.half_y_m + kSamePlane_m;
+  if (effector.kind != ContactKind::kSurface || !touch.contact.forward) {
+    const double sole = effector.kind == ContactKind::kSurface
+                            ? std::min(effector.half_x_m, effector.half_y_m)
+                            : kSamePlane_m;
+    return std::abs(at.x()) <= x_m + sole && std::abs(at.y()) <= y_m + sole;
+  }
+  const Eigen::Matrix3d axes = surface_from_world.linear() * axes_in_world(touch.contact);
+  const Eigen::Vector3d along = axes.col(0) * effector.half_x_m,
+                        across = axes.col(1) * effector.half_y_m;
+  const auto apart_along = [&](const Eigen::Vector3d& axis, double sole) {
+    return std::abs(axis.dot(at)) > sole + x_m * std::abs(axis.x()) + y_m * std::abs(axis.y());
+  };
+  return std::abs(at.x()) <= x_m + std::abs(along.x()) + std::abs(across.x()) &&
+         std::abs(at.y()) <= y_m + std::abs(along.y()) + std::abs(across.y()) &&
+         !apart_along(axes.col(0), effector.half_x_m) &&
+         !apart_along(axes.col(1), effector.half_y_m);
 }
 
 bool TransitionPlaces::is_below(const Surface& surface, const Touch& touch) const {
@@ -192,13 +227,6 @@ bool TransitionPlaces::is_below(const Surface& surface, const Touch& touch) cons
   return std::abs(local.x()) - surface.half_x_m <= touch.reach_m &&
          std::abs(local.y()) - surface.half_y_m <= touch.reach_m &&
          std::abs(local.z()) <= touch.reach_m;
-}
-
-bool TransitionPlaces::is_below(const Box& box, const Touch& touch) const {
-  const Eigen::Vector3d normal = box.world_from_box.linear().transpose() * touch.normal;
-  const Eigen::Vector3d local = box.world_from_box.inverse() * touch.contact.position;
-  return box.half_m.dot(normal.cwiseAbs()) - normal.dot(local) <= kBelow_m &&
-         (local.cwiseAbs() - box.half_m).maxCoeff() <= touch.reach_m;
 }
 
 TransitionPlaces::Distance TransitionPlaces::distance(int place, const Eigen::Vector3d& centre,

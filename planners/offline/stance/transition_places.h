@@ -114,8 +114,9 @@ class TransitionPlaces {
   void find_relations();
   void relate(const Touch& touch);
   bool in_plane(const Surface& surface, const Touch& touch) const;
+  /// Something of the contact's area is over the surface.
+  bool is_under(const Surface& surface, const Touch& touch) const;
   bool is_below(const Surface& surface, const Touch& touch) const;
-  bool is_below(const Box& box, const Touch& touch) const;
   Distance to_plate(const Plate& plate, const Eigen::Vector3d& centre, double radius) const;
   Distance to_box(const Box& box, const Eigen::Vector3d& centre, double radius) const;
   Distance to_bar(const Bar& bar, const Eigen::Vector3d& centre, double radius) const;

@@ -1,0 +1,43 @@
+#include <locograph/check/motion_curve.h>
+#include <locograph/planners/plan/slope_limits.h>
+
+#include <algorithm>
+
+namespace locograph {
+
+Eigen::VectorXd careful_slope(const Robot& robot, const Motion& motion, int vertex) {
+  const auto first = static_cast<std::size_t>(vertex) - 1;
+  Motion around;
+  for (std::size_t i = first; i < first + 3; ++i) {
+    around.time_s.push_back(motion.time_s[i]);
+    around.configurations.push_back(motion.configurations[i]);
+  }
+  const double before_s = around.time_s[1] - around.time_s[0];
+  const double after_s = around.time_s[2] - around.time_s[1];
+  const auto rates = [&](std::size_t i, double step_s) {
+    Eigen::VectorXd moved(robot.tangent_size());
+    robot.difference(around.configurations[i].data(), around.configurations[i + 1].data(),
+                     moved.data());
+    return Eigen::VectorXd(moved / step_s);
+  };
+  const Eigen::VectorXd before = rates(0, before_s), after = rates(1, after_s);
+  const double slower = std::min(before.norm(), after.norm());
+  Eigen::VectorXd slope = MotionCurve(robot, around).slope(1);
+  if (slower > 0.0) slope *= 1.0 - 0.5 * (after.normalized() - before.normalized()).norm();
+  if (slope.norm() > 3.0 * slower) slope *= 3.0 * slower / slope.norm();
+  keep_within_limits(robot, around.configurations[1], std::max(before_s, after_s), slope);
+  return slope;
+}
+
+void keep_within_limits(const Robot& robot, const Eigen::VectorXd& configuration, double step_s,
+                        Eigen::VectorXd& slope) {
+  for (int j = 0; j < robot.active_joint_count(); ++j) {
+    const Joint& joint = robot.active_joint(j);
+    const double position = configuration[robot.base_configuration_size() + j];
+    double& of = slope[robot.base_tangent_size() + j];
+    const double room = std::max(0.0, std::min(position - joint.lower, joint.upper - position));
+    of = std::clamp(of, -3.0 * room / step_s, 3.0 * room / step_s);
+  }
+}
+
+}  // namespace locograph
