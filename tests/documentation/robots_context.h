@@ -111,7 +111,7 @@ using Context = FilesContext;
 }
 namespace xml_file_h {
 struct Context {
-  Context() { write_example_file("robot.urdf", "<robot><link name='pelvis'/></robot>"); }
+  Context() { write_example_file("robot.urdf", "<robot name='r'><link name='pelvis'/></robot>"); }
 };
 }  // namespace xml_file_h
 namespace urdfdom_model_h {
