@@ -75,13 +75,14 @@ std::string take_parameters(std::string& text) {
 /// Where the columns after the stance are to be found, in the order of a VERTEX_CONFIGURATION;
 /// those of slopes, all or none, are the last.
 std::vector<std::size_t> columns_of(const CsvReader& reader, CsvRow head, const Robot& robot) {
-  const std::vector<std::string> expected = column_names(robot), slopes = slope_names(robot);
+  const std::vector<std::string> expected = column_names(robot);
+  std::vector<std::string> slopes = slope_names(robot);
   std::vector<std::size_t> slope_columns;
   const bool sloped =
       std::ranges::find(head.fields, slopes.empty() ? "" : slopes.back()) != head.fields.end();
+  if (!sloped) slopes.clear();
   for (const std::string& slope : slopes) {
     const auto found = std::ranges::find(head.fields, slope);
-    if (!sloped) break;
     if (found == head.fields.end()) {
       reader.fail(head.line, "column '" + slope + "' is missing", "slopes of all, or of none");
     }
@@ -166,8 +167,11 @@ ReadTrajectory read_trajectory_csv(const std::string& file, const TypeRegistry& 
     }
     std::vector<std::string> fields = {row->fields[0], row->fields[2]};
     for (const std::size_t column : columns) fields.push_back(row->fields[column]);
-    std::erase(fields, "-");
-    if (row->fields[2] == "-") fields.insert(fields.begin() + 1, "-");
+    // Slopes by the rule; a "-" anywhere else is no number.
+    const auto slopes = fields.begin() + 2 + configurations.robot().configuration_size();
+    if (std::all_of(slopes, fields.end(), [](const auto& slope) { return slope == "-"; })) {
+      fields.erase(slopes, fields.end());
+    }
     configurations.add(fields, row->line);
     segments.emplace_back(row->fields[1], row->line);
   }

@@ -292,6 +292,50 @@ TEST(ConvertCommand, JsonWithoutExactTimesIsAsGoodAsItsNanoseconds) {
   EXPECT_EQ(PlanText(runner.read("back.g2o")).configurations[3].time_s, 1.5);
 }
 
+TEST(ConvertCommand, SlopesOfATableAreAllOrNoneAndStandForNothingElse) {
+  const Converted runner("plan centauro_drive");
+  const std::string table = runner.read("plan.csv");
+  std::vector<std::string> lines;
+  std::istringstream in(table);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  const auto head = static_cast<std::size_t>(
+      std::ranges::find_if(lines, [](const auto& l) { return l.starts_with("time_s"); }) -
+      lines.begin());
+  const auto split = [](const std::string& line) {
+    std::vector<std::string> fields;
+    std::istringstream words(line);
+    for (std::string field; std::getline(words, field, ',');) fields.push_back(field);
+    return fields;
+  };
+  const std::vector<std::string> names = split(lines[head]);
+  const auto first = static_cast<std::size_t>(
+      std::ranges::find_if(names, [](const auto& n) { return n.starts_with("d_"); }) -
+      names.begin());
+  ASSERT_LT(first, names.size());
+  // In the seventh row only so many slopes are left, and the position before them may be none.
+  const auto with = [&](std::size_t left, bool position) {
+    std::vector<std::string> fields = split(lines[head + 7]);
+    for (std::size_t i = first + left; i < fields.size(); ++i) fields[i] = "-";
+    if (!position) fields[first - 1] = "-";
+    std::string text;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      std::string line = i == head + 7 ? "" : lines[i];
+      for (const std::string& field : fields) {
+        if (i == head + 7) line += (line.empty() ? "" : ",") + field;
+      }
+      text += line + '\n';
+    }
+    return text;
+  };
+  runner.write("rule.csv", with(0, true));
+  EXPECT_EQ(runner.run("convert rule.csv -o rule.g2o").exit_code, 0);
+  const std::string line = ":" + std::to_string(head + 8);
+  runner.expect_bad_table(with(1, true), line, "'-' is not a number");
+  // The slope must not be taken for the position that is missing.
+  runner.expect_bad_table(with(1, false), line, "'-' is not a number");
+  runner.expect_bad_table(with(0, false), line, "'-' is not a number");
+}
+
 TEST(ConvertCommand, WhatItDoesNotConvert) {
   const Converted runner(standing_segments());
   expect_refusal(runner.run("convert plan.g2o -o plan.txt"), "plan.txt", ".g2o, .csv or .json");
