@@ -1,6 +1,7 @@
 // What somebody might write into a motion to have it called feasible: each lie is refused by the
 // constraint that it breaks, and the honest originals are accepted.
 #include <gtest/gtest.h>
+#include <locograph/check/motion_curve.h>
 #include <locograph/common/error.h>
 
 #include "check/centauro_on_wheels.h"
@@ -286,6 +287,35 @@ TEST(Lie, TimeIsCompressed) {
   EXPECT_EQ(violated(check_with({}, centauro().drive(11, 0.08, 0.8), options)), Names{});
   for (double& time : motion.time_s) time *= 0.05;
   expect_refused(check_with({}, motion, options), "velocity_limits");
+}
+
+TEST(Lie, ATurnIsFastestWhereItsRotationVectorIsNot) {
+  Motion motion = centauro().drive(2, 0.0, 1.0);
+  const Eigen::Vector3d turn(-2.430978883, -0.178682109, -0.751169746);
+  motion.configurations[1].segment<4>(3) =
+      Eigen::Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized())).coeffs();
+  motion.slopes.assign(2, Eigen::VectorXd::Zero(centauro().robot.tangent_size()));
+  motion.slopes[0].segment<3>(3) << 0.562065627, -2.080794819, 1.314689775;
+  motion.slopes[1].segment<3>(3) << -3.034748382, 1.721448108, -0.094579217;
+  const MotionCurve curve(centauro().robot, motion);
+  CurvePoint point;
+  double fastest = 0.0;
+  for (int i = 0; i <= 1000; ++i) {
+    curve.step(0).at(i / 1000.0, point);
+    fastest = std::max(fastest, point.velocity.segment<3>(3).norm());
+  }
+  CheckOptions options = quick();
+  options.base_angular_rad_s = fastest;
+  EXPECT_GE(check_with({}, motion, options).constraint("base_velocity").worst, 1.0);
+}
+
+TEST(Lie, APostureMoves) {
+  Motion motion = centauro().drive(1, 0.0, 1.0);
+  EXPECT_FALSE(check_with({}, motion).constraint("end_at_rest").judged);
+  motion.slopes.assign(1, Eigen::VectorXd::Zero(centauro().robot.tangent_size()));
+  EXPECT_EQ(violated(check_with({}, motion)), Names{});
+  motion.slopes[0][0] = 0.5;
+  expect_refused(check_with({}, motion), "end_at_rest");
 }
 
 TEST(Lie, AThinObstacleStandsBetweenVertices) {
