@@ -25,6 +25,19 @@ Vector3 turn_between(const Eigen::Quaterniond& from, const Eigen::Quaterniond& t
   return factor * turn.vec();
 }
 
+/// Of the base's position in the world, by the rotation vector of its turn, of joints.
+Eigen::VectorXd change_between(const Robot& robot, const Eigen::VectorXd& from,
+                               const Eigen::VectorXd& to) {
+  Eigen::VectorXd change(robot.tangent_size());
+  const int joints = robot.active_joint_count();
+  change.tail(joints) = to.tail(joints) - from.tail(joints);
+  if (robot.floating_base()) {
+    change.head<3>() = to.head<3>() - from.head<3>();
+    change.segment<3>(3) = turn_between(base_rotation(from), base_rotation(to));
+  }
+  return change;
+}
+
 Eigen::Quaterniond exponential(const Vector3& rotation) {
   const double angle = rotation.norm();
   // sin(angle / 2) / angle.
@@ -91,14 +104,10 @@ CurveStep::CurveStep(const Robot& robot, const Eigen::VectorXd& from, const Eige
       duration_s_(duration_s),
       rotation_(Eigen::Quaterniond::Identity()),
       cubics_(robot.tangent_size(), 3) {
-  Eigen::VectorXd change(robot.tangent_size());
-  change.tail(robot.active_joint_count()) =
-      to.tail(robot.active_joint_count()) - from.tail(robot.active_joint_count());
-  Eigen::VectorXd begin = duration_s * slope_from, end = duration_s * slope_to;
+  const Eigen::VectorXd change = change_between(robot, from, to), begin = duration_s * slope_from;
+  Eigen::VectorXd end = duration_s * slope_to;
   if (robot.floating_base()) {
     rotation_ = base_rotation(from);
-    change.head<3>() = to.head<3>() - from.head<3>();
-    change.segment<3>(3) = turn_between(rotation_, base_rotation(to));
     end.segment<3>(3) = inverse_right_jacobian(change.segment<3>(3), Vector3(end.segment<3>(3)));
   }
   cubics_.col(0) = begin;
@@ -126,10 +135,14 @@ void CurveStep::configuration(double fraction, Eigen::VectorXd& out) const {
   out.segment<4>(3) = (rotation_ * exponential(turn)).normalized().coeffs();
 }
 
+Eigen::VectorXd CurveStep::rates(double s) const {
+  return (cubics_.col(0) + s * (2.0 * cubics_.col(1) + 3.0 * s * cubics_.col(2))) / duration_s_;
+}
+
 void CurveStep::at(double fraction, CurvePoint& point) const {
   const double s = fraction, h = duration_s_;
   configuration(s, point.configuration);
-  point.velocity = (cubics_.col(0) + s * (2.0 * cubics_.col(1) + 3.0 * s * cubics_.col(2))) / h;
+  point.velocity = rates(s);
   point.acceleration = (2.0 * cubics_.col(1) + 6.0 * s * cubics_.col(2)) / (h * h);
   if (!robot_->floating_base()) return;
   const Vector3 c = s * (cubics_.block<3, 1>(3, 0) +
@@ -154,31 +167,27 @@ void CurveStep::at(double fraction, CurvePoint& point) const {
 }
 
 Eigen::VectorXd CurveStep::slope(double fraction) const {
-  CurvePoint point;
-  at(fraction, point);
+  Eigen::VectorXd slope = rates(fraction);
   if (robot_->floating_base()) {
-    const double s = fraction;
-    for (int k = 0; k < 3; ++k) {
-      point.velocity[k] =
-          (cubics_(k, 0) + s * (2.0 * cubics_(k, 1) + 3.0 * s * cubics_(k, 2))) / duration_s_;
-    }
+    CurvePoint point;
+    at(fraction, point);
+    slope.segment<3>(3) = point.velocity.segment<3>(3);
   }
-  return point.velocity;
+  return slope;
 }
 
 StepBounds CurveStep::bounds() const {
   StepBounds result;
   const int joints = robot_->active_joint_count(), base = robot_->base_tangent_size();
-  const auto rate = [&](int row, int size) {
-    const Eigen::VectorXd v0 = cubics_.block(row, 0, size, 1),
-                          v1 = 2.0 * cubics_.block(row, 1, size, 1),
-                          v2 = 3.0 * cubics_.block(row, 2, size, 1);
+  const auto rate = [&](int row) {
+    const Vector3 v0 = cubics_.block<3, 1>(row, 0), v1 = 2.0 * cubics_.block<3, 1>(row, 1),
+                  v2 = 3.0 * cubics_.block<3, 1>(row, 2);
     return largest_norm(v0, v1, v2);
   };
   // Linear over the step: the largest is at an end.
-  const auto bend = [&](int row, int size) {
-    const Eigen::VectorXd first = 2.0 * cubics_.block(row, 1, size, 1),
-                          last = first + 6.0 * cubics_.block(row, 2, size, 1);
+  const auto bend = [&](int row) {
+    const Vector3 first = 2.0 * cubics_.block<3, 1>(row, 1),
+                  last = first + 6.0 * cubics_.block<3, 1>(row, 2);
     return std::max(first.norm(), last.norm());
   };
   result.joints.resize(joints);
@@ -190,12 +199,12 @@ StepBounds CurveStep::bounds() const {
     result.joint_bends[i] = std::max(std::abs(v1), std::abs(v1 + 2.0 * v2));
   }
   if (base == 0) return result;
-  result.base_distance_m = rate(0, 3);
-  result.base_bend_m = bend(0, 3);
+  result.base_distance_m = rate(0);
+  result.base_bend_m = bend(0);
   // exp(c) turns no faster than c changes, as Jr = int_0^1 exp(-t [c]) dt shortens; and as
   // |d Jr / ds| <= int t |c'| dt, its angular acceleration is no more than |c''| + |c'|^2 / 2.
-  result.base_angle_rad = rate(3, 3);
-  result.base_bend_rad = bend(3, 3) + 0.5 * result.base_angle_rad * result.base_angle_rad;
+  result.base_angle_rad = rate(3);
+  result.base_bend_rad = bend(3) + 0.5 * result.base_angle_rad * result.base_angle_rad;
   return result;
 }
 
@@ -244,18 +253,9 @@ Eigen::VectorXd MotionCurve::three_point_slope(int vertex) const {
   const double before_s = motion.time_s[i] - motion.time_s[i - 1],
                after_s = motion.time_s[i + 1] - motion.time_s[i];
   if (!(before_s > 0.0) || !(after_s > 0.0)) return slope;
-  const auto change = [this](const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
-    Eigen::VectorXd change(robot_->tangent_size());
-    const int joints = robot_->active_joint_count();
-    change.tail(joints) = to.tail(joints) - from.tail(joints);
-    if (robot_->floating_base()) {
-      change.head<3>() = to.head<3>() - from.head<3>();
-      change.segment<3>(3) = turn_between(base_rotation(from), base_rotation(to));
-    }
-    return change;
-  };
-  const Eigen::VectorXd before = change(motion.configurations[i - 1], motion.configurations[i]),
-                        after = change(motion.configurations[i], motion.configurations[i + 1]);
+  const std::vector<Eigen::VectorXd>& q = motion.configurations;
+  const Eigen::VectorXd before = change_between(*robot_, q[i - 1], q[i]),
+                        after = change_between(*robot_, q[i], q[i + 1]);
   return (after_s / before_s * before + before_s / after_s * after) / (before_s + after_s);
 }
 

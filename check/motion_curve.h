@@ -66,6 +66,9 @@ class CurveStep {
   StepBounds bounds() const;
 
  private:
+  /// Of each coordinate of the tangent, as in cubic(), per second.
+  Eigen::VectorXd rates(double s) const;
+
   const Robot* robot_;
   const Eigen::VectorXd *from_, *to_;
   double duration_s_;

@@ -17,8 +17,8 @@
 namespace locograph {
 namespace {
 
-/// As exact as the plane of a contact is: what comes no further out of it lies behind it; and how
-/// deep links may be in what they barely touch.
+/// How exact the plane of a contact is: a solid that comes out of it by no more is below it, and a
+/// link may be so deep in what it barely touches.
 constexpr double kFlush_m = 1e-4;
 
 struct Body {

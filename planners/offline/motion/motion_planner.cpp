@@ -321,15 +321,10 @@ class MotionSearch {
     Solved& solved = *ways_[j];
     for (;;) {
       const SegmentMotion& way = solved.motion;
-      Motion alone;
+      Motion alone = as_motion(way);
       alone.stances = {stances[j], stances[j + 1]};
-      alone.configurations = way.configurations;
-      alone.slopes = way.slopes;
-      const std::size_t last = way.configurations.size() - 1;
-      for (std::size_t i = 0; i <= last; ++i) {
-        alone.time_s.push_back(way.duration_s * static_cast<double>(i) / static_cast<double>(last));
-        alone.stance_from.push_back(i < last ? 0 : 1);
-      }
+      alone.stance_from.assign(way.configurations.size(), 0);
+      alone.stance_from.back() = 1;
       const CheckReport report = judged(alone);
       solved.judged = report.feasible;
       if (report.feasible) return true;

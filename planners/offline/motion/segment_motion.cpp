@@ -53,6 +53,8 @@ Eigen::VectorXd slope_of(const Robot& robot, const TimedPoint& point) {
   return slope;
 }
 
+}  // namespace
+
 Motion as_motion(const SegmentMotion& way) {
   Motion motion;
   motion.configurations = way.configurations;
@@ -63,8 +65,6 @@ Motion as_motion(const SegmentMotion& way) {
   }
   return motion;
 }
-
-}  // namespace
 
 SegmentMover::SegmentMover(const StanceProblem& problem, const MotionOptions& options)
     : problem_(problem),

@@ -44,6 +44,9 @@ struct SegmentMotion {
   double path_s = 0.0, timing_s = 0.0;  ///< what it took
 };
 
+/// Its configurations, slopes and times from 0 on; of no stance.
+Motion as_motion(const SegmentMotion& way);
+
 class SegmentMover {
  public:
   /// Throws Error for unknown names of planners, and as SegmentSpace does.

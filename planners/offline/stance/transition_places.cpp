@@ -146,8 +146,8 @@ void TransitionPlaces::relate(const Touch& touch) {
     }
   };
   std::vector<std::size_t> far_faces;
-  // As deep in what is only flush, beside the contact's area, as a contact is closed: as good as
-  // its place on the plane.
+  // Beside the contact's area the judge allows as much as a contact may be off, which a link that
+  // is fixed to the plane keeps.
   const auto set_flush = [&](std::size_t i) {
     for (const int b : touch.bounds) {
       const std::size_t bound = static_cast<std::size_t>(b);
