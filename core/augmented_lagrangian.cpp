@@ -1,3 +1,4 @@
+#include <locograph/common/check_option.h>
 #include <locograph/core/augmented_lagrangian.h>
 #include <locograph/core/weighted_square.h>
 
@@ -9,16 +10,12 @@
 namespace locograph {
 namespace {
 
-using Reason = ConstrainedResult::Reason;
-
-void check(bool good, const char* option, const char* expected) {
-  if (!good) throw Error(std::string("option ") + option + " is out of range", expected);
-}
+using ConstrainedReason = ConstrainedResult::Reason;
 
 /// The outer loop's book-keeping, by constraint row.
-class Rounds {
+class OuterLoop {
  public:
-  Rounds(Workspace& workspace, const ConstrainedOptions& options, bool warm)
+  OuterLoop(Workspace& workspace, const ConstrainedOptions& options, bool warm)
       : workspace_(workspace),
         problem_(workspace.problem()),
         rows_(workspace.constraint_rows()),
@@ -189,27 +186,27 @@ bool gave_up(OptimiserResult::Reason reason) {
 
 void ConstrainedOptions::validate() const {
   inner.validate();
-  check(max_rounds >= 1, "max_rounds", "1 or more");
-  check(tolerance > 0.0, "tolerance", "a positive number");
-  check(initial_penalty > 0.0, "initial_penalty", "a positive number");
-  check(growth > 1.0, "growth", "a factor > 1");
-  check(max_penalty >= initial_penalty, "max_penalty", "initial_penalty or more");
-  check(decrease > 0.0 && decrease < 1.0, "decrease", "a fraction in (0, 1)");
+  check_option(max_rounds >= 1, "max_rounds", "1 or more");
+  check_option(tolerance > 0.0, "tolerance", "a positive number");
+  check_option(initial_penalty > 0.0, "initial_penalty", "a positive number");
+  check_option(growth > 1.0, "growth", "a factor > 1");
+  check_option(max_penalty >= initial_penalty, "max_penalty", "initial_penalty or more");
+  check_option(decrease > 0.0 && decrease < 1.0, "decrease", "a fraction in (0, 1)");
 }
 
 std::string ConstrainedResult::reason_text(const Graph& graph) const {
   std::ostringstream text;
   switch (reason) {
-    case Reason::kConverged:
+    case ConstrainedReason::kConverged:
       text << "converged: every constraint is satisfied";
       break;
-    case Reason::kInfeasible:
+    case ConstrainedReason::kInfeasible:
       text << "infeasible: a constraint stays violated at the largest penalty";
       break;
-    case Reason::kMaxRounds:
+    case ConstrainedReason::kMaxRounds:
       text << "the rounds are used up";
       break;
-    case Reason::kInnerFailed:
+    case ConstrainedReason::kInnerFailed:
       text << inner.reason_text();
       break;
   }
@@ -227,7 +224,7 @@ std::string ConstrainedResult::reason_text(const Graph& graph) const {
 ConstrainedResult optimise_constrained(Workspace& workspace, const ConstrainedOptions& options,
                                        LinearSolver& solver, bool warm) {
   options.validate();
-  Rounds rounds(workspace, options, warm);
+  OuterLoop rounds(workspace, options, warm);
   ConstrainedResult result;
   Optimiser optimiser(options.inner);
   bool raised = true;
@@ -241,21 +238,21 @@ ConstrainedResult optimise_constrained(Workspace& workspace, const ConstrainedOp
     workspace.evaluate(workspace.state());
     rounds.measure();
     if (gave_up(result.inner.reason)) {
-      result.reason = Reason::kInnerFailed;
+      result.reason = ConstrainedReason::kInnerFailed;
       break;
     }
     if (rounds.satisfied() && result.inner.reason != OptimiserResult::Reason::kMaxIterations) {
       rounds.update();
-      result.reason = Reason::kConverged;
+      result.reason = ConstrainedReason::kConverged;
       break;
     }
     if (!raised) {
-      result.reason = Reason::kInfeasible;
+      result.reason = ConstrainedReason::kInfeasible;
       break;
     }
     raised = rounds.update();
   }
-  result.converged = result.reason == Reason::kConverged;
+  result.converged = result.reason == ConstrainedReason::kConverged;
   result.cost = plain_cost(workspace);
   rounds.report(result);
   return result;

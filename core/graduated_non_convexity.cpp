@@ -1,3 +1,4 @@
+#include <locograph/common/check_option.h>
 #include <locograph/core/graduated_non_convexity.h>
 #include <locograph/core/weighted_square.h>
 
@@ -208,19 +209,15 @@ bool bring_back(Graph& graph, std::vector<bool>& out, const GraduationOptions& o
   return true;
 }
 
-void check(bool good, const char* option, const char* expected) {
-  if (!good) throw Error(std::string("option ") + option + " is out of range", expected);
-}
-
 }  // namespace
 
 void GraduationOptions::validate() const {
-  check(inlier_probability > 0.0 && inlier_probability < 1.0, "inlier_probability",
-        "a probability in (0, 1)");
-  check(width >= 0.0 && std::isfinite(width), "width", "0 or a positive number");
-  check(factor > 1.0 && std::isfinite(factor), "factor", "a number above 1");
-  check(max_rounds >= 1, "max_rounds", "1 or more");
-  check(iterations_per_round >= 1, "iterations_per_round", "1 or more");
+  check_option(inlier_probability > 0.0 && inlier_probability < 1.0, "inlier_probability",
+               "a probability in (0, 1)");
+  check_option(width >= 0.0 && std::isfinite(width), "width", "0 or a positive number");
+  check_option(factor > 1.0 && std::isfinite(factor), "factor", "a number above 1");
+  check_option(max_rounds >= 1, "max_rounds", "1 or more");
+  check_option(iterations_per_round >= 1, "iterations_per_round", "1 or more");
   optimiser.validate();
 }
 

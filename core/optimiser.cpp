@@ -1,3 +1,4 @@
+#include <locograph/common/check_option.h>
 #include <locograph/core/optimiser.h>
 
 #include <algorithm>
@@ -43,10 +44,6 @@ double dot(const Vector& a, const Vector& b) {
 }
 double norm(const Vector& a) { return std::sqrt(dot(a, a)); }
 
-void check(bool good, const char* option, const char* expected) {
-  if (!good) throw Error(std::string("option ") + option + " is out of range", expected);
-}
-
 }  // namespace
 
 OptimiserOptions OptimiserOptions::for_any_start() {
@@ -57,15 +54,15 @@ OptimiserOptions OptimiserOptions::for_any_start() {
 }
 
 void OptimiserOptions::validate() const {
-  check(max_iterations >= 0, "max_iterations", "0 or more");
-  check(gain >= 0.0 && gain < 1.0, "gain", "a fraction in [0, 1)");
-  check(gradient_tolerance >= 0.0, "gradient_tolerance", "0 or more");
-  check(step_tolerance >= 0.0, "step_tolerance", "0 or more");
-  check(initial_lambda > 0.0, "initial_lambda", "a positive number");
-  check(refused_lambda > 0.0, "refused_lambda", "a positive number");
-  check(initial_radius > 0.0, "initial_radius", "a positive number");
-  check(max_refusals >= 1, "max_refusals", "1 or more");
-  check(nonmonotonic_steps >= 0, "nonmonotonic_steps", "0 or more");
+  check_option(max_iterations >= 0, "max_iterations", "0 or more");
+  check_option(gain >= 0.0 && gain < 1.0, "gain", "a fraction in [0, 1)");
+  check_option(gradient_tolerance >= 0.0, "gradient_tolerance", "0 or more");
+  check_option(step_tolerance >= 0.0, "step_tolerance", "0 or more");
+  check_option(initial_lambda > 0.0, "initial_lambda", "a positive number");
+  check_option(refused_lambda > 0.0, "refused_lambda", "a positive number");
+  check_option(initial_radius > 0.0, "initial_radius", "a positive number");
+  check_option(max_refusals >= 1, "max_refusals", "1 or more");
+  check_option(nonmonotonic_steps >= 0, "nonmonotonic_steps", "0 or more");
 }
 
 std::string OptimiserResult::reason_text() const {

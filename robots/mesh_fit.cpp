@@ -15,9 +15,9 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 /// From, to.
-using Axis = Eigen::Matrix<double, 6, 1>;
+using Segment = Eigen::Matrix<double, 6, 1>;
 
-constexpr double kInflation = 1.0 + 1e-9;  // covers points on the surface up to rounding
+constexpr double kOutwards = 1.0 + 1e-9;  // covers points on the surface up to rounding
 
 /// Signed distance to the mesh at the nodes of a grid, linear between them: what the search looks
 /// at, thousands of times for each capsule.
@@ -83,7 +83,7 @@ class CoarseField {
           const Eigen::Vector3d node = box_.min() + spacing_ * Eigen::Vector3d(x, y, z);
           const bool is_inside =
               mesh.bounds().contains(node) && std::abs(mesh.winding_number(node)) > 0.5;
-          last = mesh.distance(node, (last + spacing_) * kInflation);
+          last = mesh.distance(node, (last + spacing_) * kOutwards);
           values_[index(x, y, z)] = static_cast<float>(is_inside ? -last : last);
           if (is_inside) inside_.push_back(node);
         }
@@ -115,7 +115,7 @@ Samples samples(const Points& corners, const Points& inside, std::size_t most) {
   return result;
 }
 
-Capsule capsule_around(const Samples& points, const Axis& axis) {
+Capsule capsule_around(const Samples& points, const Segment& axis) {
   using Column = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostSamples, 1>;
   const Eigen::Vector3d from = axis.head<3>(), along = axis.tail<3>() - from;
   const double squared = along.squaredNorm();
@@ -224,7 +224,7 @@ class Fit {
 
   /// The worst of the capsule's surface, and a little of the mean, which tells apart what is
   /// equally bad at its worst.
-  double coarse_overshoot(const Samples& points, const Axis& axis) const {
+  double coarse_overshoot(const Samples& points, const Segment& axis) const {
     double worst = 0.0, sum = 0.0;
     int count = 0;
     visit_surface<48>(capsule_around(points, axis), [&](const Eigen::Vector3d& point) {
@@ -245,8 +245,8 @@ class Fit {
   }
 
   /// The best of some capsules along the piece's axes and the sphere in its middle.
-  std::pair<Axis, double> first_guess(const Piece& piece, const Samples& points) const {
-    Axis best = Axis::Zero();
+  std::pair<Segment, double> first_guess(const Piece& piece, const Samples& points) const {
+    Segment best = Segment::Zero();
     double least = std::numeric_limits<double>::infinity();
     for (const Eigen::Matrix3d& frame : piece.frames) {
       Eigen::AlignedBox3d box;
@@ -263,7 +263,7 @@ class Fit {
           const Eigen::Vector3d along =
               sphere ? Eigen::Vector3d::Zero()
                      : Eigen::Vector3d((half[k] - inset * across) * frame.col(k));
-          Axis axis;
+          Segment axis;
           axis << middle - along, middle + along;
           const double value = coarse_overshoot(points, axis);
           if (value < least) {
@@ -277,8 +277,8 @@ class Fit {
   }
 
   /// Pattern search over the end points.
-  std::pair<Axis, double> improved(const Samples& points, Axis axis, double value,
-                                   int most_tries) const {
+  std::pair<Segment, double> improved(const Samples& points, Segment axis, double value,
+                                      int most_tries) const {
     const double diagonal =
         (points.colwise().maxCoeff() - points.colwise().minCoeff()).matrix().norm();
     int tries = 0;
@@ -287,7 +287,7 @@ class Fit {
         better = false;
         for (int k = 0; k < (options_.spheres ? 3 : 6); ++k) {
           for (const double sign : {-1.0, 1.0}) {
-            Axis other = axis;
+            Segment other = axis;
             other[k] += sign * step;
             if (options_.spheres) other[k + 3] = other[k];
             ++tries;
@@ -315,7 +315,7 @@ class Fit {
     const Samples points = samples(piece.corners, piece.inside, 600);
     const auto [guess, value] = first_guess(piece, points);
     piece.overshoot = std::numeric_limits<double>::infinity();
-    for (const Axis& axis : {guess, improved(points, guess, value, 200).first}) {
+    for (const Segment& axis : {guess, improved(points, guess, value, 200).first}) {
       const Capsule capsule = around(piece, axis);
       const double exact = exact_overshoot(capsule);
       if (exact >= piece.overshoot) continue;
@@ -325,11 +325,11 @@ class Fit {
     return piece;
   }
 
-  static Capsule around(const Piece& piece, const Axis& axis) {
+  static Capsule around(const Piece& piece, const Segment& axis) {
     Capsule capsule{axis.head<3>(), axis.tail<3>(), 0.0};
     for (const Points* points : {&piece.corners, &piece.inside}) {
       for (const Eigen::Vector3d& point : *points) {
-        capsule.radius = std::max(capsule.radius, distance_to_axis(capsule, point) * kInflation);
+        capsule.radius = std::max(capsule.radius, distance_to_axis(capsule, point) * kOutwards);
       }
     }
     return capsule;

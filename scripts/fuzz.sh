@@ -23,7 +23,7 @@ install_missing
 # Without debug information and several sources at a time: it is made for each test run.
 configure build-fuzz -DCMAKE_CXX_COMPILER=clang++-14 -DLOCOGRAPH_FUZZ=ON -DLOCOGRAPH_TESTS=OFF \
   -DLOCOGRAPH_NATIVE=OFF -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_UNITY_BUILD=ON \
-  -DCMAKE_UNITY_BUILD_BATCH_SIZE=4 "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -gline-tables-only"
+  -DCMAKE_UNITY_BUILD_BATCH_SIZE=16 "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -gline-tables-only"
 build build-fuzz --target graph_seeds "${targets[@]/#/fuzz_}"
 
 folder=$root/build-fuzz/fuzz

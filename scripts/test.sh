@@ -16,7 +16,7 @@ run_tests() {
 install_missing
 # Several sources at a time, as below: a third less to compile.
 configure build -DLOCOGRAPH_BENCHMARKS=ON -DLOCOGRAPH_UNITY_TESTS=ON -DCMAKE_UNITY_BUILD=ON \
-  -DCMAKE_UNITY_BUILD_BATCH_SIZE=4
+  -DCMAKE_UNITY_BUILD_BATCH_SIZE=16
 build build
 
 say "checking the layout of the sources"
@@ -27,7 +27,7 @@ say "checking the layout of the sources"
 # quarter less to compile than -O1.
 configure_sanitized() {
   configure "$1" -DLOCOGRAPH_SANITIZE="$2" -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-    -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=4 -DLOCOGRAPH_UNITY_TESTS=ON \
+    -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=16 -DLOCOGRAPH_UNITY_TESTS=ON \
     "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-Og -g1" -DLOCOGRAPH_BENCHMARKS=OFF
 }
 

@@ -1,13 +1,12 @@
-#include <locograph/common/error.h>
+#include <locograph/common/check_option.h>
 #include <locograph/solvers/pcg_solver.h>
 
 namespace locograph {
 
 void PcgOptions::validate() const {
-  if (!(relative_tolerance > 0.0 && relative_tolerance < 1.0)) {
-    throw Error("option relative_tolerance is out of range", "a number between 0 and 1");
-  }
-  if (max_iterations < 1) throw Error("option max_iterations is out of range", "1 or more");
+  check_option(relative_tolerance > 0.0 && relative_tolerance < 1.0, "relative_tolerance",
+               "a number between 0 and 1");
+  check_option(max_iterations >= 1, "max_iterations", "1 or more");
 }
 
 PcgSolver::PcgSolver(const PcgOptions& options) : options_(options) { options.validate(); }

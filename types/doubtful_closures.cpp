@@ -1,3 +1,4 @@
+#include <locograph/common/check_option.h>
 #include <locograph/common/skew.h>
 #include <locograph/core/graduated_non_convexity.h>
 #include <locograph/types/doubtful_closures.h>
@@ -296,19 +297,15 @@ class Cycles {
   std::vector<Reached> reached_;
 };
 
-void check(bool good, const char* option, const char* expected) {
-  if (!good) throw Error(std::string("option ") + option + " is out of range", expected);
-}
-
 }  // namespace
 
 void ConsistencyOptions::validate() const {
-  check(inlier_probability > 0.0 && inlier_probability < 1.0, "inlier_probability",
-        "a probability in (0, 1)");
-  check(accident_probability > 0.0 && accident_probability < 1.0, "accident_probability",
-        "a probability in (0, 1)");
-  check(pair_steps >= 0, "pair_steps", "0 or more");
-  check(path_steps >= 1, "path_steps", "1 or more");
+  check_option(inlier_probability > 0.0 && inlier_probability < 1.0, "inlier_probability",
+               "a probability in (0, 1)");
+  check_option(accident_probability > 0.0 && accident_probability < 1.0, "accident_probability",
+               "a probability in (0, 1)");
+  check_option(pair_steps >= 0, "pair_steps", "0 or more");
+  check_option(path_steps >= 1, "path_steps", "1 or more");
 }
 
 std::vector<int> doubtful_closures(const Graph& graph, std::span<const int> trusted,

@@ -168,7 +168,7 @@ class DataWalk {
   std::size_t nodes_ = 0;
 };
 
-void require_positive(double value, const char* what) {
+void require_metres(double value, const char* what) {
   if (!std::isfinite(value) || value <= 0.0)
     throw Error(std::string(what) + " is " + std::to_string(value), "a positive number of metres");
 }
@@ -256,13 +256,13 @@ std::shared_ptr<octomap::OcTree> joined(const octomap::OcTree& a, const octomap:
 
 std::shared_ptr<octomap::OcTree> octree_from_boxes(std::span<const Box> boxes,
                                                    double resolution_m) {
-  require_positive(resolution_m, "resolution");
+  require_metres(resolution_m, "resolution");
   std::shared_ptr<octomap::OcTree> tree = std::make_shared<octomap::OcTree>(resolution_m);
   constexpr int kOffset = 1 << (kMaxDepth - 1);
   // Centres on a face belong to the box, whatever the rounding of the transform.
   const double slack = 1e-9 * resolution_m;
   for (const Box& box : boxes) {
-    for (int axis = 0; axis < 3; ++axis) require_positive(box.size[axis], "size of a box");
+    for (int axis = 0; axis < 3; ++axis) require_metres(box.size[axis], "size of a box");
     if (!box.world_from_box.matrix().allFinite())
       throw Error("the pose of a box is not finite", "a finite pose");
     const Eigen::Vector3d half = 0.5 * box.size;

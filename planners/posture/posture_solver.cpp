@@ -1,3 +1,4 @@
+#include <locograph/common/check_option.h>
 #include <locograph/common/uniform.h>
 #include <locograph/core/optimiser.h>
 #include <locograph/planners/plan/plan.h>
@@ -15,10 +16,6 @@
 
 namespace locograph {
 namespace {
-
-void require(bool good, const char* option, const char* expected) {
-  if (!good) throw Error(std::string("option ") + option + " is out of range", expected);
-}
 
 /// Pairs of RobotParameter::self_collision that the edges would keep apart where the exact shapes
 /// do not touch.
@@ -216,15 +213,15 @@ class PostureSolver::Workspaces {
 };
 
 void PostureOptions::validate() const {
-  require(max_restarts >= 0, "max_restarts", "0 or more");
-  require(patience >= 1, "patience", "1 or more");
-  require(max_iterations >= 1, "max_iterations", "1 or more");
-  require(joint_margin_rad >= 0.0, "joint_margin_rad", "0 or more");
-  require(self_margin_m >= 0.0, "self_margin_m", "0 or more");
-  require(obstacle_margin_m >= 0.0, "obstacle_margin_m", "0 or more");
-  require(ground_margin_m >= 0.0, "ground_margin_m", "0 or more");
-  require(wrench_margin >= 0.0 && wrench_margin < 1.0, "wrench_margin", "a part in [0, 1)");
-  require(torque_margin >= 0.0 && torque_margin < 1.0, "torque_margin", "a part in [0, 1)");
+  check_option(max_restarts >= 0, "max_restarts", "0 or more");
+  check_option(patience >= 1, "patience", "1 or more");
+  check_option(max_iterations >= 1, "max_iterations", "1 or more");
+  check_option(joint_margin_rad >= 0.0, "joint_margin_rad", "0 or more");
+  check_option(self_margin_m >= 0.0, "self_margin_m", "0 or more");
+  check_option(obstacle_margin_m >= 0.0, "obstacle_margin_m", "0 or more");
+  check_option(ground_margin_m >= 0.0, "ground_margin_m", "0 or more");
+  check_option(wrench_margin >= 0.0 && wrench_margin < 1.0, "wrench_margin", "a part in [0, 1)");
+  check_option(torque_margin >= 0.0 && torque_margin < 1.0, "torque_margin", "a part in [0, 1)");
 }
 
 World posture_world(World in_the_way) {

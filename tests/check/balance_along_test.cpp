@@ -7,11 +7,14 @@
 
 #include "check/centauro_on_wheels.h"
 #include "check/coman_plus_standing.h"
+#include "common/sanitized.h"
 
 namespace locograph {
 namespace {
 
 using test::standing;
+
+constexpr int kVertices = test::kSanitized ? 12 : 50;
 
 /// Swings its arms by so much; with a second stance of the same feet from the middle on, and if it
 /// is to fall over one foot only at the end.
@@ -77,7 +80,7 @@ TEST(BalanceAlong, ReportsTheSameWithoutTheProgrammesThatAreNotNeeded) {
     for (const bool enforce : {true, false}) {
       CheckOptions options;
       options.enforce_torque_limits = enforce;
-      const Motion motion = arms(50, falls ? 1.0 : 0.01, falls);
+      const Motion motion = arms(kVertices, falls ? 1.0 : 0.01, falls);
       EXPECT_EQ(judge.check(motion, options).constraint("static_balance").violated, falls);
       expect_one_report(judge, motion, options);
     }
@@ -85,7 +88,7 @@ TEST(BalanceAlong, ReportsTheSameWithoutTheProgrammesThatAreNotNeeded) {
 }
 
 TEST(BalanceAlong, ReportsTheSameOfWheelsAndOfLimitsOnlyJustKept) {
-  const Motion drive = centauro().drive(40, 0.02, 0.1);
+  const Motion drive = centauro().drive(test::kSanitized ? 8 : 40, 0.02, 0.1);
   World world;
   world.surfaces = {ground()};
   world.obstacles = {box("post", {0.9, 0.75, 0.5}, {0.1, 0.1, 1.0})};
@@ -101,7 +104,7 @@ TEST(BalanceAlong, ReportsTheSameOfWheelsAndOfLimitsOnlyJustKept) {
 
 TEST(BalanceAlong, TellsTheWrenchesOfEveryVertexInOrder) {
   const Judge judge(standing().robot, standing().world());
-  const Motion motion = arms(50, 0.05);
+  const Motion motion = arms(kVertices, 0.05);
   CheckOptions options;
   const CheckReport quiet = judge.check(motion, options);
   for (const int threads : {1, 3}) {

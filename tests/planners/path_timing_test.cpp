@@ -13,10 +13,13 @@
 #include <random>
 #include <string>
 
+#include "common/sanitized.h"
 #include "common/temporary_folder.h"
 
 namespace locograph {
 namespace {
+
+using test::kSanitized;
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 constexpr double kMillisecond = 1e-3;
@@ -199,7 +202,8 @@ TEST(PathTiming, LetsJointsStandStillOnAPart) {
 
 TEST(PathTiming, KeepsLimitsEverywhereAndIsNearTheOptimumOnRandomPaths) {
   double worst = 0.0, sum = 0.0;
-  for (unsigned seed = 0; seed < 1000; ++seed) {
+  constexpr unsigned kTasks = kSanitized ? 30 : 1000;
+  for (unsigned seed = 0; seed < kTasks; ++seed) {
     const RandomTask task(seed);
     const PathTiming timing(*task.robot, task.waypoints, task.limits);
     ASSERT_TRUE(timing.feasible());
@@ -218,12 +222,12 @@ TEST(PathTiming, KeepsLimitsEverywhereAndIsNearTheOptimumOnRandomPaths) {
     sum += ratio;
   }
   RecordProperty("worst_ratio", std::to_string(worst));
-  RecordProperty("mean_ratio", std::to_string(sum / 1000.0));
+  RecordProperty("mean_ratio", std::to_string(sum / kTasks));
 }
 
 /// Few grid points: what is between them is many milliseconds long.
 TEST(PathTiming, KeepsLimitsBetweenThePointsOfACoarseGrid) {
-  for (unsigned seed = 0; seed < 100; ++seed) {
+  for (unsigned seed = 0; seed < (kSanitized ? 10 : 100); ++seed) {
     const RandomTask task(seed);
     const TimingOptions options{.intervals = 1, .intervals_per_step = seed % 2 == 0 ? 2 : 16};
     const PathTiming timing(*task.robot, task.waypoints, task.limits, options);
@@ -234,7 +238,7 @@ TEST(PathTiming, KeepsLimitsBetweenThePointsOfACoarseGrid) {
 }
 
 TEST(PathTiming, KeepsLimitsWhenItSmooths) {
-  for (unsigned seed = 0; seed < 200; ++seed) {
+  for (unsigned seed = 0; seed < (kSanitized ? 20 : 200); ++seed) {
     const RandomTask task(seed);
     const double smoothing_s = seed % 2 == 0 ? 0.02 : 0.1;
     const PathTiming timing(*task.robot, task.waypoints, task.limits, {.smoothing_s = smoothing_s});
@@ -265,7 +269,7 @@ TEST(PathTiming, LimitsJerkBySmoothing) {
 }
 
 TEST(PathTiming, HasNoJumpsOfAccelerationWhenItSmooths) {
-  for (unsigned seed = 0; seed < 20; ++seed) {
+  for (unsigned seed = 0; seed < (kSanitized ? 2 : 20); ++seed) {
     const RandomTask task(seed);
     const PathTiming timing(*task.robot, task.waypoints, task.limits, {.smoothing_s = 0.05});
     const auto largest_change = [&](double step_s) {
@@ -491,7 +495,7 @@ TEST(PathTiming, SatisfiesTheJudgeWithAFloatingBase) {
       robot,
       {.base_linear_m_s = 0.4, .base_angular_rad_s = 0.3, .joint_acceleration_rad_s2 = 2.999});
   EXPECT_EQ(limits.velocity[6], 2.0);
-  for (unsigned seed = 0; seed < 20; ++seed) {
+  for (unsigned seed = 0; seed < (kSanitized ? 4 : 20); ++seed) {
     const double smoothing_s = seed % 2 == 0 ? 0.1 : 0.05;
     const PathTiming timing(robot, wandering(robot, seed), limits, {.smoothing_s = smoothing_s});
     TimedPath sampled = timing.sampled(kMillisecond);

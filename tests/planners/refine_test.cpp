@@ -4,6 +4,7 @@
 #include <locograph/world/distance_view.h>
 #include <locograph/world/octree.h>
 
+#include "common/sanitized.h"
 #include "planners/planned_drive.h"
 
 namespace locograph {
@@ -51,6 +52,7 @@ void expect_same(const Graph& a, const Graph& b, double tolerance) {
 }
 
 TEST(Refine, LeavesAPlanInAnEmptyWorldAsItIs) {
+  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
   const Surroundings nothing, empty_map{{}, std::make_shared<octomap::OcTree>(0.05)};
   for (const Surroundings& surroundings : {nothing, empty_map}) {
     for (const double curvature : {0.0, 0.3}) {
@@ -99,6 +101,7 @@ TEST(Refine, DrivesAroundABoxThatShowsUpOnTheWay) {
 }
 
 TEST(Refine, NeverCallsAStepFeasibleThatMeetsACartOnItsWay) {
+  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
   Obstacle cart = box("cart", {2.0, -3.0, 0.4}, {0.4, 0.4, 0.8});
   KeyFrame start{8.0, cart.world_from_obstacle}, end{32.0, cart.world_from_obstacle};
   end.pose.translation().y() = 3.0;
@@ -129,9 +132,15 @@ void expect_stops(const Surroundings& surroundings) {
   EXPECT_GT(configurations(graph).back()[0], 1.0) << "stopped early";
 }
 
-TEST(Refine, StopsInFrontOfAWallAndSaysSo) { expect_stops({{wall_ahead()}, nullptr}); }
+TEST(Refine, StopsInFrontOfAWallAndSaysSo) {
+  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
+  expect_stops({{wall_ahead()}, nullptr});
+}
 
-TEST(Refine, StopsInFrontOfAWallInAMapAndSaysSo) { expect_stops({{}, map_of(wall_ahead())}); }
+TEST(Refine, StopsInFrontOfAWallInAMapAndSaysSo) {
+  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
+  expect_stops({{}, map_of(wall_ahead())});
+}
 
 TEST(Refine, RemovesWhatCannotBeExecutedWhenThereIsNowhereToGo) {
   // Appears around the robot, which cannot get out of the way in one step.
@@ -154,6 +163,7 @@ TEST(Refine, RemovesWhatCannotBeExecutedWhenThereIsNowhereToGo) {
 class Horizon : public testing::TestWithParam<int> {};
 
 TEST_P(Horizon, NeverHandsOutAnInfeasiblePlan) {
+  if (test::kSanitized && GetParam() < 20) GTEST_SKIP() << "takes minutes there";
   const Surroundings surroundings{{box_ahead()}, nullptr};
   Graph graph = drive();
   const RefineReport report = refine_in(graph, surroundings, GetParam());
@@ -216,6 +226,7 @@ TEST(Refine, IsNoSuccessWhereItEndsTooFarFromTheGoal) {
 }
 
 TEST(Refine, GivesTheSameBitsAgain) {
+  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
   const Surroundings surroundings{{}, map_of(box_ahead())};
   Graph first = drive(), second = drive();
   refine_in(first, surroundings);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/sanitized.h"
 #include "planners/segment_problems.h"
 
 namespace locograph {
@@ -89,6 +90,7 @@ TEST(SegmentOptimisation, WhatSwingsFollowsAnArc) {
 }
 
 TEST(SegmentOptimisation, TheSamePathEveryTime) {
+  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
   const auto problem = test::segment_problem("board");
   SegmentSpace first(problem->robot, problem->world), second(problem->robot, problem->world);
   first.set_segment(problem->segment);

@@ -81,6 +81,9 @@ struct Task {
 class ShippedTasks : public testing::TestWithParam<Task> {};
 
 TEST_P(ShippedTasks, ArePlannedOneContactAtATimeAndJudgedFeasible) {
+  if (test::kSanitized && GetParam().name == "stepping_stones") {
+    GTEST_SKIP() << "takes a minute there";
+  }
   StanceProblem task = stance_task(GetParam().name);
   task.check.enforce_torque_limits = GetParam().enforces_torque_limits;
   const StancePlannerOptions options = at_most(3000, GetParam().seed);
@@ -106,6 +109,7 @@ TEST_P(ShippedTasks, ArePlannedOneContactAtATimeAndJudgedFeasible) {
   EXPECT_EQ(next_goal, task.goals.size()) << "goals passed in their order";
   expect_judged_feasible(task, found);
 
+  if (test::kSanitized) return;
   const StancePlan again = plan(task, options);
   EXPECT_EQ(again.transitions, found.transitions);
   EXPECT_EQ(again.vertices_in_tree, found.vertices_in_tree);
@@ -219,6 +223,7 @@ TEST(StancePlanner, TellsOfTheTransitionsItTriesAndPlansTheSame) {
 }
 
 TEST(StancePlanner, KeepsTheTreeItTriedOnlyWhenAskedAndPlansTheSame) {
+  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
   const StanceProblem task = stance_task("standing_up");
   for (const std::string& name : stance_planner_names()) {
     StancePlannerOptions options = at_most(3000);

@@ -17,11 +17,11 @@ constexpr double kLevelTolerance_m = 1e-3, kGround_m = 0.0;
 constexpr double kAcceleration_m_s2 = 0.5, kShareOfLimit = 0.8;
 
 /// A base pose on the path, in the plane.
-struct PathPoint {
+struct DrivePoint {
   double x, y, heading;
 };
 
-PathPoint path_point(const DriveTask& drive, double distance) {
+DrivePoint path_point(const DriveTask& drive, double distance) {
   const double turned = drive.curvature_1_m * distance;
   if (std::abs(turned) < 1e-9) return {distance, 0.5 * turned * distance, turned};
   return {std::sin(turned) / drive.curvature_1_m, (1.0 - std::cos(turned)) / drive.curvature_1_m,
@@ -81,7 +81,7 @@ class WheeledDrive {
     Eigen::VectorXd along = Eigen::VectorXd::Zero(robot_.tangent_size());  // for one unit of speed
     for (std::size_t i = 0; i < ramp.time_s.size(); ++i) {
       if (!job.go_on("rolling", i, ramp.time_s.size())) return;
-      const PathPoint at = path_point(drive_, step_m * static_cast<double>(i));
+      const DrivePoint at = path_point(drive_, step_m * static_cast<double>(i));
       Eigen::VectorXd q = stand_;
       q[0] = at.x;
       q[1] = at.y;

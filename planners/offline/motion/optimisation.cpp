@@ -20,7 +20,7 @@ constexpr double kSpacing = 0.06;
 constexpr int kFewest = 24, kMost = 48;
 constexpr int kMostIterations = 30;
 /// What reaches into something between neighbours shows once there are twice as many.
-constexpr int kRounds = 2;
+constexpr int kTries = 2;
 constexpr double kGain = 1e-3;
 /// On squared errors in m, rad; that of the whole way counts with 1.
 constexpr double kHeldWeight = 1e5, kRoomWeight = 1e4, kArcWeight = 100.0, kArcTurnWeight = 1.0;
@@ -218,7 +218,7 @@ class Optimisation : public SegmentPlanner {
       if (swings.empty() && &attempt != kAttempts.data() && attempt.bend == 0.0) continue;
       std::vector<Eigen::VectorXd> way = first_way(space, attempt);
       if (way.empty()) continue;
-      for (int round = 0; round < kRounds && !path.found; ++round) {
+      for (int round = 0; round < kTries && !path.found; ++round) {
         if (round > 0) halve(space, way);
         SegmentGraph graph(space, wanted, swings, attempt, std::move(way));
         way = graph.optimised(options.deadline);

@@ -14,7 +14,7 @@ namespace locograph {
 namespace {
 
 /// Of the spline, half-way between waypoints; the judge allows 1e-4 m at vertices.
-constexpr double kClosed = 3e-5;
+constexpr double kClosedAlong = 3e-5;
 constexpr int kMostRounds = 8;
 /// Between the first waypoints of a spline, and where no more are added [as
 /// SegmentSpace::distance].
@@ -26,7 +26,7 @@ constexpr int kMostBroughtBack = 4;
 constexpr int kOffGround = 3;  ///< more in the first and the last part
 /// Both ends of a segment are the same: one contact more and another one less at once.
 constexpr double kNoWay = 1e-6;
-constexpr std::size_t kLooks = 8;  ///< at what swings
+constexpr std::size_t kSwingSamples = 8;  ///< at what swings
 constexpr double kRounding = 1e-9;
 
 /// Splines may swing a little beyond limits. False: nothing was to be done.
@@ -140,8 +140,9 @@ std::optional<double> SegmentMover::clear_of(const SegmentMotion& motion) {
     const Contact& contact = swing.contact();
     const int link = space_.robot().link_index(contact.effector.link);
     double most = 0.0;
-    for (std::size_t look = 1; look < kLooks; ++look) {
-      state.update(motion.configurations[motion.configurations.size() * look / kLooks].data());
+    for (std::size_t look = 1; look < kSwingSamples; ++look) {
+      state.update(
+          motion.configurations[motion.configurations.size() * look / kSwingSamples].data());
       most = std::max(most, space_.room_of(contact, state.world_from_link(link)));
     }
     least = std::min(least.value_or(most), most);
@@ -218,7 +219,7 @@ std::optional<SegmentMover::Node> SegmentMover::missing(const PathSpline& path, 
   for (const double share : {0.25, 0.75, 0.5}) {
     path.at(before + share * (after - before), point);
     space_.closure(point.configuration, error);
-    open = open || (error.size() > 0 && error.cwiseAbs().maxCoeff() > kClosed);
+    open = open || (error.size() > 0 && error.cwiseAbs().maxCoeff() > kClosedAlong);
     if (nodes[i].at - nodes[i - 1].at > kDense && !space_.valid(point.configuration, true)) {
       return on_way(way, at);
     }

@@ -24,7 +24,7 @@ constexpr int kLiftSteps = 3;
 constexpr double kAlmost = 0.006;  // m, rad
 /// What is further from its place is not near it: other links, and other sides of what is touched,
 /// keep away as from anything else.
-constexpr double kNear_m = 0.1, kBelow_m = 2e-3;
+constexpr double kNear_m = 0.1, kBelowContact_m = 2e-3;
 /// Of what swings, above what it leaves: rows that hold to kRowsTolerance keep it out of it.
 constexpr double kOff_m = 2e-4;
 
@@ -144,7 +144,7 @@ std::vector<bool> SegmentSpace::what_is_near(const Eigen::VectorXd& q,
     const Eigen::Vector3d off =
         at - contact.position - radius_m * contact.normal.stableNormalized();
     result.push_back(off.norm() < kNear_m &&
-                     off.dot(contact.normal.stableNormalized()) > -kBelow_m);
+                     off.dot(contact.normal.stableNormalized()) > -kBelowContact_m);
   }
   return result;
 }

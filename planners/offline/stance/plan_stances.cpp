@@ -1,3 +1,4 @@
+#include <locograph/common/check_option.h>
 #include <locograph/planners/offline/stance/plan_stances.h>
 #include <locograph/planners/offline/stance/stance_tree.h>
 
@@ -89,13 +90,10 @@ void note_best(StancePlan& plan, const StanceSpace& space, const Footing& footin
 }
 
 void StancePlannerOptions::validate() const {
-  const auto require = [](bool good, const char* option, const char* expected) {
-    if (!good) throw Error(std::string("option ") + option + " is out of range", expected);
-  };
-  require(grid_m >= 1e-3 && grid_m <= 10.0, "grid_m", "0.001 to 10 m");
-  require(reach > 0.0 && reach <= 2.0, "reach", "above 0, up to 2");
-  require(threads >= 1, "threads", "1 or more");
-  require(max_transitions >= 0, "max_transitions", "0 or more");
+  check_option(grid_m >= 1e-3 && grid_m <= 10.0, "grid_m", "0.001 to 10 m");
+  check_option(reach > 0.0 && reach <= 2.0, "reach", "above 0, up to 2");
+  check_option(threads >= 1, "threads", "1 or more");
+  check_option(max_transitions >= 0, "max_transitions", "0 or more");
 }
 
 StancePlan plan_stances(const StanceProblem& problem, const StancePlannerOptions& options,

@@ -42,7 +42,7 @@ struct Vertex {
 };
 
 /// What surfaces and bars lie in, but not further than kFar_m from a point.
-Eigen::AlignedBox3d box_around(const World& world, const Eigen::Vector3d& centre) {
+Eigen::AlignedBox3d box_of_search(const World& world, const Eigen::Vector3d& centre) {
   Eigen::AlignedBox3d box(centre);
   for (const Surface& surface : world.surfaces) {
     const Eigen::Isometry3d& pose = surface.world_from_surface;
@@ -98,7 +98,7 @@ class RrtSearch {
     for (const Eigen::Vector3d& position : positions) {
       centre += position / static_cast<double>(positions.size());
     }
-    box_ = box_around(space_.problem().world, centre);
+    box_ = box_of_search(space_.problem().world, centre);
   }
 
   Vertex& vertex(int number) { return vertices_[static_cast<std::size_t>(number)]; }

@@ -9,7 +9,6 @@
 namespace locograph {
 namespace {
 
-constexpr double kSamePlane_m = 1e-4, kSamePlane_rad = 1e-3;
 constexpr double kQuantum = 1e-9;  ///< places nearer than this are one
 /// Less area than this on a surface is none, as for the judge.
 constexpr double kNoArea_m2 = 1e-8;
@@ -65,8 +64,8 @@ double distance_to(const Surface& surface, const Eigen::Vector3d& point) {
 bool lies_in(const Surface& surface, const Contact& contact) {
   const Eigen::Isometry3d& pose = surface.world_from_surface;
   const Eigen::Vector3d normal = pose.linear().col(2);
-  return angle_between(normal, contact.normal) <= kSamePlane_rad &&
-         std::abs(normal.dot(contact.position - pose.translation())) <= kSamePlane_m;
+  return angle_between(normal, contact.normal) <= limits::kClosed_rad &&
+         std::abs(normal.dot(contact.position - pose.translation())) <= limits::kClosed_m;
 }
 
 /// Length of the way along the joints from the robot's root to a link's point, what slides pulled
@@ -136,7 +135,7 @@ double StanceSpace::friction_at(const Contact& contact) const {
     const Eigen::Vector3d way = bar.to - bar.from;
     const Eigen::Vector3d off = contact.position - bar.from;
     const double away = (off - way * (way.dot(off) / way.squaredNorm())).norm();
-    if (bar.friction > 0.0 && away <= bar.radius_m + 2.0 * kSamePlane_m) {
+    if (bar.friction > 0.0 && away <= bar.radius_m + 2.0 * limits::kClosed_m) {
       friction = std::min(friction, bar.friction);
     }
   }

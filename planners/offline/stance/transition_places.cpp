@@ -1,3 +1,4 @@
+#include <locograph/check/limits.h>
 #include <locograph/planners/offline/stance/transition_places.h>
 #include <locograph/robots/kinematic_tree.h>
 #include <locograph/world/link_solid.h>
@@ -12,7 +13,7 @@ namespace {
 
 /// As the judge: links that touch may be in the surfaces under their contact's area and in the box
 /// with such a face, but for its faces so far away, or further than a sole's corners.
-constexpr double kTouchedReach_m = 0.3, kBelow_m = 1e-3, kSamePlane_m = 1e-4, kSamePlane_rad = 1e-3;
+constexpr double kTouchedReach_m = 0.3, kOnSurface_m = 1e-3;
 /// So deep below a plate a sphere is still above it; deeper, it is below.
 constexpr double kPlateDepth_m = 0.15, kPlateDepthShare = 0.3;
 /// How deep links may be in what they touch in both stances: what the judge allows, less what rows
@@ -31,7 +32,7 @@ Eigen::AlignedBox3d bounds_of_bar(const Bar& bar) {
 bool is_on_bar(const Bar& bar, const Contact& contact) {
   const Eigen::Vector3d along = (bar.to - bar.from).normalized();
   const Eigen::Vector3d off = contact.position - bar.from;
-  return (off - along * along.dot(off)).norm() <= bar.radius_m + kBelow_m;
+  return (off - along * along.dot(off)).norm() <= bar.radius_m + kOnSurface_m;
 }
 
 }  // namespace
@@ -187,8 +188,8 @@ void TransitionPlaces::relate(const Touch& touch) {
 bool TransitionPlaces::in_plane(const Surface& surface, const Touch& touch) const {
   const Eigen::Isometry3d& pose = surface.world_from_surface;
   const Eigen::Vector3d own = pose.linear().col(2);
-  return angle_between(own, touch.normal) <= kSamePlane_rad &&
-         std::abs(own.dot(touch.contact.position - pose.translation())) <= kSamePlane_m;
+  return angle_between(own, touch.normal) <= limits::kClosed_rad &&
+         std::abs(own.dot(touch.contact.position - pose.translation())) <= limits::kClosed_m;
 }
 
 /// Two rectangles in a plane overlap unless one of their four directions separates them.
@@ -196,11 +197,12 @@ bool TransitionPlaces::is_under(const Surface& surface, const Touch& touch) cons
   const EndEffector& effector = touch.contact.effector;
   const Eigen::Isometry3d surface_from_world = surface.world_from_surface.inverse();
   const Eigen::Vector3d at = surface_from_world * touch.contact.position;
-  const double x_m = surface.half_x_m + kSamePlane_m, y_m = surface.half_y_m + kSamePlane_m;
+  const double x_m = surface.half_x_m + limits::kClosed_m,
+               y_m = surface.half_y_m + limits::kClosed_m;
   if (effector.kind != ContactKind::kSurface || !touch.contact.forward) {
     const double sole = effector.kind == ContactKind::kSurface
                             ? std::min(effector.half_x_m, effector.half_y_m)
-                            : kSamePlane_m;
+                            : limits::kClosed_m;
     return std::abs(at.x()) <= x_m + sole && std::abs(at.y()) <= y_m + sole;
   }
   const Eigen::Matrix3d axes = surface_from_world.linear() * axes_in_world(touch.contact);
@@ -220,7 +222,7 @@ bool TransitionPlaces::is_below(const Surface& surface, const Touch& touch) cons
   for (const double x : {surface.half_x_m, -surface.half_x_m}) {
     for (const double y : {surface.half_y_m, -surface.half_y_m}) {
       const Eigen::Vector3d corner = surface.world_from_surface * Eigen::Vector3d(x, y, 0.0);
-      if (touch.normal.dot(corner - touch.contact.position) > kBelow_m) return false;
+      if (touch.normal.dot(corner - touch.contact.position) > kOnSurface_m) return false;
     }
   }
   const Eigen::Vector3d local = surface.world_from_surface.inverse() * touch.contact.position;
