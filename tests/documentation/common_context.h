@@ -15,7 +15,7 @@ namespace locograph::documentation::in_common {
 struct Context {
   const std::string text = "<robot/>", name = "centaur", file = "robot.urdf";
   const int line = 12;
-  const double x = 0.5;
+  const double x = 0.5, tolerance = 1e-6;
   const std::vector<std::string> known = {"centauro", "coman_plus"};
   const Eigen::Vector3d v = {1.0, 2.0, 3.0}, w = {0.0, 0.0, 1.0};
   const int chunks = 8;
