@@ -104,7 +104,7 @@ TEST(BalanceAlong, ReportsTheSameOfWheelsAndOfLimitsOnlyJustKept) {
 
 TEST(BalanceAlong, TellsTheWrenchesOfEveryVertexInOrder) {
   const Judge judge(standing().robot, standing().world());
-  const Motion motion = arms(kVertices, 0.05);
+  const Motion motion = arms(50, 0.05);
   CheckOptions options;
   const CheckReport quiet = judge.check(motion, options);
   for (const int threads : {1, 3}) {
