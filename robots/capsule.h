@@ -14,6 +14,9 @@ struct Capsule {
   double radius;             ///< m
 };
 
+/// On radii and distances: covers points on the surface up to rounding.
+inline constexpr double kInflation = 1.0 + 1e-9;
+
 inline double distance_to_axis(const Capsule& capsule, const Eigen::Vector3d& point) {
   const Eigen::Vector3d along = capsule.to - capsule.from, arm = point - capsule.from;
   const double squared = along.squaredNorm();

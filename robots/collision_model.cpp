@@ -14,9 +14,6 @@ namespace {
 /// Spheres in the frame of a shape.
 using Spheres = std::vector<std::pair<Eigen::Vector3d, double>>;
 
-/// Covers points that lie on a sphere up to rounding.
-constexpr double kInflation = 1.0 + 1e-9;
-
 /// n spheres of radius R along the axis of a capsule cover it if the outer two stand at most R - r
 /// inside the ends of the segment and neighbours at most 2 sqrt(R^2 - r^2) apart.
 Spheres cover_capsule(double r, double length, double overshoot, int limit) {

@@ -17,8 +17,6 @@ using Points = std::vector<Eigen::Vector3d>;
 /// From, to.
 using Segment = Eigen::Matrix<double, 6, 1>;
 
-constexpr double kOutwards = 1.0 + 1e-9;  // covers points on the surface up to rounding
-
 /// Signed distance to the mesh at the nodes of a grid, linear between them: what the search looks
 /// at, thousands of times for each capsule.
 class CoarseField {
@@ -83,7 +81,7 @@ class CoarseField {
           const Eigen::Vector3d node = box_.min() + spacing_ * Eigen::Vector3d(x, y, z);
           const bool is_inside =
               mesh.bounds().contains(node) && std::abs(mesh.winding_number(node)) > 0.5;
-          last = mesh.distance(node, (last + spacing_) * kOutwards);
+          last = mesh.distance(node, (last + spacing_) * kInflation);
           values_[index(x, y, z)] = static_cast<float>(is_inside ? -last : last);
           if (is_inside) inside_.push_back(node);
         }
@@ -329,7 +327,7 @@ class Fit {
     Capsule capsule{axis.head<3>(), axis.tail<3>(), 0.0};
     for (const Points* points : {&piece.corners, &piece.inside}) {
       for (const Eigen::Vector3d& point : *points) {
-        capsule.radius = std::max(capsule.radius, distance_to_axis(capsule, point) * kOutwards);
+        capsule.radius = std::max(capsule.radius, distance_to_axis(capsule, point) * kInflation);
       }
     }
     return capsule;

@@ -38,7 +38,7 @@ mapfile -t unit_tests < <(
   cd "$root/tests"
   sed -n 's/^locograph_test(\([a-z_]*\).*/\1/p' \
     {common,core,solvers,types,robots,world,check,plugins,planners}/CMakeLists.txt |
-    grep -v thread
+    grep -vx planners_thread_tests
 )
 build build-asan --target "${unit_tests[@]}" header_examples
 say "running ${unit_tests[*]} and the examples of headers under AddressSanitizer and UBSan"

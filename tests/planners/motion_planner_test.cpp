@@ -254,7 +254,7 @@ TEST_P(MotionPlanTest, WrenchesBalanceGravityAndInertia) {
 INSTANTIATE_TEST_SUITE_P(Seeds, MotionPlanTest, testing::Range(std::size_t{0}, kSeeds));
 
 TEST(MotionPlannerTest, GivesTheSameBitsWithAnyNumberOfThreads) {
-  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
+  if (test::kSanitized) GTEST_SKIP() << "takes long there";
   const MotionPlan &one = plan_of_seed(0), two = plan_of(0, 2);
   ASSERT_TRUE(two.success) << two.reason;
   EXPECT_EQ(two.motion.time_s, one.motion.time_s);

@@ -43,7 +43,7 @@ std::unique_ptr<SegmentPlanner> planner_of(const std::string& name) {
 class TreePlannersTest : public testing::TestWithParam<std::string> {};
 
 TEST_P(TreePlannersTest, FindWaysWhereNoneIsStraight) {
-  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
+  if (test::kSanitized) GTEST_SKIP() << "takes long there";
   const auto planner = planner_of(GetParam());
   EXPECT_EQ(planner->name(), GetParam());
   for (const std::string& name : test::segment_problem_names()) {
@@ -76,7 +76,7 @@ TEST_P(TreePlannersTest, FindWaysWhereNoneIsStraight) {
 
 /// Whatever draws its numbers from OMPL's own generator, and on another thread.
 TEST_P(TreePlannersTest, GiveTheSameBitsForASeedWhateverOmplDidBefore) {
-  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
+  if (test::kSanitized) GTEST_SKIP() << "takes long there";
   const auto planner = planner_of(GetParam());
   const auto windows = segment_problem("windows"), other = segment_problem("windows_held");
   const SegmentPath once = path_through(*planner, *windows, options_of(3));
@@ -147,7 +147,7 @@ TEST(OmplManifoldTest, JacobianOfTheConstraintIsThatOfCentralDifferences) {
 }
 
 TEST(AtlasRrtStarTest, ShortensTheFirstWay) {
-  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
+  if (test::kSanitized) GTEST_SKIP() << "takes long there";
   const auto problem = segment_problem("windows_held");
   int shorter = 0;
   for (std::uint64_t seed = 0; seed < 3; ++seed) {

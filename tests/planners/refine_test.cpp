@@ -52,7 +52,7 @@ void expect_same(const Graph& a, const Graph& b, double tolerance) {
 }
 
 TEST(Refine, LeavesAPlanInAnEmptyWorldAsItIs) {
-  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
+  if (test::kSanitized) GTEST_SKIP() << "takes long there";
   const Surroundings nothing, empty_map{{}, std::make_shared<octomap::OcTree>(0.05)};
   for (const Surroundings& surroundings : {nothing, empty_map}) {
     for (const double curvature : {0.0, 0.3}) {
@@ -101,7 +101,7 @@ TEST(Refine, DrivesAroundABoxThatShowsUpOnTheWay) {
 }
 
 TEST(Refine, NeverCallsAStepFeasibleThatMeetsACartOnItsWay) {
-  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
+  if (test::kSanitized) GTEST_SKIP() << "takes long there";
   Obstacle cart = box("cart", {2.0, -3.0, 0.4}, {0.4, 0.4, 0.8});
   KeyFrame start{8.0, cart.world_from_obstacle}, end{32.0, cart.world_from_obstacle};
   end.pose.translation().y() = 3.0;
@@ -133,12 +133,12 @@ void expect_stops(const Surroundings& surroundings) {
 }
 
 TEST(Refine, StopsInFrontOfAWallAndSaysSo) {
-  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
+  if (test::kSanitized) GTEST_SKIP() << "takes long there";
   expect_stops({{wall_ahead()}, nullptr});
 }
 
 TEST(Refine, StopsInFrontOfAWallInAMapAndSaysSo) {
-  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
+  if (test::kSanitized) GTEST_SKIP() << "takes long there";
   expect_stops({{}, map_of(wall_ahead())});
 }
 
@@ -163,7 +163,7 @@ TEST(Refine, RemovesWhatCannotBeExecutedWhenThereIsNowhereToGo) {
 class Horizon : public testing::TestWithParam<int> {};
 
 TEST_P(Horizon, NeverHandsOutAnInfeasiblePlan) {
-  if (test::kSanitized && GetParam() < 20) GTEST_SKIP() << "takes minutes there";
+  if (test::kSanitized && GetParam() < 20) GTEST_SKIP() << "takes long there";
   const Surroundings surroundings{{box_ahead()}, nullptr};
   Graph graph = drive();
   const RefineReport report = refine_in(graph, surroundings, GetParam());
@@ -226,7 +226,7 @@ TEST(Refine, IsNoSuccessWhereItEndsTooFarFromTheGoal) {
 }
 
 TEST(Refine, GivesTheSameBitsAgain) {
-  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
+  if (test::kSanitized) GTEST_SKIP() << "takes long there";
   const Surroundings surroundings{{}, map_of(box_ahead())};
   Graph first = drive(), second = drive();
   refine_in(first, surroundings);

@@ -90,7 +90,7 @@ TEST(SegmentOptimisation, WhatSwingsFollowsAnArc) {
 }
 
 TEST(SegmentOptimisation, TheSamePathEveryTime) {
-  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
+  if (test::kSanitized) GTEST_SKIP() << "takes long there";
   const auto problem = test::segment_problem("board");
   SegmentSpace first(problem->robot, problem->world), second(problem->robot, problem->world);
   first.set_segment(problem->segment);

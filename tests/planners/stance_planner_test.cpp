@@ -82,7 +82,7 @@ class ShippedTasks : public testing::TestWithParam<Task> {};
 
 TEST_P(ShippedTasks, ArePlannedOneContactAtATimeAndJudgedFeasible) {
   if (test::kSanitized && GetParam().name == "stepping_stones") {
-    GTEST_SKIP() << "takes a minute there";
+    GTEST_SKIP() << "takes long there";
   }
   StanceProblem task = stance_task(GetParam().name);
   task.check.enforce_torque_limits = GetParam().enforces_torque_limits;
@@ -223,7 +223,7 @@ TEST(StancePlanner, TellsOfTheTransitionsItTriesAndPlansTheSame) {
 }
 
 TEST(StancePlanner, KeepsTheTreeItTriedOnlyWhenAskedAndPlansTheSame) {
-  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
+  if (test::kSanitized) GTEST_SKIP() << "takes long there";
   const StanceProblem task = stance_task("standing_up");
   for (const std::string& name : stance_planner_names()) {
     StancePlannerOptions options = at_most(3000);

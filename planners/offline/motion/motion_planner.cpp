@@ -12,8 +12,6 @@
 namespace locograph {
 namespace {
 
-/// Of friction, areas and limits of force: what is left unused, as in transitions.
-constexpr double kMotionMargin = 0.1;
 /// A motion that inertia brings out of balance is slowed down by so much, so often.
 constexpr double kSlower = 1.3;
 constexpr int kMostSlower = 6;
@@ -239,10 +237,10 @@ class MotionSearch {
       if (number != kFree) bearing.push_back(space_.place(number).bearing);
     }
     const double mass_kg = problem_.robot->robot->total_mass();
-    const BalanceRegion region = balance_region(mass_kg, bearing, kMotionMargin);
+    const BalanceRegion region = balance_region(mass_kg, bearing, kRegionMargin);
     std::optional<TorqueProgramme> torques;
     if (problem_.check.enforce_torque_limits) {
-      torques.emplace(*problem_.robot->robot, bearing, problem_.check.effort_scale, kMotionMargin);
+      torques.emplace(*problem_.robot->robot, bearing, problem_.check.effort_scale, kRegionMargin);
     }
     Segment segment;
     segment.held = solved.held.contacts;

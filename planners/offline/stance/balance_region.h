@@ -38,6 +38,9 @@ struct BearingRay {
   double lower, upper;  ///< how much of it there may be
 };
 
+/// Of friction, areas and limits of force: what stances and motions leave unused.
+inline constexpr double kRegionMargin = 0.1;
+
 /// margin: the part of friction, areas and limits of force that is left unused.
 std::vector<BearingRay> bearing_rays(const BearingContact& bearing, double margin, double weight_N);
 

@@ -5,9 +5,6 @@
 namespace locograph {
 namespace {
 
-/// Of friction, areas and limits of force: what is left unused.
-constexpr double kRegionMargin = 0.1;
-
 bool same_bits(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   if (a.size() != b.size()) return false;
   const std::size_t bytes = static_cast<std::size_t>(a.size()) * sizeof(double);
