@@ -11,7 +11,9 @@
 #include <locograph/core/graph_file.h>
 #include <locograph/core/initial_guess.h>
 #include <locograph/core/optimiser.h>
-#include <locograph/plugins/configuration/vertex_configuration.h>
+#include <locograph/planners/plan/plan.h>
+#include <locograph/planners/plan/slope_limits.h>
+#include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/solvers/linear_solvers.h>
 #ifdef LOCOGRAPH_WITH_CERES_BACKEND
 #include <locograph/solvers/ceres_backend.h>
@@ -29,8 +31,8 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
-#include <typeinfo>
 #include <vector>
 
 namespace locograph {
@@ -110,26 +112,20 @@ Graph load(const OptimizeOptions& options, ReadReport& report) {
   return graph;
 }
 
-/// The states of the configurations of a plan that have slopes, by their slots.
-std::map<int, Eigen::VectorXd> sloped_configurations(const Graph& graph) {
-  std::map<int, Eigen::VectorXd> states;
-  for (int slot = 0; slot < graph.vertex_slots(); ++slot) {
-    if (!graph.vertex_alive(slot)) continue;
-    const auto& pool = *graph.vertex_pools()[graph.vertex_record(slot).pool];
-    if (pool.type() != typeid(VertexConfiguration)) continue;
-    const VertexConfiguration& vertex = graph.vertex(VertexId<VertexConfiguration>{slot});
-    if (vertex.slopes.size() > 0) states.emplace(slot, vertex.state);
-  }
-  return states;
-}
+/// A plan as it was: its curve goes on through its configurations when they are moved.
+struct PlanBefore {
+  Plan plan;
+  Motion motion;
+};
 
-/// What has moved has the slopes of the curve's rule, not those of where it was.
-void drop_stale_slopes(Graph& graph, const std::map<int, Eigen::VectorXd>& before) {
-  constexpr double kMoved = 1e-6;
-  for (const auto& [slot, state] : before) {
-    VertexConfiguration& vertex = graph.vertex(VertexId<VertexConfiguration>{slot});
-    if ((vertex.state - state).lpNorm<Eigen::Infinity>() > kMoved) vertex.slopes.resize(0);
-  }
+/// Nothing for a graph that does not say it is a plan of a motion. Throws Error for one that says
+/// so and is none.
+std::optional<PlanBefore> plan_before(const Graph& graph) {
+  if (!graph.parameters().find<PlanParameter>()) return {};
+  PlanBefore before{plan_of(graph), {}};
+  if (before.plan.stances_only) return {};
+  before.motion = motion_of(graph, before.plan);
+  return before;
 }
 
 /// Fills start.guess and start.doubted; there is none without a kernel or graduation to bring the
@@ -317,7 +313,7 @@ ExitCode optimize(const OptimizeOptions& options) {
   Graph graph = load(options, report);
   times.load = total.seconds();
   if (kernel.kind != RobustKernel::Kind::kNone) graph.set_kernel(kernel);
-  const std::map<int, Eigen::VectorXd> before = sloped_configurations(graph);
+  const std::optional<PlanBefore> before = plan_before(graph);
   Gauge gauge;
   if (options.bal) {
     gauge.text = "free, held by damping";
@@ -382,7 +378,7 @@ ExitCode optimize(const OptimizeOptions& options) {
     json["diagnosis"] = diagnosis;
     json["diagnosis_text"] = diagnosis_text;
   }
-  drop_stale_slopes(graph, before);
+  if (before) carry_slopes(before->motion, before->plan, graph);
   if (!options.output.empty() && std::isfinite(result.final.robust)) {
     const Progress progress("writing " + options.output);
     write_graph(graph, options.output);

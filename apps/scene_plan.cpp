@@ -41,33 +41,15 @@ struct WrenchPlace {
   const VertexWrenches* vertex;
   int first;
 };
-/// By the slot of the configuration and the number of the contact.
-using WrenchPlaces = std::map<std::pair<int, int>, WrenchPlace>;
-
-void add_wrench_places(const VertexWrenches& wrenches, int configuration_slot,
-                       WrenchPlaces& places) {
-  int first = 0;
-  for (std::size_t i = 0; i < wrenches.contact_numbers.size(); ++i) {
-    places.emplace(std::pair(configuration_slot, wrenches.contact_numbers[i]),
-                   WrenchPlace{&wrenches, first});
-    first += static_cast<int>((*wrenches.contacts)[i]->components().size());
-  }
-}
-
-/// Wrenches bear the configurations that they share an edge with.
-WrenchPlaces wrench_places(const Graph& graph) {
-  const auto holds = [&graph](int slot, const std::type_info& type) {
-    return graph.vertex_pools()[graph.vertex_record(slot).pool]->type() == type;
-  };
-  WrenchPlaces places;
-  for (int edge = 0; edge < graph.edge_slots(); ++edge) {
-    if (!graph.edge_alive(edge)) continue;
-    for (const int a : graph.edge_vertices(edge)) {
-      if (!holds(a, typeid(VertexWrenches))) continue;
-      for (const int b : graph.edge_vertices(edge)) {
-        if (!holds(b, typeid(VertexConfiguration))) continue;
-        add_wrench_places(graph.vertex(VertexId<VertexWrenches>{a}), b, places);
-      }
+/// Of a configuration, by the number of the contact.
+std::map<int, WrenchPlace> wrench_places(const PlanFile& file, std::size_t i) {
+  std::map<int, WrenchPlace> places;
+  for (const int slot : file.plan.index.wrenches[i]) {
+    const VertexWrenches& wrenches = file.graph.vertex(VertexId<VertexWrenches>{slot});
+    int first = 0;
+    for (std::size_t c = 0; c < wrenches.contact_numbers.size(); ++c) {
+      places.emplace(wrenches.contact_numbers[c], WrenchPlace{&wrenches, first});
+      first += static_cast<int>((*wrenches.contacts)[c]->components().size());
     }
   }
   return places;
@@ -199,7 +181,6 @@ void add_plan_scene(const PlanFile& file, const Judging* judging, const SceneOpt
                     Json& scene) {
   const Robot& robot = *file.plan.robot->robot;
   const std::map<int, Eigen::VectorXd> planned = references(file.graph);
-  const WrenchPlaces wrenches = wrench_places(file.graph);
   TouchedWorld touched(robot, judging);
   RobotState state(robot);
   std::vector<float> configurations, reference;
@@ -216,9 +197,10 @@ void add_plan_scene(const PlanFile& file, const Judging* judging, const SceneOpt
     Json here = Json::array();
     if (const StanceParameter* stance = file.plan.stance_from[i].get()) {
       const std::vector<Support> supports = touched.supports(*stance, state);
+      const std::map<int, WrenchPlace> wrenches = wrench_places(file, i);
       for (std::size_t k = 0; k < stance->contacts.size(); ++k) {
         here.push_back(contact_json(*stance->contacts[k], state, supports[k]));
-        const auto place = wrenches.find({slot, stance->contact_numbers[k]});
+        const auto place = wrenches.find(stance->contact_numbers[k]);
         if (place != wrenches.end()) {
           add_wrench(*stance->contacts[k], state, place->second, here.back());
         }

@@ -126,7 +126,7 @@ std::string trajectory_csv(const PlanFile& file, const std::filesystem::path& fo
   const bool sloped = has_slopes(file);
   if (sloped) std::ranges::copy(slope_names(robot), std::back_inserter(head));
   text += csv_line(head);
-  const std::vector<int> segments = segment_of_each(file.plan);
+  const std::vector<int>& segments = file.plan.index.segment;
   for (std::size_t i = 0; i < file.plan.slots.size(); ++i) {
     const VertexConfiguration& vertex =
         file.graph.vertex(VertexId<VertexConfiguration>{file.plan.slots[i]});
@@ -177,7 +177,7 @@ ReadTrajectory read_trajectory_csv(const std::string& file, const TypeRegistry& 
   }
   if (segments.empty()) throw Error(file, head->line, "no configurations", "a row for each");
   PlanFile plan = plan_in(std::move(result.graph), file);
-  const std::vector<int> told = segment_of_each(plan.plan);
+  const std::vector<int>& told = plan.plan.index.segment;
   for (std::size_t i = 0; i < told.size(); ++i) {
     if (segments[i].first == whole_text(told[i])) continue;
     std::string expected = "'";

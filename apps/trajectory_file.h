@@ -12,7 +12,6 @@
 /// segments that say otherwise are refused, velocities, accelerations and twists are not read.
 
 #include <locograph/apps/plan_file.h>
-#include <locograph/planners/plan/balance_edges.h>
 
 #include <filesystem>
 #include <string>
@@ -28,7 +27,7 @@ std::string trajectory_json(const PlanFile& file, const std::filesystem::path& f
 /// A plan as it was read: parameters and configurations, the first one fixed, and no edges.
 struct ReadTrajectory {
   Graph graph;
-  /// As add_motion_edges() takes them; none where the file has none.
+  /// As add_plan_edges() takes them; none where the file has none.
   std::vector<StanceWrenches> wrenches;
 };
 

@@ -4,12 +4,10 @@
 #include <locograph/apps/trajectory_parts.h>
 #include <locograph/check/motion_curve.h>
 #include <locograph/common/input_file.h>
-#include <locograph/plugins/static_balance/vertex_wrenches.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
 namespace locograph {
@@ -80,42 +78,15 @@ Json segments_json(const PlanFile& file) {
   return segments;
 }
 
-/// The wrenches that share an edge with each configuration, by its slot.
-std::map<int, const VertexWrenches*> wrenches_by_slot(const Graph& graph) {
-  std::map<int, const VertexWrenches*> found;
-  const auto is = [&](int slot, const std::type_info& type) {
-    return graph.vertex_pools()[graph.vertex_record(slot).pool]->type() == type;
-  };
-  for (int edge = 0; edge < graph.edge_slots(); ++edge) {
-    if (!graph.edge_alive(edge)) continue;
-    for (const int a : graph.edge_vertices(edge)) {
-      if (!is(a, typeid(VertexWrenches))) continue;
-      for (const int b : graph.edge_vertices(edge)) {
-        if (!is(b, typeid(VertexConfiguration))) continue;
-        found.emplace(b, &graph.vertex(VertexId<VertexWrenches>{a}));
-      }
-    }
-  }
-  return found;
-}
-
-/// By end effector fx fy fz mx my mz; null: not known of the stance that is held from here.
-Json wrenches_json(const VertexWrenches& wrenches, const StanceParameter& stance) {
+/// By end effector fx fy fz mx my mz; null: not known.
+Json wrenches_json(const StanceWrenches& wrenches, const StanceParameter* stance) {
+  if (wrenches.empty()) return nullptr;
   Json result = Json::object();
-  Eigen::Index at = 0;
-  for (std::size_t c = 0; c < wrenches.contact_numbers.size(); ++c) {
-    const ContactParameter& contact = *(*wrenches.contacts)[c];
-    if (std::ranges::find(stance.contact_numbers, wrenches.contact_numbers[c]) ==
-        stance.contact_numbers.end()) {
-      return nullptr;
-    }
-    Eigen::VectorXd wrench = Eigen::VectorXd::Zero(6);
-    for (const int component : contact.components()) wrench[component] = wrenches.state[at++];
-    result[contact.contact.name()] = numbers_json(wrench);
+  for (std::size_t c = 0; c < wrenches.size(); ++c) {
+    const Contact& contact = stance->stance.contacts[c];
+    if (contact.bears_load) result[contact.name()] = numbers_json(wrenches[c]);
   }
-  const auto bears = std::ranges::count_if(
-      stance.stance.contacts, [](const Contact& contact) { return contact.bears_load; });
-  return static_cast<std::ptrdiff_t>(result.size()) == bears ? result : Json(nullptr);
+  return result;
 }
 
 /// "name": [ … ], an element a line.
@@ -321,7 +292,6 @@ std::string trajectory_json(const PlanFile& file, const std::filesystem::path& f
   const Motion motion = motion_of(file.graph, file.plan);
   const MotionCurve curve(robot, motion);
   CurvePoint point;
-  const std::map<int, const VertexWrenches*> bearing = wrenches_by_slot(file.graph);
   const int joints = robot.active_joint_count();
   Json names = Json::array(), points = Json::array(), bases = Json::array(),
        wrenches = Json::array();
@@ -349,9 +319,9 @@ std::string trajectory_json(const PlanFile& file, const std::filesystem::path& f
                         {{"linear", numbers_json(velocity.head<3>())},
                          {"angular", numbers_json(velocity.segment<3>(3))}}}});
     }
-    const auto known = bearing.find(file.plan.slots[i]);
-    const bool stands = known != bearing.end() && file.plan.stance_from[i];
-    wrenches.push_back(stands ? wrenches_json(*known->second, *file.plan.stance_from[i]) : Json());
+    if (!motion.wrenches.empty()) {
+      wrenches.push_back(wrenches_json(motion.wrenches[i], file.plan.stance_from[i].get()));
+    }
   }
   std::string text =
       "{\"header\": {\"stamp\": {\"sec\": 0, \"nanosec\": 0}, \"frame_id\": \"world\"},\n";
@@ -365,7 +335,7 @@ std::string trajectory_json(const PlanFile& file, const std::filesystem::path& f
     text += list_text("slopes", slopes) + ",\n";
   }
   if (robot.floating_base()) text += list_text("base", bases) + ",\n";
-  if (!bearing.empty()) text += list_text("wrenches", wrenches) + ",\n";
+  if (!wrenches.empty()) text += list_text("wrenches", wrenches) + ",\n";
   text += list_text("contacts", schedule_json(file)) + ",\n";
   return text + list_text("segments", segments_json(file)) + "}\n";
 }

@@ -1,8 +1,7 @@
 #include <locograph/apps/trajectory_file.h>
 #include <locograph/apps/trajectory_parts.h>
 #include <locograph/common/suggestion.h>
-#include <locograph/planners/offline/drive/wheeled_plan.h>
-#include <locograph/planners/offline/motion/motion_graph.h>
+#include <locograph/planners/plan/plan_edges.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/contact/segment_parameter.h>
 
@@ -17,26 +16,6 @@ bool is_drive(const Plan& plan) {
   return std::ranges::any_of(plan.stance_from, [](const auto& stance) {
     return stance && std::ranges::any_of(stance->wheels, [](const auto& w) { return !w.locked; });
   });
-}
-
-/// The same plan with all the edges of a drive.
-Graph drive_graph(const Graph& read, const Plan& plan) {
-  if (!plan.segments.empty()) {
-    throw Error("a plan on rolling wheels with segments", "no PARAMS_SEGMENT");
-  }
-  Graph graph;
-  graph.parameters().set(kRobotNumber, plan.robot);
-  graph.parameters().set(kWorldNumber,
-                         plan.world ? plan.world : std::make_shared<const WorldParameter>());
-  if (const auto origin = read.parameters().find<ScenarioParameter>()) {
-    graph.parameters().set(kScenarioNumber, origin);
-  }
-  if (const auto contacts = read.parameters().find<ContactsParameter>()) {
-    graph.parameters().set(kContactsNumber, contacts);
-  }
-  add_wheeled_plan(graph, motion_of(read, plan));
-  graph.parameters().replace(kPlanNumber, read.parameters().find<PlanParameter>());
-  return graph;
 }
 
 }  // namespace
@@ -69,15 +48,6 @@ std::vector<std::string> parameter_lines(const Graph& graph, const std::filesyst
     lines.push_back(out.text());
   }
   return lines;
-}
-
-std::vector<int> segment_of_each(const Plan& plan) {
-  std::vector<int> each(plan.slots.size(), -1);
-  for (std::size_t j = 0; j < plan.segments.size(); ++j) {
-    const auto begin = each.begin() + plan.segments[j].first;
-    std::fill(begin, each.begin() + plan.segments[j].last + 1, static_cast<int>(j));
-  }
-  return each;
 }
 
 std::vector<int> joint_order(const Robot& robot, const std::vector<std::string>& names,
@@ -146,9 +116,9 @@ void ConfigurationReader::add(const std::vector<std::string>& fields, int line) 
 Graph with_edges(ReadTrajectory trajectory, const std::string& file) {
   PlanFile plan = plan_in(std::move(trajectory.graph), file);
   require_motion(plan);
-  if (is_drive(plan.plan)) return drive_graph(plan.graph, plan.plan);
-  const Judging judging = judging_of(plan, {});
-  add_motion_edges(plan.graph, judging.options, trajectory.wrenches);
+  add_plan_edges(plan.graph,
+                 is_drive(plan.plan) ? drive_edges() : motion_edges(judging_of(plan, {}).options),
+                 trajectory.wrenches);
   return std::move(plan.graph);
 }
 

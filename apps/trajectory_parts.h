@@ -18,9 +18,6 @@ void require_motion(const PlanFile& file);
 /// The lines of a graph file for its parameters, as far as they say something of configurations.
 std::vector<std::string> parameter_lines(const Graph& graph, const std::filesystem::path& folder);
 
-/// Of each configuration the segment that it begins or is in; -1 where a plan has none.
-std::vector<int> segment_of_each(const Plan& plan);
-
 /// Where the names of a file's joints are among the robot's active ones: each is there once.
 /// Otherwise, what is wrong in `what` and `expected`, and nothing.
 std::vector<int> joint_order(const Robot& robot, const std::vector<std::string>& names,

@@ -75,9 +75,6 @@ struct BalanceOptions {
   std::optional<BalanceMotion> motion = std::nullopt;  ///< none: at rest
 };
 
-/// fx fy fz mx my mz of each contact of a stance [N, N m].
-using StanceWrenches = std::vector<Eigen::Matrix<double, 6, 1>>;
-
 struct BalanceCertificate {
   bool balanced = false;  ///< margin >= 0 up to 1e-6, and the wrenches were verified
   double margin = 0.0;    ///< at most 1; > 0 inside all limits, < 0 outside

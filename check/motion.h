@@ -30,6 +30,9 @@ struct Motion {
   /// motion_curve.h. In the order of the tangent: of the base's position in the world [m/s], its
   /// angular velocity along its own axes [rad/s], rates of the joints.
   std::vector<Eigen::VectorXd> slopes = {};
+  /// What bears the robot, one per configuration, at the contacts of the stance that it is left in;
+  /// an empty one: not known; or none at all. The judge finds its own.
+  std::vector<StanceWrenches> wrenches = {};
 };
 
 }  // namespace locograph

@@ -79,6 +79,10 @@ struct Stance {
   std::vector<Contact> contacts = {};
 };
 
+/// fx fy fz mx my mz of each contact of a stance [N, N m]: on the robot, about the contact point,
+/// along the contact's axes; zero for a contact that bears no load.
+using StanceWrenches = std::vector<Eigen::Matrix<double, 6, 1>>;
+
 /// Columns x, y, z: `forward` made normal to the normal, across, normal. Lengths do not matter.
 /// Throws Error, in the name of the contact, if one of them is zero or not finite, or if they are
 /// parallel.

@@ -59,8 +59,6 @@ LocalPlanner::LocalPlanner(Graph& graph, const LocalPlannerOptions& options)
   }
   if (!plan_.world) throw Error("the plan has no world", "a PARAMS_WORLD line");
   for (int i = 0; i < plan_size(); ++i) planned_.emplace_back(configuration(i));
-  index_of_slot_.assign(static_cast<std::size_t>(graph_.vertex_slots()), -1);
-  for (int i = 0; i < plan_size(); ++i) index_of_slot_[plan_.slots[i]] = i;
   unfinished_.resize(planned_.size());
   // Memory, the lists of edges and the order of elimination now rather than in the first cycle.
   CycleReport first;
@@ -138,7 +136,8 @@ void LocalPlanner::gather_window(int executed, int last) {
   const auto belongs = [&](int slot) {
     for (const int e : graph_.incident_edges(slot)) {
       for (const int v : graph_.edge_vertices(e)) {
-        if (index_of_slot_[v] >= 0 && !in_window(index_of_slot_[v])) return false;
+        if (plan_.index.configuration[v] >= 0 && !in_window(plan_.index.configuration[v]))
+          return false;
       }
     }
     return true;
@@ -146,7 +145,7 @@ void LocalPlanner::gather_window(int executed, int last) {
   for (int i = executed + 1; i <= last; ++i) {
     for (const int e : graph_.incident_edges(plan_.slots[i])) {
       for (const int v : graph_.edge_vertices(e)) {
-        const int index = index_of_slot_[v];
+        const int index = plan_.index.configuration[v];
         if (in_window(index) || index > last) continue;
         if (index < 0 && belongs(v)) {
           add_once(window_, v);
@@ -161,11 +160,11 @@ void LocalPlanner::gather_window(int executed, int last) {
 /// Index of a configuration; of another vertex, that of the first configuration it shares an edge
 /// with.
 int LocalPlanner::configuration_of(int slot) const {
-  if (index_of_slot_[slot] >= 0) return index_of_slot_[slot];
+  if (plan_.index.configuration[slot] >= 0) return plan_.index.configuration[slot];
   int first = plan_size();
   for (const int e : graph_.incident_edges(slot)) {
     for (const int v : graph_.edge_vertices(e)) {
-      if (index_of_slot_[v] >= 0) first = std::min(first, index_of_slot_[v]);
+      if (plan_.index.configuration[v] >= 0) first = std::min(first, plan_.index.configuration[v]);
     }
   }
   return first < plan_size() ? first : -1;
@@ -236,7 +235,7 @@ void LocalPlanner::store_best() {
   workspace_.state() = best_state_;
   workspace_.store_state();
   for (const int slot : window_) {
-    const int i = index_of_slot_[static_cast<std::size_t>(slot)];
+    const int i = plan_.index.configuration[static_cast<std::size_t>(slot)];
     if (i < 0 || configuration(i) == planned_[static_cast<std::size_t>(i)]) continue;
     graph_.vertex(VertexId<VertexConfiguration>{slot}).slopes.resize(0);
   }

@@ -127,7 +127,6 @@ class LocalPlanner {
   LocalPlannerOptions options_;
   Plan plan_;
   std::vector<Eigen::VectorXd> planned_;  ///< configurations as the plan came
-  std::vector<int> index_of_slot_;        ///< in the plan; -1 for vertices of other types
   int detour_not_before_ = 0;             ///< executed index; see detour_pause
   bool detour_due_ = false;               ///< a deadline left no time for one: first of all, then
   int entered_ = 0;                       ///< last index that has been in a window

@@ -32,14 +32,6 @@ std::string describe(const CheckReport& check) {
   return text.str();
 }
 
-/// The plan from one of its configurations to another.
-Motion part_of_plan(const Graph& graph, const Plan& plan, int first, int last) {
-  Plan part = plan;
-  part.slots.assign(plan.slots.begin() + first, plan.slots.begin() + last + 1);
-  part.stance_from.assign(plan.stance_from.begin() + first, plan.stance_from.begin() + last + 1);
-  return motion_of(graph, part);
-}
-
 /// Steps before the executed one are judged with it, at most so many.
 constexpr int kMostVerifiedSteps = 12;
 /// Motions that come to rest within one to so many steps are tried.
@@ -106,8 +98,8 @@ class Walk {
     pass_through(executed + 1);
     if (!options_.verify) return true;
     const Stopwatch verify_watch;
-    const CheckReport check = options_.verify(
-        part_of_plan(graph_, planner_.plan(), stretch_before(executed), executed + 1));
+    const CheckReport check =
+        options_.verify(motion_of(graph_, planner_.plan(), stretch_before(executed), executed + 1));
     report_.verify_s.push_back(verify_watch.seconds());
     if (!check.feasible) stop(executed, describe(check));
     return check.feasible;
@@ -134,7 +126,7 @@ class Walk {
   /// and as the plan did where nothing has moved. That stays so, whatever the next cycles change.
   void pass_through(int i) {
     if (i + 1 >= planner_.plan_size()) return;  // at rest
-    const Motion around = part_of_plan(graph_, planner_.plan(), i - 1, i + 1);
+    const Motion around = motion_of(graph_, planner_.plan(), i - 1, i + 1);
     VertexConfiguration& here = vertex(i);
     here.slopes = careful_slope(model_, around, 1) * faster_[static_cast<std::size_t>(i)];
     const double before_s = here.time_s - around.time_s[0],
@@ -162,10 +154,10 @@ class Walk {
     for (int last = executed; last > 0; --last) {
       if (vertex(last).slopes.isZero()) return last;
       for (int steps = 1; steps <= std::min(last, kMostBrakingSteps); ++steps) {
-        const Motion moving = part_of_plan(graph_, planner_.plan(), last - steps, last);
+        const Motion moving = motion_of(graph_, planner_.plan(), last - steps, last);
         brake(last, steps);
         if (!options_.verify ||
-            options_.verify(part_of_plan(graph_, planner_.plan(), last - steps, last)).feasible) {
+            options_.verify(motion_of(graph_, planner_.plan(), last - steps, last)).feasible) {
           return last;
         }
         for (int i = 0; i <= steps; ++i) {

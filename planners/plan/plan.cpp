@@ -16,11 +16,6 @@ const VertexConfiguration& configuration(const Graph& graph, int slot) {
   return graph.vertex(VertexId<VertexConfiguration>{slot});
 }
 
-template <class V>
-bool is(const Graph& graph, int slot) {
-  return graph.vertex_pools()[graph.vertex_record(slot).pool]->type() == typeid(V);
-}
-
 /// The only parameter of its type, null if there is none.
 template <class P>
 std::shared_ptr<const P> only(const Parameters& parameters) {
@@ -42,30 +37,18 @@ std::shared_ptr<const P> only(const Parameters& parameters) {
 
 /// Wrenches act at contacts of a stance that the configuration is in: of the step before or after.
 void require_wrenches_of_stances(const Graph& graph, const Plan& plan) {
-  std::vector<int> place(static_cast<std::size_t>(graph.vertex_slots()), -1);
-  for (std::size_t i = 0; i < plan.slots.size(); ++i) {
-    place[static_cast<std::size_t>(plan.slots[i])] = static_cast<int>(i);
-  }
-  const auto holds = [&](int i, int contact) {
-    if (i < 0 || !plan.stance_from[static_cast<std::size_t>(i)]) return false;
-    const std::vector<int>& numbers =
-        plan.stance_from[static_cast<std::size_t>(i)]->contact_numbers;
-    return std::find(numbers.begin(), numbers.end(), contact) != numbers.end();
+  const auto holds = [&](std::size_t step, int contact) {
+    return plan.stance_from[step] &&
+           std::ranges::count(plan.stance_from[step]->contact_numbers, contact) > 0;
   };
-  for (int edge = 0; edge < graph.edge_slots(); ++edge) {
-    if (!graph.edge_alive(edge)) continue;
-    for (const int a : graph.edge_vertices(edge)) {
-      if (!is<VertexConfiguration>(graph, a)) continue;
-      for (const int b : graph.edge_vertices(edge)) {
-        if (!is<VertexWrenches>(graph, b)) continue;
-        const int i = place[static_cast<std::size_t>(a)];
-        for (const int contact : graph.vertex(VertexId<VertexWrenches>{b}).contact_numbers) {
-          if (holds(i, contact) || holds(i - 1, contact)) continue;
-          throw Error("configuration " + std::to_string(graph.vertex_record(a).id) +
-                          " has wrenches at contact " + std::to_string(contact) +
-                          ", which no stance of it has",
-                      "contacts of its stances");
-        }
+  for (std::size_t i = 0; i < plan.slots.size(); ++i) {
+    for (const int slot : plan.index.wrenches[i]) {
+      for (const int contact : graph.vertex(VertexId<VertexWrenches>{slot}).contact_numbers) {
+        if (holds(i, contact) || (i > 0 && holds(i - 1, contact))) continue;
+        throw Error("configuration " + std::to_string(graph.vertex_record(plan.slots[i]).id) +
+                        " has wrenches at contact " + std::to_string(contact) +
+                        ", which no stance of it has",
+                    "contacts of its stances");
       }
     }
   }
@@ -167,7 +150,7 @@ std::vector<PlanSegment> segments_of(const Graph& graph, const Plan& plan) {
 void cut_segments(Graph& graph) {
   double end_s = -std::numeric_limits<double>::infinity();
   for (int slot = 0; slot < graph.vertex_slots(); ++slot) {
-    if (!graph.vertex_alive(slot) || !is<VertexConfiguration>(graph, slot)) continue;
+    if (!graph.vertex_alive(slot) || !vertex_is<VertexConfiguration>(graph, slot)) continue;
     end_s = std::max(end_s, configuration(graph, slot).time_s);
   }
   for (const GivenSegment& one : given_segments(graph.parameters())) {
@@ -182,6 +165,31 @@ void cut_segments(Graph& graph) {
   }
 }
 
+/// At each contact of the stance that a configuration is left in; empty: not known of one that
+/// bears load, or of other contacts only.
+StanceWrenches wrenches_at(const Graph& graph, const Plan& plan, std::size_t i) {
+  if (!plan.stance_from[i] || plan.index.wrenches[i].empty()) return {};
+  const StanceParameter& stance = *plan.stance_from[i];
+  const VertexWrenches& given =
+      graph.vertex(VertexId<VertexWrenches>{plan.index.wrenches[i].front()});
+  StanceWrenches wrenches(stance.contacts.size(), StanceWrenches::value_type::Zero());
+  Eigen::Index at = 0;
+  std::ptrdiff_t bearing = 0;
+  for (std::size_t c = 0; c < given.contact_numbers.size(); ++c) {
+    const auto found = std::ranges::find(stance.contact_numbers, given.contact_numbers[c]);
+    if (found == stance.contact_numbers.end()) return {};
+    const auto k = static_cast<std::size_t>(found - stance.contact_numbers.begin());
+    for (const int component : (*given.contacts)[c]->components()) {
+      wrenches[k][component] = given.state[at++];
+    }
+    bearing += stance.contacts[k]->contact.bears_load ? 1 : 0;
+  }
+  const bool all = bearing == std::ranges::count_if(stance.contacts, [](const auto& contact) {
+                     return contact->contact.bears_load;
+                   });
+  return all ? wrenches : StanceWrenches();
+}
+
 std::string text_of(const ContactParameter& contact) {
   FieldWriter out;
   contact.write(out);
@@ -194,7 +202,7 @@ Plan plan_of(const Graph& graph) {
   Plan plan;
   const Parameters& parameters = graph.parameters();
   for (int slot = 0; slot < graph.vertex_slots(); ++slot) {
-    if (graph.vertex_alive(slot) && is<VertexConfiguration>(graph, slot)) {
+    if (graph.vertex_alive(slot) && vertex_is<VertexConfiguration>(graph, slot)) {
       plan.slots.push_back(slot);
     }
   }
@@ -224,11 +232,16 @@ Plan plan_of(const Graph& graph) {
                                      : nullptr);
   }
   for (int slot = 0; slot < graph.vertex_slots(); ++slot) {
-    plan.states_wrenches =
-        plan.states_wrenches || (graph.vertex_alive(slot) && is<VertexWrenches>(graph, slot));
+    plan.states_wrenches = plan.states_wrenches ||
+                           (graph.vertex_alive(slot) && vertex_is<VertexWrenches>(graph, slot));
   }
+  plan.index = plan_index(graph, plan.slots);
   require_wrenches_of_stances(graph, plan);
   plan.segments = segments_of(graph, plan);
+  for (std::size_t j = 0; j < plan.segments.size(); ++j) {
+    const auto begin = plan.index.segment.begin() + plan.segments[j].first;
+    std::fill(begin, plan.index.segment.begin() + plan.segments[j].last + 1, static_cast<int>(j));
+  }
   return plan;
 }
 
@@ -257,14 +270,19 @@ void mark_incomplete(Graph& graph) {
 }
 
 Motion motion_of(const Graph& graph, const Plan& plan) {
+  return motion_of(graph, plan, 0, static_cast<int>(plan.slots.size()) - 1);
+}
+
+Motion motion_of(const Graph& graph, const Plan& plan, int first, int last) {
   Motion motion;
   motion.stances_only = plan.stances_only;
   std::map<const StanceParameter*, int> known;
-  for (std::size_t i = 0; i < plan.slots.size(); ++i) {
+  for (auto i = static_cast<std::size_t>(first); i <= static_cast<std::size_t>(last); ++i) {
     const VertexConfiguration& vertex = configuration(graph, plan.slots[i]);
     motion.time_s.push_back(vertex.time_s);
     motion.configurations.push_back(vertex.state);
     motion.slopes.push_back(vertex.slopes);
+    if (plan.states_wrenches) motion.wrenches.push_back(wrenches_at(graph, plan, i));
     const StanceParameter* stance = plan.stance_from[i].get();
     if (stance == nullptr) {
       motion.stance_from.push_back(-1);

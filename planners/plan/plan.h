@@ -8,6 +8,7 @@
 
 #include <locograph/check/motion.h>
 #include <locograph/core/graph.h>
+#include <locograph/planners/plan/plan_index.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
 #include <locograph/plugins/contact/stance_parameter.h>
@@ -39,6 +40,7 @@ struct Plan {
   bool incomplete = false;       ///< it ends before its goal
   bool states_wrenches = false;  ///< it has some
   ContactMoves moves;            ///< how its start and goals differ from its scenario's
+  PlanIndex index;               ///< where all of this is in the graph
   /// From the first configuration to the last; none: the plan does not say.
   std::vector<PlanSegment> segments;
 };
@@ -51,6 +53,8 @@ struct Plan {
 Plan plan_of(const Graph& graph);
 
 Motion motion_of(const Graph& graph, const Plan& plan);
+/// The part of it from one of its configurations to another, the last one included.
+Motion motion_of(const Graph& graph, const Plan& plan, int first, int last);
 
 /// The contacts of the stances before and after a configuration: what it has to close.
 std::vector<int> contacts_at(const std::vector<std::shared_ptr<const StanceParameter>>& stance_from,

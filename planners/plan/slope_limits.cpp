@@ -29,6 +29,29 @@ Eigen::VectorXd careful_slope(const Robot& robot, const Motion& motion, int vert
   return slope;
 }
 
+void carry_slopes(const Motion& before, const Plan& plan, Graph& graph) {
+  const Robot& robot = *plan.robot->robot;
+  Motion rule_before = before, rule_after = motion_of(graph, plan);
+  rule_before.slopes.clear();
+  rule_after.slopes.clear();
+  const MotionCurve was(robot, rule_before), is(robot, rule_after);
+  const auto moved = [&](std::size_t i) {
+    constexpr double kMoved = 1e-9;
+    return (rule_after.configurations[i] - before.configurations[i]).lpNorm<Eigen::Infinity>() >
+           kMoved;
+  };
+  for (std::size_t i = 1; i + 1 < plan.slots.size(); ++i) {
+    Eigen::VectorXd& slope = graph.vertex(VertexId<VertexConfiguration>{plan.slots[i]}).slopes;
+    if (slope.size() == 0 || slope.isZero() || !(moved(i - 1) || moved(i) || moved(i + 1)))
+      continue;
+    const double step_s =
+        std::max(before.time_s[i] - before.time_s[i - 1], before.time_s[i + 1] - before.time_s[i]);
+    if (!(step_s > 0.0)) continue;
+    slope += is.slope(static_cast<int>(i)) - was.slope(static_cast<int>(i));
+    keep_within_limits(robot, rule_after.configurations[i], step_s, slope);
+  }
+}
+
 void keep_within_limits(const Robot& robot, const Eigen::VectorXd& configuration, double step_s,
                         Eigen::VectorXd& slope) {
   for (int j = 0; j < robot.active_joint_count(); ++j) {

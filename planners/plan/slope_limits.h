@@ -4,6 +4,7 @@
 ///
 ///     Eigen::VectorXd slope = careful_slope(robot, motion, 7);
 ///     locograph::keep_within_limits(robot, q, 0.8, slope);
+///     carry_slopes(motion, plan, graph);
 ///
 /// Where two steps a and b (rates, tangents) point to different sides, the rule of the curve
 /// (check/motion_curve.h) rounds the corner, and wheels that roll on both straight steps slip on
@@ -17,6 +18,7 @@
 /// -h_11 <= h_01 / 3 on [0, 1].
 
 #include <locograph/check/motion.h>
+#include <locograph/planners/plan/plan.h>
 #include <locograph/robots/robot.h>
 
 #include <Eigen/Core>
@@ -25,6 +27,12 @@ namespace locograph {
 
 /// The slope at a vertex, neither first nor last, whatever slope the motion has there.
 Eigen::VectorXd careful_slope(const Robot& robot, const Motion& motion, int vertex);
+
+/// Gives a plan whose configurations were moved the slopes that go with them: at each configuration
+/// that moved, or has a neighbour that did, what a stored slope was away from the rule of the curve
+/// it stays away, within limits of joints. A configuration at rest stays at rest, as do both ends.
+/// Slopes by the rule follow by themselves. before: the plan's motion before, with the same times.
+void carry_slopes(const Motion& before, const Plan& plan, Graph& graph);
 
 /// Slows joints of a configuration within limits. slope as Motion::slopes; step_s > 0 is the longer
 /// one of the steps on both sides. A joint that is at its limit, or beyond it, does not move.

@@ -193,13 +193,6 @@ struct Context : DriveContext {
   const Eigen::VectorXd before = planned[0];
 };
 }  // namespace offline_drive_wheel_motion_h
-namespace offline_drive_wheeled_plan_h {
-struct Context : DriveContext {
-  const Motion motion = motion_of(DriveContext::graph, plan);
-  const std::shared_ptr<const WorldParameter> world = std::make_shared<const WorldParameter>();
-  Graph graph;
-};
-}  // namespace offline_drive_wheeled_plan_h
 namespace offline_stance_balance_region_h {
 using Context = StepContext;
 }
@@ -432,21 +425,6 @@ struct Context : DriveContext {
   }
 };
 }  // namespace online_window_quality_h
-namespace plan_balance_edges_h {
-struct Context : StepContext {
-  const std::shared_ptr<const RobotParameter>& robot = problem.robot;
-  const Eigen::VectorXd& configuration = q;
-  Graph graph;
-  const int number = add_stance();
-  const std::shared_ptr<const StanceParameter> stance =
-      graph.parameters().get<StanceParameter>(number);
-  const StanceWrenches wrenches = StanceWrenches(2, Eigen::Matrix<double, 6, 1>::Zero());
-  int add_stance() {
-    graph.parameters().set(kRobotNumber, robot);
-    return add_stances(graph, robot, {problem.start})[0];
-  }
-};
-}  // namespace plan_balance_edges_h
 namespace plan_judging_h {
 using Context = DriveContext;
 }
@@ -461,15 +439,30 @@ struct Context : DriveContext {
   }
 };
 }  // namespace plan_plan_h
+namespace plan_plan_edges_h {
+struct Context : DriveContext {
+  const Motion motion = motion_of(DriveContext::graph, plan);
+  const std::shared_ptr<const RobotParameter>& robot = parameter;
+  const std::shared_ptr<const WorldParameter> world = std::make_shared<const WorldParameter>();
+  Graph graph;
+};
+}  // namespace plan_plan_edges_h
+namespace plan_plan_index_h {
+struct Context : DriveContext {
+  const std::vector<int>& slots = plan.slots;
+};
+}  // namespace plan_plan_index_h
 namespace plan_seen_world_h {
 struct Context : DriveContext {
   const Judging judging = judging_of(graph, plan, {.data_folder = data_folder});
 };
 }  // namespace plan_seen_world_h
 namespace plan_slope_limits_h {
-struct Context : StepContext {
-  const Motion motion{{0, 1, 2, 3, 4, 5, 6, 7, 8}, std::vector<Eigen::VectorXd>(9, q), {}, {}};
-  const MotionCurve curve{robot, motion};
+struct Context : DriveContext {
+  Context() : DriveContext(0.72, 9) {}
+  const Robot& robot = *parameter->robot;
+  const Motion motion = motion_of(graph, plan);
+  const Eigen::VectorXd& q = motion.configurations[7];
 };
 }  // namespace plan_slope_limits_h
 

@@ -1,14 +1,28 @@
 // A whole motion as a graph: what `plan` writes of it.
 #include <gtest/gtest.h>
 #include <locograph/check/balance_certificate.h>
+#include <locograph/common/uniform.h>
 #include <locograph/core/graph_file.h>
+#include <locograph/core/optimiser.h>
 #include <locograph/planners/offline/motion/motion_graph.h>
 #include <locograph/planners/plan/plan.h>
+#include <locograph/plugins/acceleration_limits/edge_acceleration_limits.h>
 #include <locograph/plugins/contact/edge_contact.h>
+#include <locograph/plugins/joint_limits/edge_joint_limits.h>
+#include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/plugins/robot_types.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
 #include <locograph/plugins/static_balance/edge_balance.h>
+#include <locograph/plugins/static_balance/edge_contact_wrench.h>
+#include <locograph/plugins/static_balance/edge_wrench_norm.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
+#include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
+#include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
+#include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
+#include <locograph/solvers/linear_solvers.h>
+
+#include <algorithm>
+#include <random>
 
 #include "planners/stance_tasks.h"
 
@@ -33,7 +47,7 @@ class MotionGraph : public testing::Test {
       const Stance& stance = motion.stances[static_cast<std::size_t>(motion.stance_from.back())];
       const BalanceCertificate certificate =
           certify_balance(*problem.robot->robot, problem.start_configuration, stance.contacts, {});
-      plan.wrenches.push_back(certificate.wrenches);
+      motion.wrenches.push_back(certificate.wrenches);
     }
     for (int j = 0; j < 2; ++j) {
       SegmentRecord& segment = plan.segments.emplace_back();
@@ -73,6 +87,7 @@ TEST_F(MotionGraph, SaysAllThatThePlanKnows) {
   EXPECT_EQ(motion.stance_from, plan.motion.stance_from);
   for (std::size_t i = 0; i < motion.configurations.size(); ++i) {
     EXPECT_TRUE(motion.configurations[i] == plan.motion.configurations[i]) << i;
+    EXPECT_EQ(motion.wrenches[i], plan.motion.wrenches[i]) << i;
   }
   EXPECT_TRUE(graph.vertex_record(read.slots.front()).fixed);
   EXPECT_FALSE(graph.vertex_record(read.slots.back()).fixed);
@@ -100,7 +115,7 @@ TEST_F(MotionGraph, WrenchesBalanceEachConfigurationWhereTheyAreKnown) {
   for (const VertexWrenches& wrenches : graph.vertices_of<VertexWrenches>()) {
     EXPECT_GT(wrenches.state.norm(), 100.0);
   }
-  plan.wrenches.clear();
+  plan.motion.wrenches.clear();
   const Graph without = motion_graph(scenario, problem, plan);
   EXPECT_TRUE(without.vertices_of<VertexWrenches>().empty());
   EXPECT_TRUE(without.edges_of<EdgeBalance>().empty());
@@ -119,6 +134,86 @@ TEST_F(MotionGraph, LinksThatLookTooNearHaveNoWeight) {
   for (Eigen::Index p = 0; p < lack.size(); ++p) {
     EXPECT_EQ(edge.weights[p] > 0.0, lack[p] == 0.0) << p;
   }
+}
+
+TEST_F(MotionGraph, HasEveryConstraintAndEveryCost) {
+  const Graph graph = motion_graph(scenario, problem, plan);
+  const auto count = static_cast<std::size_t>(kCount);
+  EXPECT_EQ(graph.edges_of<EdgePlanTracking>().size(), count);
+  EXPECT_EQ(graph.edges_of<EdgeJointLimits>().size(), count);
+  EXPECT_EQ(graph.edges_of<EdgeBalance>().size(), count);
+  EXPECT_EQ(graph.edges_of<EdgeContactWrench>().size(), count);
+  EXPECT_EQ(graph.edges_of<EdgeWrenchNorm>().size(), count);
+  EXPECT_EQ(graph.edges_of<EdgeVelocityTracking>().size(), count - 1);
+  EXPECT_EQ(graph.edges_of<EdgeVelocityLimits>().size(), count - 1);
+  EXPECT_EQ(graph.edges_of<EdgeSweptObstacleDistance>().size(), count - 1);
+  EXPECT_EQ(graph.edges_of<EdgeAccelerationLimits>().size(), count - 2);
+}
+
+double most_moved(const Graph& graph, const std::vector<Eigen::VectorXd>& from) {
+  const Motion motion = motion_of(graph, plan_of(graph));
+  double most = 0.0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    most = std::max(most, (motion.configurations[i] - from[i]).lpNorm<Eigen::Infinity>());
+  }
+  return most;
+}
+
+TEST_F(MotionGraph, OptimisedItStaysWhereItIsAndDisturbedItComesBack) {
+  Graph graph = motion_graph(scenario, problem, plan);
+  const auto solver = make_linear_solver("auto");
+  OptimiserOptions options = OptimiserOptions::for_any_start();
+  options.max_iterations = 50;
+  optimise(graph, options, *solver);
+  EXPECT_LT(most_moved(graph, plan.motion.configurations), 1e-3);
+  std::mt19937_64 random(7);
+  for (int i = 1; i < kCount; ++i) {
+    Eigen::VectorXd& q = graph.vertex(VertexId<VertexConfiguration>{graph.slot_of(i)}).state;
+    for (Eigen::Index k = 0; k < q.size(); ++k) {
+      if (k < 3 || k >= 7) q[k] += uniform(random, -5e-3, 5e-3);  // all but the quaternion
+    }
+  }
+  ASSERT_GT(most_moved(graph, plan.motion.configurations), 4e-3);
+  optimise(graph, options, *solver);
+  EXPECT_LT(most_moved(graph, plan.motion.configurations), 1e-3);
+}
+
+TEST_F(MotionGraph, AnIndexTellsWhereEverythingIs) {
+  const Graph graph = motion_graph(scenario, problem, plan);
+  const Plan read = plan_of(graph);
+  for (int i = 0; i < kCount; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const int slot = read.slots[k];
+    EXPECT_EQ(read.index.configuration[static_cast<std::size_t>(slot)], i);
+    EXPECT_EQ(read.index.segment[k], i < kChange ? 0 : 1);
+    ASSERT_EQ(read.index.wrenches[k].size(), 1U);
+    const int wrenches = read.index.wrenches[k].front();
+    EXPECT_EQ(read.index.configuration[static_cast<std::size_t>(wrenches)], -1);
+    EXPECT_EQ(graph.vertex(VertexId<VertexWrenches>{wrenches}).contact_numbers,
+              read.stance_from[k]->contact_numbers);
+  }
+}
+
+TEST_F(MotionGraph, WrenchesAtFewerContactsThanBearAreNotKnown) {
+  Graph graph = motion_graph(scenario, problem, plan);
+  const Plan read = plan_of(graph);
+  // Configuration kChange is left without the left hand; the one before stands on all.
+  const int some = read.index.wrenches[kChange].front(), slot = read.index.wrenches[0].front();
+  const VertexWrenches few = graph.vertex(VertexId<VertexWrenches>{some});
+  const int id = graph.vertex_record(slot).id;
+  graph.remove_vertex(slot);
+  const auto forces = graph.add_vertex(id, few);
+  graph.add_edge(EdgeBalance(1.0, 1.0), VertexId<VertexConfiguration>{read.slots[0]}, forces);
+  const Motion motion = motion_of(graph, plan_of(graph));
+  EXPECT_TRUE(motion.wrenches[0].empty());
+  EXPECT_FALSE(motion.wrenches[1].empty());
+}
+
+TEST_F(MotionGraph, RefusesWrenchesThatDoNotFit) {
+  plan.motion.wrenches.pop_back();
+  EXPECT_THROW(motion_graph(scenario, problem, plan), Error);
+  plan.motion.wrenches.push_back({Eigen::Matrix<double, 6, 1>::Zero()});
+  EXPECT_THROW(motion_graph(scenario, problem, plan), Error);
 }
 
 TEST_F(MotionGraph, TakesSomeThousandCharactersForEachConfiguration) {

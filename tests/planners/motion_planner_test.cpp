@@ -218,7 +218,7 @@ TEST_P(MotionPlanTest, ContactsHoldBetweenVertices) {
 
 /// As the step from each vertex on begins: forces on the base, gravity and inertia included.
 TEST_P(MotionPlanTest, WrenchesBalanceGravityAndInertia) {
-  ASSERT_EQ(plan.wrenches.size(), motion.configurations.size());
+  ASSERT_EQ(plan.motion.wrenches.size(), motion.configurations.size());
   RobotDynamics dynamics(robot);
   RobotState state(robot);
   const double weight_N = robot.total_mass() * standard_gravity().norm();
@@ -229,7 +229,7 @@ TEST_P(MotionPlanTest, WrenchesBalanceGravityAndInertia) {
   for (std::size_t i = 0; i < motion.configurations.size(); ++i) {
     const auto stance = static_cast<std::size_t>(motion.stance_from[i]);
     const std::vector<Contact>& contacts = motion.stances[stance].contacts;
-    ASSERT_EQ(plan.wrenches[i].size(), contacts.size()) << i;
+    ASSERT_EQ(plan.motion.wrenches[i].size(), contacts.size()) << i;
     if (i + 1 == motion.configurations.size()) continue;
     curve.step(static_cast<int>(i)).at(0.0, point);  // as the step from here on begins
     state.update(motion.configurations[i].data());
@@ -240,9 +240,9 @@ TEST_P(MotionPlanTest, WrenchesBalanceGravityAndInertia) {
     inertia = std::max(inertia, (force - robot.total_mass() * standard_gravity()).norm());
     for (std::size_t k = 0; k < contacts.size(); ++k) {
       const Eigen::Matrix3d axes = axes_in_world(contacts[k]);
-      const Eigen::Vector3d pushes = axes * plan.wrenches[i][k].head<3>();
+      const Eigen::Vector3d pushes = axes * plan.motion.wrenches[i][k].head<3>();
       force += pushes;
-      moment += axes * plan.wrenches[i][k].tail<3>() +
+      moment += axes * plan.motion.wrenches[i][k].tail<3>() +
                 (contacts[k].position - base.translation()).cross(pushes);
     }
     EXPECT_LT(force.norm(), 1e-3 * weight_N) << i;
@@ -266,7 +266,7 @@ TEST(MotionPlannerTest, GivesTheSameBitsWithAnyNumberOfThreads) {
     const std::size_t bytes = static_cast<std::size_t>(a.size()) * sizeof(double);
     EXPECT_EQ(std::memcmp(a.data(), b.data(), bytes), 0) << i;
   }
-  EXPECT_EQ(two.wrenches, one.wrenches);
+  EXPECT_EQ(two.motion.wrenches, one.motion.wrenches);
 }
 
 TEST(MotionPlannerTest, SaysWhyThereIsNoMotionAndGivesWhatThereIs) {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "check/centauro_on_wheels.h"
+#include "planners/planned_drive.h"
 
 namespace locograph {
 namespace {
@@ -78,6 +78,61 @@ TEST(SlopeLimits, StraightOnAsByTheRuleAndAroundACornerSlower) {
   EXPECT_LT(slower.norm(), 0.95 * corner.slope(1).norm());
   EXPECT_GT(slower.norm(), 0.0);
   EXPECT_NEAR(slower.normalized().dot(corner.slope(1).normalized()), 1.0, 1e-12);
+}
+
+/// A drive whose curve has slopes of its own.
+class CarriedSlopes : public testing::Test {
+ protected:
+  CarriedSlopes() : graph(plan_wheeled_drive(centauro_drive(0.72, 0.0, 10))), plan(plan_of(graph)) {
+    before = motion_of(graph, plan);
+    before.slopes.clear();
+    const MotionCurve curve(*plan.robot->robot, before);
+    for (int i = 0; i < kCount; ++i) vertex(i).slopes = 0.9 * curve.slope(i);
+    vertex(4).slopes.setZero();
+    vertex(5).slopes.resize(0);
+    before = motion_of(graph, plan);
+  }
+
+  VertexConfiguration& vertex(int i) {
+    return graph.vertex(VertexId<VertexConfiguration>{plan.slots[static_cast<std::size_t>(i)]});
+  }
+  /// By the rule of the curve.
+  Eigen::VectorXd rule(int i) const {
+    Motion motion = motion_of(graph, plan);
+    motion.slopes.clear();
+    return MotionCurve(*plan.robot->robot, motion).slope(i);
+  }
+
+  static constexpr int kCount = 10;
+  Graph graph;
+  Plan plan;
+  Motion before;
+};
+
+TEST_F(CarriedSlopes, StayWhereNothingMoves) {
+  carry_slopes(before, plan, graph);
+  EXPECT_EQ(motion_of(graph, plan).slopes, before.slopes);
+}
+
+TEST_F(CarriedSlopes, FollowTheRuleWhereConfigurationsMove) {
+  const Eigen::VectorXd rule_2 = rule(2);
+  vertex(3).state[1] += 0.02;
+  carry_slopes(before, plan, graph);
+  const Motion after = motion_of(graph, plan);
+  for (const std::size_t i : {0, 1, 4, 5, 6, 7, 8, 9}) {
+    EXPECT_EQ(after.slopes[i], before.slopes[i]) << i;
+  }
+  EXPECT_GT((after.slopes[2] - before.slopes[2]).norm(), 1e-3);
+  EXPECT_TRUE(after.slopes[2].isApprox(before.slopes[2] + rule(2) - rule_2, 1e-12));
+}
+
+TEST_F(CarriedSlopes, KeepJointsWithinLimits) {
+  const Robot& robot = *plan.robot->robot;
+  int joint = 0;
+  while (std::isinf(robot.active_joint(joint).upper)) ++joint;
+  vertex(3).state[robot.base_configuration_size() + joint] = robot.active_joint(joint).upper;
+  carry_slopes(before, plan, graph);
+  EXPECT_EQ(vertex(3).slopes[robot.base_tangent_size() + joint], 0.0);
 }
 
 }  // namespace

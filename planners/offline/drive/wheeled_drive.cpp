@@ -1,7 +1,7 @@
 #include <locograph/planners/offline/drive/wheel_motion.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
-#include <locograph/planners/offline/drive/wheeled_plan.h>
 #include <locograph/planners/plan/plan.h>
+#include <locograph/planners/plan/plan_edges.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 
 #include <algorithm>
@@ -178,7 +178,9 @@ std::optional<Graph> plan_wheeled_drive(const Scenario& scenario, const JobContr
   require_sound_stance(*robot->robot, motion.stances.front());
   WheeledDrive(scenario, *robot->robot, motion.stances.front()).drive(job, motion);
   if (motion.configurations.size() < static_cast<std::size_t>(drive.configurations)) return {};
-  if (!add_wheeled_plan(graph, motion, {}, job)) return {};
+  const std::vector<int> numbers = add_stances(graph, robot, motion.stances);
+  if (!add_configurations(graph, motion, numbers, job)) return {};
+  if (!add_plan_edges(graph, drive_edges(), {}, job)) return {};
   return graph;
 }
 

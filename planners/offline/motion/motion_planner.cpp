@@ -79,8 +79,9 @@ class MotionSearch {
     }
     for (bool whole = false;; whole = true) {
       assemble(stances, configurations);
-      plan_.wrenches.assign(plan_.motion.configurations.size(), {});
-      plan_.report = judged(plan_.motion, &plan_.wrenches);
+      std::vector<StanceWrenches> wrenches(plan_.motion.configurations.size());
+      plan_.report = judged(plan_.motion, &wrenches);
+      plan_.motion.wrenches = std::move(wrenches);
       if (plan_.report.feasible) return 0;
       // At first those only that the report names: of each constraint one.
       std::vector<bool> named(count, whole);
@@ -379,7 +380,6 @@ MotionPlan plan_motion(const StanceProblem& problem, const StancePlannerOptions&
     if (!search.refused_reason().empty()) {
       plan.reason += "; the last motion that was not found: " + search.refused_reason();
     }
-    plan.wrenches.clear();
     plan.report = {};
     search.keep(plan.stances.configurations.size() - 1);
     search.assemble(plan.stances.stances, plan.stances.configurations);

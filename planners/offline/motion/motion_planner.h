@@ -48,12 +48,10 @@ struct MotionPlan {
   bool success = false;
   std::string reason;
   StancePlan stances;
-  /// Without success as far as it got: the segments up to the first that has none.
+  /// Without success as far as it got: the segments up to the first that has none. With the
+  /// wrenches that the judge found; none without success.
   Motion motion;
   std::vector<SegmentRecord> segments;
-  /// Of each configuration, and each contact of the stance it is left in, as
-  /// BalanceCertificate::wrenches; empty where nothing was judged.
-  std::vector<StanceWrenches> wrenches;
   CheckReport report;        ///< of the motion
   int refused_segments = 0;  ///< told to the stance planner
   double whole_body_s = 0.0, timing_s = 0.0, judge_s = 0.0, total_s = 0.0;

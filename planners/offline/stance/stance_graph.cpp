@@ -1,26 +1,19 @@
 #include <locograph/check/judge.h>
 #include <locograph/planners/offline/stance/stance_graph.h>
-#include <locograph/planners/plan/balance_edges.h>
 #include <locograph/planners/plan/plan.h>
+#include <locograph/planners/plan/plan_edges.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
-#include <locograph/plugins/contact/edge_contact.h>
-#include <locograph/plugins/joint_limits/edge_joint_limits.h>
 
 #include <utility>
 
 namespace locograph {
 namespace {
 
-constexpr double kEdgeContact = 1e5, kEdgeLimit = 1e4;
-
 /// Of the stances before and after a configuration, the one with fewer contacts.
-std::size_t smaller_stance(const StancePlan& plan, std::size_t i) {
-  if (i == 0) return 0;
-  return plan.stances[i - 1].contacts.size() < plan.stances[i].contacts.size() ? i - 1 : i;
-}
-std::size_t larger_stance(const StancePlan& plan, std::size_t i) {
-  if (i == 0) return 0;
-  return smaller_stance(plan, i) == i ? i - 1 : i;
+const Stance& bearing_stance(const StancePlan& plan, std::size_t i) {
+  const Stance& left_in = plan.stances[i];
+  const bool fewer = i > 0 && plan.stances[i - 1].contacts.size() < left_in.contacts.size();
+  return fewer ? plan.stances[i - 1] : left_in;
 }
 
 /// Those that the judge finds: what it answers, as in whole motions.
@@ -54,27 +47,23 @@ std::vector<int> add_task(Graph& graph, const Scenario& scenario, const StancePr
 
 Graph stance_graph(const Scenario& scenario, const StanceProblem& problem, const StancePlan& plan) {
   Graph graph;
-  const Robot& model = *problem.robot->robot;
   const std::vector<int> numbers = add_task(graph, scenario, problem, plan.stances,
                                             {.stances_only = true, .incomplete = !plan.success});
 
-  const int count = static_cast<int>(plan.configurations.size());
+  Motion motion{.time_s = {},
+                .configurations = plan.configurations,
+                .stances = plan.stances,
+                .stance_from = {}};
+  std::vector<StanceWrenches> wrenches;
   const Judge judge(problem.robot->robot, problem.world);
-  for (int i = 0; i < count; ++i) {
-    const std::size_t k = static_cast<std::size_t>(i);
-    const Eigen::VectorXd& q = plan.configurations[k];
-    const auto vertex =
-        graph.add_vertex(i, VertexConfiguration(kRobotNumber, problem.robot, i, q, numbers[k]));
-    const auto bearing = graph.parameters().get<StanceParameter>(numbers[smaller_stance(plan, k)]);
-    const StanceWrenches wrenches = wrenches_of(judge, q, bearing->stance, problem.check);
-    const auto closed = graph.parameters().get<StanceParameter>(numbers[larger_stance(plan, k)]);
-    for (const int number : closed->contact_numbers) {
-      const auto contact = graph.parameters().get<ContactParameter>(number);
-      graph.add_edge(EdgeContact(*contact, number, kEdgeContact), vertex);
-    }
-    graph.add_edge(EdgeJointLimits(model, 0.0, kEdgeLimit), vertex);
-    add_balance_edges(graph, vertex, *bearing, wrenches, count + i, problem.check);
+  for (std::size_t i = 0; i < plan.configurations.size(); ++i) {
+    motion.time_s.push_back(static_cast<double>(i));
+    motion.stance_from.push_back(static_cast<int>(i));
+    wrenches.push_back(
+        wrenches_of(judge, plan.configurations[i], bearing_stance(plan, i), problem.check));
   }
+  add_configurations(graph, motion, numbers);
+  add_plan_edges(graph, motion_edges(problem.check), wrenches);
   return graph;
 }
 

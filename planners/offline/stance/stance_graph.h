@@ -5,9 +5,8 @@
 ///     write_graph(graph, "stances.g2o");
 ///
 /// One VERTEX_CONFIGURATION for each stance, in the stance that it is left in, at rest with its
-/// number as its time; VERTEX_WRENCHES of the contacts that balance it, those of the smaller of its
-/// two stances; and the edges that say so: contacts of the larger one, joint limits, balance,
-/// friction and, where the scenario enforces them, torque limits.
+/// number as its time, the first one fixed; VERTEX_WRENCHES of the contacts that balance it, those
+/// of the smaller of its two stances; and the edges that say so (plan/plan_edges.h).
 
 #include <locograph/core/graph.h>
 #include <locograph/planners/offline/stance/stance_planner.h>

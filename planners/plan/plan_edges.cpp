@@ -1,0 +1,334 @@
+#include <locograph/planners/plan/plan.h>
+#include <locograph/planners/plan/plan_edges.h>
+#include <locograph/plugins/acceleration_limits/edge_acceleration_limits.h>
+#include <locograph/plugins/contact/edge_contact.h>
+#include <locograph/plugins/joint_limits/edge_joint_limits.h>
+#include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
+#include <locograph/plugins/rolling/edge_rolling.h>
+#include <locograph/plugins/rolling/edge_steering_slip.h>
+#include <locograph/plugins/self_collision/edge_self_collision.h>
+#include <locograph/plugins/static_balance/edge_balance.h>
+#include <locograph/plugins/static_balance/edge_contact_wrench.h>
+#include <locograph/plugins/static_balance/edge_torque_limits.h>
+#include <locograph/plugins/static_balance/edge_wrench_norm.h>
+#include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
+#include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
+#include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
+#include <locograph/robots/statics.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace locograph {
+namespace {
+
+using Configuration = VertexId<VertexConfiguration>;
+
+bool is_limited(double limit) { return limit > 0.0 && std::isfinite(limit); }
+
+/// The joint above the carrier of a wheel that rolls.
+bool steers(const Robot& robot, const StanceParameter& stance, int active) {
+  return std::ranges::any_of(stance.wheels, [&](const auto& standing) {
+    const int above = robot.links()[static_cast<std::size_t>(standing.wheel.carrier)].parent_joint;
+    return !standing.locked && above >= 0 &&
+           robot.joints()[static_cast<std::size_t>(above)].index == active;
+  });
+}
+
+bool turns_wheel(const StanceParameter& stance, int active) {
+  return std::ranges::any_of(stance.wheels, [active](const auto& standing) {
+    return !standing.locked && standing.wheel.joint == active;
+  });
+}
+
+/// Keeps the joints that `turns` picks from turning by more than max_rad over dt_s, or by more than
+/// they do in `planned`, a tangent. Nothing where their velocity limits ask for as much.
+template <class Turns>
+std::optional<EdgeVelocityLimits> step_limit(const Robot& robot, const Eigen::VectorXd& planned,
+                                             double dt_s, double max_rad,
+                                             const PlanEdgeOptions& options, Turns&& turns) {
+  constexpr double kRoom = 1.01;  // a plan is not an error from the start
+  if (!(max_rad > 0.0)) return std::nullopt;
+  double fastest = 0.0;
+  EdgeVelocityLimits edge(robot, 1.0, 0.0, 0.0, 0.0);
+  for (int i = 0; i < robot.active_joint_count(); ++i) {
+    const double velocity = robot.active_joint(i).max_velocity;
+    if (!std::isfinite(velocity) || !turns(i)) continue;
+    edge.weights[i] = options.limit_weight;
+    fastest = std::max(fastest, velocity);
+    max_rad = std::max(max_rad, kRoom * std::abs(planned[robot.base_tangent_size() + i]));
+  }
+  edge.fraction = max_rad / (fastest * dt_s);
+  if (!(edge.fraction < options.velocity_fraction)) return std::nullopt;
+  return edge;
+}
+
+/// The number of the plan's PARAMS_WORLD; one of an empty world where it has none.
+int world_number(Graph& graph, const Plan& plan) {
+  const auto& all = graph.parameters().all();
+  if (plan.world) {
+    return std::ranges::find_if(all, [&](const auto& one) { return one.second == plan.world; })
+        ->first;
+  }
+  const int number = all.contains(kWorldNumber) ? all.rbegin()->first + 1 : kWorldNumber;
+  graph.parameters().set(number, std::make_shared<const WorldParameter>());
+  return number;
+}
+
+/// The stance whose contacts balance a configuration.
+const StanceParameter* bearing_stance(const Plan& plan, std::size_t i) {
+  const StanceParameter* left_in = plan.stance_from[i].get();
+  if (!plan.stances_only || i == 0) return left_in;
+  const StanceParameter* before = plan.stance_from[i - 1].get();
+  return before->contacts.size() < left_in->contacts.size() ? before : left_in;
+}
+
+/// Adds the edges of one plan.
+class PlanEdges {
+ public:
+  PlanEdges(Graph& graph, const PlanEdgeOptions& options, const JobControl& job)
+      : graph_(graph),
+        options_(options),
+        job_(job),
+        plan_(plan_of(graph)),
+        robot_(*plan_.robot->robot),
+        world_number_(world_number(graph, plan_)),
+        track_(robot_.tangent_size()),
+        steps_(robot_.tangent_size()) {
+    for (const int slot : plan_.slots) {
+      ids_.push_back({slot});
+      configurations_.push_back(graph.vertex(ids_.back()).state);
+      free_id_ = std::max(free_id_, graph.vertex_record(slot).id + 1);
+    }
+    weigh_tracking();
+  }
+
+  bool add(const std::vector<StanceWrenches>& wrenches) {
+    if (!wrenches.empty() && wrenches.size() != ids_.size()) {
+      throw Error("wrenches of " + std::to_string(wrenches.size()) + " configurations",
+                  "of all " + std::to_string(ids_.size()));
+    }
+    const EdgeSelfCollision apart = self_collision_edge();
+    const bool any_apart = (apart.weights.array() > 0.0).any();
+    const EdgeSweptObstacleDistance swept = swept_edge();
+    for (std::size_t i = 0; i < ids_.size(); ++i) {
+      if (!job_.go_on("adding constraints", i, ids_.size())) return false;
+      add_to_configuration(i);
+      if (any_apart) graph_.add_edge(apart, ids_[i]);
+      if (!wrenches.empty() && !wrenches[i].empty()) add_balance(i, wrenches[i]);
+      if (i == 0 || plan_.stances_only) continue;
+      add_to_step(i);
+      graph_.add_edge(swept, ids_[i - 1], ids_[i]);
+      if (i == 1 || !is_limited(options_.joint_acceleration_rad_s2)) continue;
+      graph_.add_edge(EdgeAccelerationLimits(robot_, options_.joint_acceleration_rad_s2, 0.0, 0.0,
+                                             options_.acceleration_weight),
+                      ids_[i - 2], ids_[i - 1], ids_[i]);
+    }
+    return true;
+  }
+
+ private:
+  void weigh_tracking() {
+    track_.setConstant(options_.track_joint);
+    steps_.setConstant(options_.step_joint);
+    const int base = robot_.base_tangent_size();
+    if (base > 0) {
+      track_.head<6>() << options_.track_forward, options_.track_lateral, options_.track_height,
+          options_.track_tilt, options_.track_tilt, options_.track_yaw;
+      steps_.head<6>().setConstant(options_.step_base);
+    }
+    const auto in_any = [&](auto&& predicate) {
+      return std::ranges::any_of(plan_.stance_from,
+                                 [&](const auto& stance) { return stance && predicate(*stance); });
+    };
+    for (int i = 0; i < robot_.active_joint_count(); ++i) {
+      if (in_any([&](const auto& stance) { return steers(robot_, stance, i); })) {
+        track_[base + i] = 0.0;
+        steps_[base + i] = options_.step_steering;
+      } else if (in_any([&](const auto& stance) { return turns_wheel(stance, i); })) {
+        track_[base + i] = 0.0;
+        steps_[base + i] = 0.0;
+      }
+    }
+    goal_ = track_;
+    if (base > 0) goal_[0] = goal_[1] = goal_[5] = options_.track_goal;
+  }
+
+  /// Keeps links apart that the edge sees apart in every one of the configurations which the job
+  /// lets it look at: others have no weight.
+  EdgeSelfCollision self_collision_edge() const {
+    EdgeSelfCollision edge(*plan_.robot, options_.self_margin_m, options_.limit_weight);
+    Eigen::VectorXd lack(edge.weights.size());
+    ConfigurationState state(plan_.robot);
+    std::size_t seen = 0;
+    for (const Eigen::VectorXd& q : configurations_) {
+      if (!job_.go_on("comparing links", seen++, configurations_.size())) break;
+      state.update(q.data());
+      edge.error(state, lack);
+      edge.weights = (lack.array() > 0.0).select(0.0, edge.weights);
+    }
+    return edge;
+  }
+
+  EdgeSweptObstacleDistance swept_edge() const {
+    EdgeSweptObstacleDistance edge(*plan_.robot, world_number_, options_.obstacle_margin_m,
+                                   options_.swept_samples, options_.limit_weight);
+    const bool nothing_there =
+        !plan_.world || (plan_.world->map.empty() && plan_.world->obstacles.empty());
+    if (!options_.excuse_near_world || nothing_there || plan_.stances_only) return edge;
+    edge.bind(graph_.parameters());
+    Eigen::VectorXd lack(edge.weights.size());
+    ConfigurationState before = graph_.vertex(ids_.front()).make_derived(), after = before;
+    graph_.vertex(ids_.front()).derive(graph_.state(ids_.front().slot), before);
+    for (std::size_t i = 1; i < ids_.size(); ++i) {
+      graph_.vertex(ids_[i]).derive(graph_.state(ids_[i].slot), after);
+      edge.error(before, after, lack);
+      edge.weights = (lack.array() > 0.0).select(0.0, edge.weights);
+      std::swap(before, after);
+    }
+    return edge;
+  }
+
+  void add_to_configuration(std::size_t i) {
+    const bool last = i + 1 == ids_.size();
+    graph_.add_edge(EdgePlanTracking(configurations_[i], last ? goal_ : track_), ids_[i]);
+    graph_.add_edge(EdgeJointLimits(robot_, options_.joint_margin_rad, options_.limit_weight),
+                    ids_[i]);
+    for (const int number : contacts_at(plan_.stance_from, i)) {
+      const auto contact = graph_.parameters().get<ContactParameter>(number);
+      graph_.add_edge(EdgeContact(*contact, number, options_.constraint_weight), ids_[i]);
+    }
+  }
+
+  void add_balance(std::size_t i, const StanceWrenches& wrenches) {
+    const StanceParameter* bearing = bearing_stance(plan_, i);
+    const std::size_t expected = bearing == nullptr ? 0 : bearing->contacts.size();
+    if (wrenches.size() != expected) {
+      throw Error("wrenches at " + std::to_string(wrenches.size()) + " contacts",
+                  "one for each of the stance, " + std::to_string(expected));
+    }
+    std::vector<int> numbers;
+    std::vector<double> components;
+    for (std::size_t c = 0; c < bearing->contacts.size(); ++c) {
+      if (!bearing->contacts[c]->contact.bears_load) continue;
+      numbers.push_back(bearing->contact_numbers[c]);
+      for (const int component : bearing->contacts[c]->components()) {
+        components.push_back(wrenches[c][component]);
+      }
+    }
+    VertexWrenches vertex(graph_.parameters(), std::move(numbers));
+    vertex.state = Eigen::Map<const Eigen::VectorXd>(components.data(),
+                                                     static_cast<Eigen::Index>(components.size()));
+    const auto forces = graph_.add_vertex(free_id_ + static_cast<int>(i), std::move(vertex));
+    const double weight_N = robot_.total_mass() * standard_gravity().norm();
+    const double unit = 1.0 / (weight_N * weight_N);
+    const double balance = options_.balance_weight * unit;
+    graph_.add_edge(EdgeBalance(balance, balance), ids_[i], forces);
+    graph_.add_edge(
+        EdgeContactWrench(*graph_.vertex(forces).contacts, options_.friction_weight * unit),
+        forces);
+    graph_.add_edge(EdgeWrenchNorm(graph_.vertex(forces), options_.wrench_norm_weight * unit),
+                    forces);
+    if (!options_.torque_limits) return;
+    EdgeTorqueLimits torques(robot_, options_.effort_scale, 0.0);
+    for (int j = 0; j < robot_.active_joint_count(); ++j) {
+      const double effort = robot_.active_joint(j).max_effort;
+      torques.weights[j] = std::isfinite(effort) ? options_.torque_weight / (effort * effort) : 0.0;
+    }
+    graph_.add_edge(std::move(torques), ids_[i], forces);
+  }
+
+  /// Of the step that ends at configuration i.
+  void add_to_step(std::size_t i) {
+    const Configuration a = ids_[i - 1], b = ids_[i];
+    Eigen::VectorXd step(robot_.tangent_size());
+    robot_.difference(configurations_[i - 1].data(), configurations_[i].data(), step.data());
+    graph_.add_edge(EdgeVelocityTracking(step, steps_), a, b);
+    graph_.add_edge(EdgeVelocityLimits(robot_, options_.velocity_fraction, options_.base_linear_m_s,
+                                       options_.base_angular_rad_s, options_.limit_weight),
+                    a, b);
+    const StanceParameter* stance = plan_.stance_from[i - 1].get();
+    if (stance == nullptr || stance->wheels.empty()) return;
+    const double dt_s = graph_.vertex(b).time_s - graph_.vertex(a).time_s;
+    const auto steering = [&](int joint) { return steers(robot_, *stance, joint); };
+    const auto bending = [&](int joint) {
+      return !steering(joint) && !turns_wheel(*stance, joint);
+    };
+    for (const auto& limit :
+         {step_limit(robot_, step, dt_s, options_.steering_step_rad, options_, steering),
+          step_limit(robot_, step, dt_s, options_.leg_step_rad, options_, bending)}) {
+      if (limit) graph_.add_edge(*limit, a, b);
+    }
+    const int number = graph_.vertex(a).stance_number;
+    graph_.add_edge(EdgeRolling(*stance, number, options_.constraint_weight), a, b);
+    if (!(options_.steering_slip_m > 0.0)) return;
+    const EdgeSteeringSlip slip(*stance, number, options_.steering_slip_m,
+                                options_.constraint_weight);
+    if (slip.dimension() > 0) graph_.add_edge(slip, a, b);
+  }
+
+  Graph& graph_;
+  const PlanEdgeOptions& options_;
+  const JobControl& job_;
+  const Plan plan_;
+  const Robot& robot_;
+  int world_number_;
+  Eigen::VectorXd track_, goal_, steps_;  // weights
+  std::vector<Configuration> ids_;
+  std::vector<Eigen::VectorXd> configurations_;
+  int free_id_ = 0;
+};
+
+}  // namespace
+
+PlanEdgeOptions drive_edges() {
+  PlanEdgeOptions options;
+  options.leg_step_rad = 0.035;
+  options.steering_step_rad = 0.25;
+  options.steering_slip_m = 0.0018;
+  return options;
+}
+
+PlanEdgeOptions motion_edges(const CheckOptions& check) {
+  PlanEdgeOptions options;
+  options.obstacle_margin_m = 0.01;
+  options.swept_samples = 2;
+  options.excuse_near_world = true;
+  options.joint_margin_rad = 0.0;
+  options.velocity_fraction = 1.0;
+  options.base_linear_m_s = is_limited(check.base_linear_m_s) ? check.base_linear_m_s : 0.0;
+  options.base_angular_rad_s =
+      is_limited(check.base_angular_rad_s) ? check.base_angular_rad_s : 0.0;
+  options.joint_acceleration_rad_s2 = check.joint_acceleration_rad_s2;
+  options.torque_limits = check.enforce_torque_limits;
+  options.effort_scale = check.effort_scale;
+  options.track_lateral = options.track_forward;
+  options.track_yaw = options.track_tilt;
+  return options;
+}
+
+bool add_configurations(Graph& graph, const Motion& motion, const std::vector<int>& stance_numbers,
+                        const JobControl& job) {
+  const auto robot = graph.parameters().get<RobotParameter>(kRobotNumber);
+  const std::size_t count = motion.configurations.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!job.go_on("placing configurations", i, count)) return false;
+    if (motion.stance_from[i] < 0) {
+      throw Error("a step whose stance is not known", "a stance for each step");
+    }
+    VertexConfiguration vertex(kRobotNumber, robot, motion.time_s[i], motion.configurations[i],
+                               stance_numbers.at(static_cast<std::size_t>(motion.stance_from[i])));
+    if (!motion.slopes.empty()) vertex.slopes = motion.slopes[i];
+    const auto id = graph.add_vertex(static_cast<int>(i), std::move(vertex));
+    graph.set_fixed(id, i == 0);
+  }
+  return true;
+}
+
+bool add_plan_edges(Graph& graph, const PlanEdgeOptions& options,
+                    const std::vector<StanceWrenches>& wrenches, const JobControl& job) {
+  return PlanEdges(graph, options, job).add(wrenches);
+}
+
+}  // namespace locograph

@@ -1,0 +1,88 @@
+#pragma once
+/// The edges of a plan, made from its stances: the only place that emits them.
+///
+///     graph.parameters().set(kRobotNumber, robot);
+///     graph.parameters().set(kWorldNumber, world);
+///     add_configurations(graph, motion, add_stances(graph, robot, motion.stances));
+///     add_plan_edges(graph, drive_edges());
+///
+/// Each configuration gets tracking of the plan as it is, joint limits, the contacts of the stances
+/// on both sides and distances of its links to each other; each step tracking of its length,
+/// velocity limits, rolling where it has wheels and distances to the world on the way; each two
+/// steps acceleration limits; each configuration whose wrenches are known balance, friction, the
+/// least wrenches and, where they are enforced, torque limits. Nothing moves between the
+/// configurations of a plan of stances: it has no edges of steps.
+///
+/// So a feasible plan is the optimum of its graph, up to micrometres, and refining it needs nothing
+/// added.
+
+#include <locograph/check/check_report.h>
+#include <locograph/check/motion.h>
+#include <locograph/common/job_control.h>
+#include <locograph/core/graph.h>
+
+#include <vector>
+
+namespace locograph {
+
+/// How strongly the edges of a plan hold. Weights are on squared errors in m, rad and shares of the
+/// robot's weight; those of constraints are large against those of tracking, so that what tracking
+/// wants bends constraints by micrometres only. Limits are what the edges keep, not what the judge
+/// allows.
+struct PlanEdgeOptions {
+  double constraint_weight = 1e5;    ///< contacts, rolling
+  double limit_weight = 1e4;         ///< joints, velocities, obstacles, the robot itself
+  double acceleration_weight = 1e2;  ///< per (rad/s²)²
+  double balance_weight = 1e4;       ///< forces and moments (N, N m over the robot's weight)
+  double friction_weight = 1e3;      ///< what contacts can bear, likewise
+  double torque_weight = 1e2;        ///< per share of a joint's effort limit
+  double wrench_norm_weight = 1e-2;  ///< the least of all wrenches that balance
+
+  double obstacle_margin_m = 0.05;
+  int swept_samples = 4;  ///< between two configurations, see edge_swept_obstacle_distance.h
+  /// Spheres that are nearer to the world than the margin in the plan itself have no weight: links
+  /// that touch it. A drive touches with its wheels only, which the world's ground exempts.
+  bool excuse_near_world = false;
+  double self_margin_m = 0.01;
+  double joint_margin_rad = 0.01;
+  double velocity_fraction = 0.95;
+  double base_linear_m_s = 0.5, base_angular_rad_s = 0.5;  ///< 0: no limit
+  double joint_acceleration_rad_s2 = 10.0;                 ///< 0: no limit
+  bool torque_limits = false;
+  double effort_scale = 1.0;
+  /// How far joints turn in one step [rad], or as far as the plan turns them: what closes contacts
+  /// at both ends of a step has to do so between them too. 0: as far as their velocities allow.
+  double leg_step_rad = 0.0, steering_step_rad = 0.0;
+  /// How far a wheel may slip half-way of a step; 0: the edge is left out. The judge allows 5 mm
+  /// within any 0.1 m of its way, and two steps may slip in opposite directions.
+  double steering_slip_m = 0.0;
+
+  // Tracking, of the plan and of its steps. Falling back weighs more than passing to the side: a
+  // robot that stops in front of an obstacle is safe, but gets nowhere.
+  double track_forward = 20.0, track_lateral = 0.5, track_height = 20.0;
+  double track_tilt = 50.0, track_yaw = 5.0, track_joint = 1.0;
+  double track_goal = 50.0;  ///< forward, lateral and yaw of the last configuration: to come back
+  double step_base = 50.0, step_joint = 5.0, step_steering = 0.5;
+};
+
+/// Of a drive: wheels roll, and what stands beside the way is kept clear of.
+PlanEdgeOptions drive_edges();
+/// Of a contact task: as close to its limits and to the world as the judge allows.
+PlanEdgeOptions motion_edges(const CheckOptions& check);
+
+/// Adds the configurations with their times, slopes and stances, the first one fixed. kRobotNumber
+/// (plan.h) must be set; stance_numbers: of motion.stances, as add_stances() gives them. Throws
+/// Error for a step whose stance is not known. Returns false when the job ended before.
+bool add_configurations(Graph& graph, const Motion& motion, const std::vector<int>& stance_numbers,
+                        const JobControl& job = {});
+
+/// Adds the edges to a plan that has parameters and configurations. Pairs of links that the shapes
+/// of EDGE_SELF_COLLISION see too near to each other in the plan already have no weight there.
+/// Joints that steer rolling wheels, and those wheels, are not tracked: rolling decides them.
+/// wrenches: as Motion::wrenches; of a plan of stances those at the contacts of the smaller of the
+/// two stances of a configuration. Throws Error for another number of them than there are
+/// configurations or contacts. Returns false when the job ended before the plan was whole.
+bool add_plan_edges(Graph& graph, const PlanEdgeOptions& options,
+                    const std::vector<StanceWrenches>& wrenches = {}, const JobControl& job = {});
+
+}  // namespace locograph
