@@ -7,6 +7,7 @@
 #include <locograph/check/judge.h>
 #include <locograph/common/data_folder.h>
 #include <locograph/core/graph_file.h>
+#include <locograph/planners/balance/reach_programme.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
 #include <locograph/planners/offline/motion/motion_graph.h>
 #include <locograph/planners/offline/motion/segment_motion.h>
@@ -21,7 +22,6 @@
 #include <locograph/planners/offline/stance/standing_wheels.h>
 #include <locograph/planners/offline/stance/transition_rows.h>
 #include <locograph/planners/offline/timing/path_timing.h>
-#include <locograph/planners/offline/timing/reach_programme.h>
 #include <locograph/planners/online/refine.h>
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
@@ -185,6 +185,24 @@ struct TimingContext : StepContext {
   }
 };
 
+namespace balance_balance_region_h {
+using Context = StepContext;
+}
+namespace balance_torque_programme_h {
+struct Context : StepContext {
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(robot.tangent_size());
+};
+}  // namespace balance_torque_programme_h
+namespace balance_reach_programme_h {
+/// Three forces of at most one, along x, y and both.
+struct Context {
+  const Eigen::MatrixXd columns = (Eigen::MatrixXd(2, 3) << 1, 0, 1, 0, 1, 1).finished();
+  const Eigen::VectorXd within = Eigen::Vector2d(1e-6, 1e-6),
+                        inside = Eigen::Vector3d(0.2, 0.2, 0.2), target = Eigen::Vector2d(3.0, 0.0);
+  const ReachProgramme::Bounds bounds = {
+      .group = {0, 0, 0}, .lower = {0, 0, 0}, .upper = {1, 1, 1}, .most = {-1}};
+};
+}  // namespace balance_reach_programme_h
 namespace offline_drive_wheel_motion_h {
 struct Context : DriveContext {
   const Robot& robot = *parameter->robot;
@@ -200,9 +218,6 @@ struct Context : DriveContext {
   Graph graph;
 };
 }  // namespace offline_drive_wheeled_plan_h
-namespace offline_stance_balance_region_h {
-using Context = StepContext;
-}
 namespace offline_stance_experience_h {
 struct Context : SearchContext {
   const bool found = true;
@@ -254,11 +269,6 @@ struct Context : SearchContext {
   StancePath path = {.footings = {start, without(start, 0)}, .configurations = {q, q}};
 };
 }  // namespace offline_stance_standing_wheels_h
-namespace offline_stance_torque_programme_h {
-struct Context : StepContext {
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(robot.tangent_size());
-};
-}  // namespace offline_stance_torque_programme_h
 namespace offline_stance_transition_ahead_h {
 struct Context : TransitionContext {
   BalanceRegions regions{robot->robot->total_mass()};
@@ -317,16 +327,6 @@ using Context = LiftedContext;
 namespace offline_timing_balance_rows_h {
 using Context = TimingContext;
 }
-namespace offline_timing_reach_programme_h {
-/// Three forces of at most one, along x, y and both.
-struct Context {
-  const Eigen::MatrixXd columns = (Eigen::MatrixXd(2, 3) << 1, 0, 1, 0, 1, 1).finished();
-  const Eigen::VectorXd within = Eigen::Vector2d(1e-6, 1e-6),
-                        inside = Eigen::Vector3d(0.2, 0.2, 0.2), target = Eigen::Vector2d(3.0, 0.0);
-  const ReachProgramme::Bounds bounds = {
-      .group = {0, 0, 0}, .lower = {0, 0, 0}, .upper = {1, 1, 1}, .most = {-1}};
-};
-}  // namespace offline_timing_reach_programme_h
 namespace offline_timing_effort_rows_h {
 /// The same robot, its base held.
 struct Context {

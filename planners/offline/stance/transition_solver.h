@@ -24,8 +24,8 @@
 /// The result depends on the arguments alone, not on what was solved before. One solver for each
 /// thread; copies share what does not change.
 
-#include <locograph/planners/offline/stance/balance_region.h>
-#include <locograph/planners/offline/stance/torque_programme.h>
+#include <locograph/planners/balance/balance_region.h>
+#include <locograph/planners/balance/torque_programme.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
 #include <locograph/robots/contact_closure.h>
 #include <locograph/world/world.h>

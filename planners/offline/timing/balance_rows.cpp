@@ -1,6 +1,6 @@
 #include <locograph/common/error.h>
+#include <locograph/planners/balance/reach_programme.h>
 #include <locograph/planners/offline/timing/balance_rows.h>
-#include <locograph/planners/offline/timing/reach_programme.h>
 #include <locograph/planners/offline/timing/speed_polygon.h>
 #include <locograph/robots/dynamics.h>
 

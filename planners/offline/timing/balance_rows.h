@@ -24,7 +24,7 @@
 ///
 /// Thread-safety: one thread at a time. The robot must outlive it, not what along() returns.
 
-#include <locograph/planners/offline/stance/balance_region.h>
+#include <locograph/planners/balance/balance_region.h>
 #include <locograph/planners/offline/timing/speed_profile.h>
 
 #include <memory>
