@@ -4,7 +4,7 @@
 #include <locograph/planners/offline/drive/wheeled_plan.h>
 #include <locograph/planners/offline/motion/motion_graph.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
-#include <locograph/plugins/contact/segment_parameter.h>
+#include <locograph/plugins/configuration/segment_parameter.h>
 
 #include <algorithm>
 #include <array>

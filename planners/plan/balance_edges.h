@@ -6,8 +6,8 @@
 
 #include <locograph/check/check_report.h>
 #include <locograph/core/graph.h>
+#include <locograph/plugins/configuration/stance_parameter.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
-#include <locograph/plugins/contact/stance_parameter.h>
 
 namespace locograph {
 

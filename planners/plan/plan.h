@@ -9,8 +9,8 @@
 #include <locograph/check/motion.h>
 #include <locograph/core/graph.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
+#include <locograph/plugins/configuration/stance_parameter.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
-#include <locograph/plugins/contact/stance_parameter.h>
 
 #include <memory>
 #include <string>

@@ -3,8 +3,8 @@
 #include <locograph/planners/offline/stance/stance_graph.h>
 #include <locograph/planners/plan/plan.h>
 #include <locograph/plugins/acceleration_limits/edge_acceleration_limits.h>
+#include <locograph/plugins/configuration/segment_parameter.h>
 #include <locograph/plugins/contact/edge_contact.h>
-#include <locograph/plugins/contact/segment_parameter.h>
 #include <locograph/plugins/joint_limits/edge_joint_limits.h>
 #include <locograph/plugins/rolling/edge_rolling.h>
 #include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
