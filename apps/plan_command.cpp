@@ -5,7 +5,7 @@
 #include <locograph/common/data_folder.h>
 #include <locograph/common/suggestion.h>
 #include <locograph/planners/offline/motion/segment_planner.h>
-#include <locograph/planners/offline/stance/stance_planner.h>
+#include <locograph/planners/offline/stance/stance_planners.h>
 
 #include <memory>
 #include <string>

@@ -12,6 +12,7 @@
 #include <locograph/planners/offline/motion/segment_planner.h>
 #include <locograph/planners/offline/stance/improve_stances.h>
 #include <locograph/planners/offline/stance/stance_graph.h>
+#include <locograph/planners/offline/stance/stance_planners.h>
 #include <locograph/planners/offline/stance/stance_problem.h>
 
 #include <algorithm>

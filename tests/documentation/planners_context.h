@@ -14,9 +14,11 @@
 #include <locograph/planners/offline/stance/experience.h>
 #include <locograph/planners/offline/stance/guided_tree.h>
 #include <locograph/planners/offline/stance/improve_stances.h>
+#include <locograph/planners/offline/stance/judged_path.h>
 #include <locograph/planners/offline/stance/plan_stances.h>
 #include <locograph/planners/offline/stance/stance_graph.h>
 #include <locograph/planners/offline/stance/stance_path.h>
+#include <locograph/planners/offline/stance/stance_planners.h>
 #include <locograph/planners/offline/stance/stance_problem.h>
 #include <locograph/planners/offline/stance/stance_tree.h>
 #include <locograph/planners/offline/stance/standing_wheels.h>
@@ -247,9 +249,14 @@ struct Context : StepContext {
   const std::unique_ptr<const StancePlanner> planner = make_stance_planner("guided");
 };
 }  // namespace offline_stance_improve_stances_h
-namespace offline_stance_stance_path_h {
+namespace offline_stance_judged_path_h {
 struct Context : SearchContext {
   const Judge judge{problem.robot->robot, world};
+  StancePath path = {.footings = {start}, .configurations = {q}};
+};
+}  // namespace offline_stance_judged_path_h
+namespace offline_stance_stance_path_h {
+struct Context : SearchContext {
   const Eigen::VectorXd& configuration = q;
 };
 }  // namespace offline_stance_stance_path_h
@@ -369,12 +376,15 @@ struct Context : StepContext {
 namespace offline_stance_stance_space_h {
 using Context = StepContext;
 }
-namespace offline_stance_transition_solver_h {
+namespace offline_stance_transition_problem_h {
 struct Context : TransitionContext {
   const Stance& larger = stance;
   const Eigen::VectorXd& home = q;
 };
-}  // namespace offline_stance_transition_solver_h
+}  // namespace offline_stance_transition_problem_h
+namespace offline_stance_transition_solver_h {
+using Context = offline_stance_transition_problem_h::Context;
+}
 namespace online_detour_search_h {
 /// A box on the way, after two metres.
 struct Context : DriveContext {

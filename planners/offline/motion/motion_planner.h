@@ -21,7 +21,7 @@
 namespace locograph {
 
 struct MotionOptions {
-  std::string stance_planner = "guided";  ///< see stance_planner.h
+  std::string stance_planner = "guided";  ///< see stance_planners.h
   /// Names of segment planners in the order in which they are tried; empty: all.
   std::vector<std::string> segment_planners = {};
   double step_s = 0.02;       ///< between configurations of the plan, at most
