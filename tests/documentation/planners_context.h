@@ -11,6 +11,7 @@
 #include <locograph/planners/offline/drive/wheeled_drive.h>
 #include <locograph/planners/offline/motion/motion_graph.h>
 #include <locograph/planners/offline/motion/segment_motion.h>
+#include <locograph/planners/offline/motion/segment_planners.h>
 #include <locograph/planners/offline/stance/experience.h>
 #include <locograph/planners/offline/stance/guided_tree.h>
 #include <locograph/planners/offline/stance/improve_stances.h>
@@ -504,7 +505,7 @@ struct Context : StepContext {
   const std::shared_ptr<const WorldParameter> seen = std::make_shared<const WorldParameter>();
   const PostureProblem problem = {.stance = stance, .preferred = q};
   const PostureOptions options;
-  PostureSolver::Shapes shapes;
+  PostureShapes shapes;
   Context() {
     shapes.coarse_pairs.assign(robot->self_collision.pairs.size(), false);
     for (std::size_t link = 0; link < robot->robot->links().size(); ++link) {
@@ -514,6 +515,9 @@ struct Context : StepContext {
   }
 };
 }  // namespace posture_posture_graph_h
+namespace posture_posture_problem_h {
+using Context = StepContext;
+}
 namespace posture_posture_solver_h {
 struct Context : posture_contacts_file_h::Context {
   const RobotFiles files = shipped_robot("coman_plus").value();
@@ -534,6 +538,11 @@ struct Context {
   const Contact contact = step_problem().start.contacts[0];
 };
 }  // namespace scenario_contact_place_h
+namespace scenario_contact_task_h {
+struct Context {
+  const Stance &start = step_problem().start, &goal = step_problem().goals[0];
+};
+}  // namespace scenario_contact_task_h
 namespace scenario_contact_task_element_h {
 struct Context {
   const std::vector<EndEffector> effectors = one_step().end_effectors;
