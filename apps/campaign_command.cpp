@@ -9,7 +9,7 @@
 #include <locograph/common/error.h>
 #include <locograph/common/input_file.h>
 #include <locograph/common/stop_signals.h>
-#include <locograph/planners/offline/motion/segment_planner.h>
+#include <locograph/planners/offline/motion/segment_planners.h>
 #include <locograph/planners/scenario/scenario.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 

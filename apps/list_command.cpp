@@ -3,7 +3,7 @@
 #include <locograph/apps/output.h>
 #include <locograph/common/data_folder.h>
 #include <locograph/core/robust_kernel.h>
-#include <locograph/planners/offline/stance/stance_planner.h>
+#include <locograph/planners/offline/stance/stance_planners.h>
 #include <locograph/planners/scenario/scenario.h>
 #include <locograph/solvers/linear_solvers.h>
 

@@ -4,8 +4,8 @@
 #include <locograph/apps/plan_scenario.h>
 #include <locograph/common/data_folder.h>
 #include <locograph/common/suggestion.h>
-#include <locograph/planners/offline/motion/segment_planner.h>
-#include <locograph/planners/offline/stance/stance_planner.h>
+#include <locograph/planners/offline/motion/segment_planners.h>
+#include <locograph/planners/offline/stance/stance_planners.h>
 
 #include <memory>
 #include <string>

@@ -9,9 +9,10 @@
 #include <locograph/core/graph_file.h>
 #include <locograph/planners/offline/motion/motion_graph.h>
 #include <locograph/planners/offline/motion/motion_planner.h>
-#include <locograph/planners/offline/motion/segment_planner.h>
+#include <locograph/planners/offline/motion/segment_planners.h>
 #include <locograph/planners/offline/stance/improve_stances.h>
 #include <locograph/planners/offline/stance/stance_graph.h>
+#include <locograph/planners/offline/stance/stance_planners.h>
 #include <locograph/planners/offline/stance/stance_problem.h>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include <locograph/common/suggestion.h>
 #include <locograph/planners/plan/plan_edges.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
-#include <locograph/plugins/contact/segment_parameter.h>
+#include <locograph/plugins/configuration/segment_parameter.h>
 
 #include <algorithm>
 #include <array>

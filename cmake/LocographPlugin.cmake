@@ -33,7 +33,7 @@ macro(locograph_hash_plugin_headers root planning)
       world/distance_field world/distance_sample world/obstacles
       plugins/configuration/frame_parameter plugins/configuration/robot_parameters
       plugins/configuration/self_collision_shapes plugins/configuration/vertex_configuration
-      plugins/contact/contact_parameter plugins/contact/stance_parameter
+      plugins/configuration/contact_parameter plugins/configuration/stance_parameter
       plugins/static_balance/vertex_wrenches)
   endif()
   set(locograph_text "")

@@ -1,3 +1,4 @@
+#include <locograph/common/check_option.h>
 #include <locograph/core/diagnosis.h>
 #include <locograph/core/violations.h>
 
@@ -35,13 +36,10 @@ std::string ConstraintViolation::text() const {
 }
 
 void ViolationOptions::validate() const {
-  const auto check = [](double value) {
-    if (!(value > 0.0)) {
-      throw Error("a tolerance of " + std::to_string(value), "a positive number");
-    }
-  };
-  check(tolerance);
-  for (const auto& [unit, value] : tolerance_of_unit) check(value);
+  check_option(tolerance > 0.0, "tolerance", "a positive number");
+  for (const auto& [unit, value] : tolerance_of_unit) {
+    check_option(value > 0.0, "tolerance_of_unit", "positive numbers");
+  }
 }
 
 ConstraintReader::Row ConstraintReader::row_of(int constraint, int row, double error,

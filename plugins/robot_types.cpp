@@ -2,9 +2,9 @@
 #include <locograph/plugins/acceleration_limits/edge_acceleration_limits_timed.h>
 #include <locograph/plugins/com/edge_com.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
+#include <locograph/plugins/configuration/segment_parameter.h>
+#include <locograph/plugins/configuration/stance_parameter.h>
 #include <locograph/plugins/contact/edge_contact.h>
-#include <locograph/plugins/contact/segment_parameter.h>
-#include <locograph/plugins/contact/stance_parameter.h>
 #include <locograph/plugins/frame_pose/edge_frame_pose.h>
 #include <locograph/plugins/ground_distance/edge_ground_distance.h>
 #include <locograph/plugins/ground_distance/edge_link_height.h>

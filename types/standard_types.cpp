@@ -1,4 +1,7 @@
 #include <locograph/core/dense_prior.h>
+#include <locograph/types/bundle/bundle.h>
+#include <locograph/types/slam2d/slam2d.h>
+#include <locograph/types/slam3d/slam3d.h>
 #include <locograph/types/standard_types.h>
 
 namespace locograph {

@@ -8,6 +8,7 @@
 #include <locograph/common/error.h>
 #include <locograph/world/convex_shape.h>
 #include <locograph/world/gjk.h>
+#include <locograph/world/require_metres.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,13 +26,6 @@ struct ConvexShape::Fcl {
 namespace {
 
 constexpr double kCertified = 1e-5;
-
-double require_positive(double value, const char* what) {
-  if (!std::isfinite(value) || value <= 0.0)
-    throw Error(std::string(what) + " of a shape is " + std::to_string(value),
-                "a positive number of metres");
-  return value;
-}
 
 Eigen::Vector3d along_z(double z) { return Eigen::Vector3d(0.0, 0.0, z); }
 
@@ -291,7 +285,8 @@ ConvexShape::ConvexShape(Type type, double radius, const Eigen::Vector3d& half)
     : type_(type), radius_(radius), half_(half) {}
 
 ConvexShape ConvexShape::sphere(double radius) {
-  ConvexShape shape(Type::kSphere, require_positive(radius, "radius"), Eigen::Vector3d::Zero());
+  ConvexShape shape(Type::kSphere, require_metres(radius, "radius of a shape"),
+                    Eigen::Vector3d::Zero());
   shape.bounding_radius_ = shape.bounding_capsule_radius_ = radius;
   shape.fcl_ = std::make_shared<Fcl>(Fcl{std::make_unique<fcl::Sphered>(radius)});
   return shape;
@@ -299,8 +294,8 @@ ConvexShape ConvexShape::sphere(double radius) {
 
 ConvexShape ConvexShape::capsule(double radius, double length) {
   if (length == 0.0) return sphere(radius);
-  ConvexShape shape(Type::kCapsule, require_positive(radius, "radius"),
-                    along_z(0.5 * require_positive(length, "length")));
+  ConvexShape shape(Type::kCapsule, require_metres(radius, "radius of a shape"),
+                    along_z(0.5 * require_metres(length, "length of a shape")));
   shape.bounding_radius_ = radius + 0.5 * length;
   shape.bounding_axis_ = shape.half_;
   shape.bounding_capsule_radius_ = radius;
@@ -309,8 +304,8 @@ ConvexShape ConvexShape::capsule(double radius, double length) {
 }
 
 ConvexShape ConvexShape::cylinder(double radius, double height) {
-  ConvexShape shape(Type::kCylinder, require_positive(radius, "radius"),
-                    along_z(0.5 * require_positive(height, "height")));
+  ConvexShape shape(Type::kCylinder, require_metres(radius, "radius of a shape"),
+                    along_z(0.5 * require_metres(height, "height of a shape")));
   shape.bounding_radius_ = std::hypot(radius, 0.5 * height);
   shape.bounding_axis_ = shape.half_;
   shape.bounding_capsule_radius_ = radius;
@@ -319,7 +314,7 @@ ConvexShape ConvexShape::cylinder(double radius, double height) {
 }
 
 ConvexShape ConvexShape::box(const Eigen::Vector3d& size) {
-  for (int axis = 0; axis < 3; ++axis) require_positive(size[axis], "extent");
+  for (int axis = 0; axis < 3; ++axis) require_metres(size[axis], "extent of a shape");
   ConvexShape shape(Type::kBox, 0.0, 0.5 * size);
   shape.bounding_radius_ = shape.half_.norm();
   shape.bounding_axis_ = longest_axis(shape.half_);

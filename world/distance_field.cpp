@@ -1,6 +1,7 @@
 #include <dynamicEDT3D/dynamicEDT3D.h>
 #include <locograph/common/error.h>
 #include <locograph/world/distance_field.h>
+#include <locograph/world/require_metres.h>
 
 #include <algorithm>
 #include <cmath>
@@ -145,8 +146,7 @@ Block block_between(const Eigen::Vector3d& first, const Eigen::Vector3d& last) {
 }  // namespace
 
 void DistanceFieldOptions::validate() const {
-  if (!std::isfinite(max_distance_m) || max_distance_m <= 0.0)
-    throw Error("max_distance_m is " + std::to_string(max_distance_m), "a positive number");
+  require_metres(max_distance_m, "max_distance_m");
   if (lower.has_value() != upper.has_value())
     throw Error("only one corner of the box of interest", "both lower and upper, or neither");
   if (lower &&

@@ -3,6 +3,7 @@
 #include <locograph/common/input_file.h>
 #include <locograph/common/ranges.h>
 #include <locograph/world/octree.h>
+#include <locograph/world/require_metres.h>
 
 #include <algorithm>
 #include <cmath>
@@ -167,11 +168,6 @@ class DataWalk {
   std::size_t position_ = 0;
   std::size_t nodes_ = 0;
 };
-
-void require_metres(double value, const char* what) {
-  if (!std::isfinite(value) || value <= 0.0)
-    throw Error(std::string(what) + " is " + std::to_string(value), "a positive number of metres");
-}
 
 /// At this resolution, which is not coarser than the tree's.
 double occupied_voxels(const octomap::OcTree& tree, double resolution_m) {

@@ -7,8 +7,8 @@
 ///     const BalanceCase one = draw_balance_case(robot, random);
 ///     const double residual = graph_residual(robot, one, SurfaceModel::kCorners);
 
+#include <locograph/plugins/configuration/contact_parameter.h>
 #include <locograph/plugins/configuration/robot_parameters.h>
-#include <locograph/plugins/contact/contact_parameter.h>
 
 #include <Eigen/Core>
 #include <memory>

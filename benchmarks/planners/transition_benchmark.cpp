@@ -14,6 +14,7 @@
 // the same attempts.
 #include <locograph/check/judge.h>
 #include <locograph/common/data_folder.h>
+#include <locograph/planners/offline/stance/stance_planners.h>
 #include <locograph/planners/offline/stance/stance_problem.h>
 #include <locograph/planners/offline/stance/stance_space.h>
 

@@ -1,6 +1,6 @@
 #include <locograph/planners/plan/plan.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
-#include <locograph/plugins/contact/segment_parameter.h>
+#include <locograph/plugins/configuration/segment_parameter.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
 
 #include <algorithm>

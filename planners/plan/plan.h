@@ -10,8 +10,8 @@
 #include <locograph/core/graph.h>
 #include <locograph/planners/plan/plan_index.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
+#include <locograph/plugins/configuration/stance_parameter.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
-#include <locograph/plugins/contact/stance_parameter.h>
 
 #include <memory>
 #include <string>

@@ -119,7 +119,7 @@ Violated WatchedRows::violated(const Workspace& workspace) const {
 PostureGraph::PostureGraph(std::shared_ptr<const RobotParameter> robot,
                            std::shared_ptr<const WorldParameter> seen,
                            const PostureProblem& problem, const PostureOptions& options,
-                           const PostureSolver::Shapes& shapes)
+                           const PostureShapes& shapes)
     : robot_(std::move(robot)), weight_N_(robot_->robot->total_mass() * standard_gravity().norm()) {
   const Robot& model = *robot_->robot;
   add_parameters(std::move(seen), problem, options);
@@ -193,7 +193,7 @@ void PostureGraph::add_balance_edges(const PostureOptions& options) {
 }
 
 void PostureGraph::add_collision_edges(const PostureProblem& problem, const PostureOptions& options,
-                                       const PostureSolver::Shapes& shapes) {
+                                       const PostureShapes& shapes) {
   const auto pairs = static_cast<Eigen::Index>(robot_->self_collision.pairs.size());
   if (pairs > 0) {
     EdgeSelfCollision apart(*robot_, options.self_margin_m, kLimitWeight);
@@ -228,7 +228,7 @@ void PostureGraph::add_collision_edges(const PostureProblem& problem, const Post
 /// Links whose contacts are not on the ground may not reach into it, however near it they touch.
 void PostureGraph::keep_touching_above_ground(const PostureProblem& problem,
                                               const PostureOptions& options,
-                                              const PostureSolver::Shapes& shapes) {
+                                              const PostureShapes& shapes) {
   const Robot& model = *robot_->robot;
   const double margin = std::min(kTouchingMargin, options.ground_margin_m);
   std::vector<bool> on_ground(model.links().size(), false), near(on_ground);

@@ -18,7 +18,7 @@
 /// micrometres only.
 
 #include <locograph/core/violations.h>
-#include <locograph/planners/posture/posture_solver.h>
+#include <locograph/planners/posture/posture_problem.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
 #include <locograph/plugins/ground_distance/edge_link_height.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
@@ -56,7 +56,7 @@ class WatchedRows {
 };
 
 /// What is worked out once for a robot.
-struct PostureSolver::Shapes {
+struct PostureShapes {
   std::vector<bool> coarse_pairs;                         ///< without weight in self-collision
   std::vector<std::shared_ptr<const LinkSolids>> solids;  ///< of each link
 };
@@ -66,7 +66,7 @@ class PostureGraph {
   /// seen: what is in the way, as edges see it.
   PostureGraph(std::shared_ptr<const RobotParameter> robot,
                std::shared_ptr<const WorldParameter> seen, const PostureProblem& problem,
-               const PostureOptions& options, const PostureSolver::Shapes& shapes);
+               const PostureOptions& options, const PostureShapes& shapes);
 
   /// The configuration, and wrenches that share the weight evenly among the contacts.
   void set_start(const Eigen::VectorXd& configuration);
@@ -84,9 +84,9 @@ class PostureGraph {
   void add_contact_edges();
   void add_balance_edges(const PostureOptions& options);
   void add_collision_edges(const PostureProblem& problem, const PostureOptions& options,
-                           const PostureSolver::Shapes& shapes);
+                           const PostureShapes& shapes);
   void keep_touching_above_ground(const PostureProblem& problem, const PostureOptions& options,
-                                  const PostureSolver::Shapes& shapes);
+                                  const PostureShapes& shapes);
   template <class E, class... Vertices>
   void constrain(WatchedRows::Kind kind, E edge, double tolerance, int link, Vertices... vertices);
 

@@ -1,4 +1,3 @@
-#include <locograph/common/check_option.h>
 #include <locograph/common/uniform.h>
 #include <locograph/core/optimiser.h>
 #include <locograph/planners/plan/plan.h>
@@ -47,8 +46,8 @@ class Search {
  public:
   Search(const std::shared_ptr<const RobotParameter>& robot,
          const std::shared_ptr<const WorldParameter>& seen, const Judge& judge,
-         const PostureProblem& problem, const PostureOptions& options,
-         const PostureSolver::Shapes& shapes, Workspace& workspace)
+         const PostureProblem& problem, const PostureOptions& options, const PostureShapes& shapes,
+         Workspace& workspace)
       : robot_(*robot->robot),
         judge_(judge),
         problem_(problem),
@@ -212,18 +211,6 @@ class PostureSolver::Workspaces {
   std::vector<std::unique_ptr<Workspace>> free_;
 };
 
-void PostureOptions::validate() const {
-  check_option(max_restarts >= 0, "max_restarts", "0 or more");
-  check_option(patience >= 1, "patience", "1 or more");
-  check_option(max_iterations >= 1, "max_iterations", "1 or more");
-  check_option(joint_margin_rad >= 0.0, "joint_margin_rad", "0 or more");
-  check_option(self_margin_m >= 0.0, "self_margin_m", "0 or more");
-  check_option(obstacle_margin_m >= 0.0, "obstacle_margin_m", "0 or more");
-  check_option(ground_margin_m >= 0.0, "ground_margin_m", "0 or more");
-  check_option(wrench_margin >= 0.0 && wrench_margin < 1.0, "wrench_margin", "a part in [0, 1)");
-  check_option(torque_margin >= 0.0 && torque_margin < 1.0, "torque_margin", "a part in [0, 1)");
-}
-
 World posture_world(World in_the_way) {
   in_the_way.surfaces = {ground()};
   return in_the_way;
@@ -234,7 +221,7 @@ PostureSolver::PostureSolver(std::shared_ptr<const RobotParameter> robot, World 
     : robot_(std::move(robot)),
       judge_(robot_->robot, world),
       workspaces_(std::make_unique<Workspaces>()) {
-  auto shapes = std::make_unique<Shapes>();
+  auto shapes = std::make_unique<PostureShapes>();
   shapes->coarse_pairs = coarse_pairs(robot_, judge_);
   const Robot& model = *robot_->robot;
   for (int link = 0; link < static_cast<int>(model.links().size()); ++link)

@@ -25,27 +25,16 @@
 /// a program that makes the same calls gets the same bits. Thread-safe.
 
 #include <locograph/check/judge.h>
-#include <locograph/common/deadline.h>
 #include <locograph/core/graph.h>
+#include <locograph/planners/posture/posture_problem.h>
 #include <locograph/plugins/configuration/robot_parameters.h>
 
-#include <atomic>
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace locograph {
-
-struct PostureProblem {
-  Stance stance;
-  /// The posture to stay near, and the first start: Robot::configuration_size() numbers.
-  Eigen::VectorXd preferred = {};
-  /// The contacts file the stance was read from: who judges a saved posture goes by it. Empty:
-  /// none.
-  std::filesystem::path file = {};
-};
 
 /// Where a world was read from; empty: nowhere.
 struct WorldFiles {
@@ -54,39 +43,6 @@ struct WorldFiles {
 
 /// With the plane z = 0 as the ground, and nothing else that may be touched.
 World posture_world(World in_the_way = {});
-
-/// Contacts files do not say on what contacts are.
-inline CheckOptions posture_check() {
-  CheckOptions options;
-  options.surfaces_known = false;
-  return options;
-}
-
-struct PostureOptions {
-  std::uint64_t seed = 0;
-  int max_restarts = 8;
-  int max_iterations = 60;  ///< of each attempt
-  /// An attempt ends when this many iterations have not lowered its worst violation by a tenth.
-  int patience = 6;
-  Deadline deadline;
-  /// When it is set, as by Ctrl-C (stop_signals.h), the search ends; may be null.
-  const std::atomic<bool>* stop = nullptr;
-  /// Limits the torques to the efforts of the URDF; false: the result tells them.
-  bool enforce_torque_limits = true;
-
-  double joint_margin_rad = 1e-3;  ///< metres for prismatic joints
-  double self_margin_m = 4e-3;
-  double obstacle_margin_m = 0.01;
-  double ground_margin_m = 4e-3;
-  /// The part of friction, contact areas and force limits that is left as a margin.
-  double wrench_margin = 0.1;
-  double torque_margin = 0.05;
-  /// What the judge is asked.
-  CheckOptions check = posture_check();
-
-  /// Throws Error naming the option that is out of range.
-  void validate() const;
-};
 
 struct PostureResult {
   bool success = false;
@@ -100,10 +56,10 @@ struct PostureResult {
   double build_s = 0.0, optimise_s = 0.0, geometry_s = 0.0, balance_s = 0.0, total_s = 0.0;
 };
 
+struct PostureShapes;
+
 class PostureSolver {
  public:
-  struct Shapes;  ///< of the robot, for its own use
-
   /// files: what graph() is saved with. Throws Error for a robot without a floating base, without
   /// masses, without collision shapes, or with shapes that cannot be used.
   explicit PostureSolver(std::shared_ptr<const RobotParameter> robot, World world = posture_world(),
@@ -129,7 +85,7 @@ class PostureSolver {
   std::shared_ptr<const RobotParameter> robot_;
   std::shared_ptr<const WorldParameter> seen_;  ///< the world as edges see it
   Judge judge_;
-  std::unique_ptr<const Shapes> shapes_;
+  std::unique_ptr<const PostureShapes> shapes_;
   std::unique_ptr<Workspaces> workspaces_;
 };
 

@@ -7,7 +7,7 @@
 /// A contact is a scenario's end effector at its place: what it can bear is the end effector's. Its
 /// place is not looked for in the environment. Wheels stand still.
 
-#include <locograph/planners/scenario/scenario.h>
+#include <locograph/planners/scenario/contact_task.h>
 #include <locograph/robots/xml_file.h>
 
 #include <optional>

@@ -9,7 +9,7 @@
 /// A box becomes a solid and its six faces, with normals that point out of it: NAME top, NAME
 /// bottom, NAME front (its +x), NAME back, NAME left (its +y), NAME right.
 
-#include <locograph/planners/scenario/scenario.h>
+#include <locograph/planners/scenario/scanned_surface.h>
 #include <locograph/robots/xml_file.h>
 #include <locograph/world/world.h>
 

@@ -8,6 +8,8 @@
 /// The format is described in doc/scenarios.md. Every mistake is an Error with file and line.
 
 #include <locograph/common/deadline.h>
+#include <locograph/planners/scenario/contact_task.h>
+#include <locograph/planners/scenario/scanned_surface.h>
 #include <locograph/robots/contact.h>
 #include <locograph/robots/robot.h>
 #include <locograph/world/world.h>
@@ -26,38 +28,6 @@ struct DriveTask {
   double curvature_1_m = 0.0;  ///< > 0 turns left
   double speed_m_s = 0.1;
   int configurations = 50;
-  int line = 0;
-};
-
-/// Where a joint of the start stands [rad or m].
-struct GivenJoint {
-  std::string name;
-  double position = 0.0;
-  int line = 0;
-};
-
-/// From a start stance to goal stances, one after the other. Each stance is exactly its contacts.
-struct ContactTask {
-  /// Of the start: x y z qx qy qz qw, the quaternion normalised; none: wherever the posture solver
-  /// finds it from the robot's state.
-  std::optional<Eigen::Matrix<double, 7, 1>> base = std::nullopt;
-  std::vector<GivenJoint> joints = {};  ///< that do not stand as in the robot's state
-  Stance start;
-  std::vector<Stance> goals;  ///< one or more
-  int start_line = 0;
-  std::vector<int> goal_lines = {};
-};
-
-/// A mesh, cloud or octree of the environment, as the file says it; it is opened by world_of().
-struct ScannedSurface {
-  enum class Kind { kMesh, kCloud, kOctomap };
-  Kind kind = Kind::kMesh;
-  std::string name;
-  std::filesystem::path file;
-  Eigen::Isometry3d world_from_mesh = Eigen::Isometry3d::Identity();
-  double scale = 1.0;     ///< of a mesh, before it is moved
-  double voxel_m = 0.05;  ///< of a cloud
-  double friction = 0.0;  ///< as of surfaces
   int line = 0;
 };
 

@@ -1,7 +1,7 @@
 #include <locograph/common/ranges.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
+#include <locograph/plugins/configuration/stance_parameter.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
-#include <locograph/plugins/contact/stance_parameter.h>
 
 #include <cmath>
 #include <cstdio>

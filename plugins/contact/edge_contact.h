@@ -10,9 +10,9 @@
 /// 5 for one whose yaw is free, 3 for a point, 5 for a rung, 2 for a wheel, 4 for a locked one.
 
 #include <locograph/core/typed_edge_pool.h>
+#include <locograph/plugins/configuration/contact_parameter.h>
 #include <locograph/plugins/configuration/edge_fit.h>
 #include <locograph/plugins/configuration/row_labels.h>
-#include <locograph/plugins/contact/contact_parameter.h>
 
 namespace locograph {
 

@@ -17,7 +17,7 @@
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/plugins/configuration/edge_fit.h>
 #include <locograph/plugins/configuration/limit_kind.h>
-#include <locograph/plugins/contact/stance_parameter.h>
+#include <locograph/plugins/configuration/stance_parameter.h>
 
 namespace locograph {
 

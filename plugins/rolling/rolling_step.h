@@ -5,7 +5,7 @@
 ///     const RollingStep step(from, to, normal);
 ///     const double slip = step.lateral;
 
-#include <locograph/plugins/contact/stance_parameter.h>
+#include <locograph/plugins/configuration/stance_parameter.h>
 
 #include <algorithm>
 #include <cmath>

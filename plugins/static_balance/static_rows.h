@@ -21,8 +21,8 @@
 /// force f at p and the moment r × f, which is fixed in the world as f is, and all of the above
 /// holds for p.
 
+#include <locograph/plugins/configuration/contact_parameter.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
-#include <locograph/plugins/contact/contact_parameter.h>
 
 #include <Eigen/Core>
 

@@ -13,7 +13,7 @@
 /// configurations' blocks alone.
 
 #include <locograph/core/vertex.h>
-#include <locograph/plugins/contact/contact_parameter.h>
+#include <locograph/plugins/configuration/contact_parameter.h>
 
 #include <Eigen/Core>
 #include <memory>

@@ -7,21 +7,24 @@
 #include <locograph/check/judge.h>
 #include <locograph/common/data_folder.h>
 #include <locograph/core/graph_file.h>
+#include <locograph/planners/balance/reach_programme.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
 #include <locograph/planners/offline/motion/motion_graph.h>
 #include <locograph/planners/offline/motion/segment_motion.h>
+#include <locograph/planners/offline/motion/segment_planners.h>
 #include <locograph/planners/offline/stance/experience.h>
 #include <locograph/planners/offline/stance/guided_tree.h>
 #include <locograph/planners/offline/stance/improve_stances.h>
+#include <locograph/planners/offline/stance/judged_path.h>
 #include <locograph/planners/offline/stance/plan_stances.h>
 #include <locograph/planners/offline/stance/stance_graph.h>
 #include <locograph/planners/offline/stance/stance_path.h>
+#include <locograph/planners/offline/stance/stance_planners.h>
 #include <locograph/planners/offline/stance/stance_problem.h>
 #include <locograph/planners/offline/stance/stance_tree.h>
 #include <locograph/planners/offline/stance/standing_wheels.h>
 #include <locograph/planners/offline/stance/transition_rows.h>
 #include <locograph/planners/offline/timing/path_timing.h>
-#include <locograph/planners/offline/timing/reach_programme.h>
 #include <locograph/planners/online/refine.h>
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
@@ -185,6 +188,24 @@ struct TimingContext : StepContext {
   }
 };
 
+namespace balance_balance_region_h {
+using Context = StepContext;
+}
+namespace balance_torque_programme_h {
+struct Context : StepContext {
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(robot.tangent_size());
+};
+}  // namespace balance_torque_programme_h
+namespace balance_reach_programme_h {
+/// Three forces of at most one, along x, y and both.
+struct Context {
+  const Eigen::MatrixXd columns = (Eigen::MatrixXd(2, 3) << 1, 0, 1, 0, 1, 1).finished();
+  const Eigen::VectorXd within = Eigen::Vector2d(1e-6, 1e-6),
+                        inside = Eigen::Vector3d(0.2, 0.2, 0.2), target = Eigen::Vector2d(3.0, 0.0);
+  const ReachProgramme::Bounds bounds = {
+      .group = {0, 0, 0}, .lower = {0, 0, 0}, .upper = {1, 1, 1}, .most = {-1}};
+};
+}  // namespace balance_reach_programme_h
 namespace offline_drive_wheel_motion_h {
 struct Context : DriveContext {
   const Robot& robot = *parameter->robot;
@@ -193,9 +214,6 @@ struct Context : DriveContext {
   const Eigen::VectorXd before = planned[0];
 };
 }  // namespace offline_drive_wheel_motion_h
-namespace offline_stance_balance_region_h {
-using Context = StepContext;
-}
 namespace offline_stance_experience_h {
 struct Context : SearchContext {
   const bool found = true;
@@ -225,9 +243,14 @@ struct Context : StepContext {
   const std::unique_ptr<const StancePlanner> planner = make_stance_planner("guided");
 };
 }  // namespace offline_stance_improve_stances_h
-namespace offline_stance_stance_path_h {
+namespace offline_stance_judged_path_h {
 struct Context : SearchContext {
   const Judge judge{problem.robot->robot, world};
+  StancePath path = {.footings = {start}, .configurations = {q}};
+};
+}  // namespace offline_stance_judged_path_h
+namespace offline_stance_stance_path_h {
+struct Context : SearchContext {
   const Eigen::VectorXd& configuration = q;
 };
 }  // namespace offline_stance_stance_path_h
@@ -247,11 +270,6 @@ struct Context : SearchContext {
   StancePath path = {.footings = {start, without(start, 0)}, .configurations = {q, q}};
 };
 }  // namespace offline_stance_standing_wheels_h
-namespace offline_stance_torque_programme_h {
-struct Context : StepContext {
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(robot.tangent_size());
-};
-}  // namespace offline_stance_torque_programme_h
 namespace offline_stance_transition_ahead_h {
 struct Context : TransitionContext {
   BalanceRegions regions{robot->robot->total_mass()};
@@ -310,16 +328,6 @@ using Context = LiftedContext;
 namespace offline_timing_balance_rows_h {
 using Context = TimingContext;
 }
-namespace offline_timing_reach_programme_h {
-/// Three forces of at most one, along x, y and both.
-struct Context {
-  const Eigen::MatrixXd columns = (Eigen::MatrixXd(2, 3) << 1, 0, 1, 0, 1, 1).finished();
-  const Eigen::VectorXd within = Eigen::Vector2d(1e-6, 1e-6),
-                        inside = Eigen::Vector3d(0.2, 0.2, 0.2), target = Eigen::Vector2d(3.0, 0.0);
-  const ReachProgramme::Bounds bounds = {
-      .group = {0, 0, 0}, .lower = {0, 0, 0}, .upper = {1, 1, 1}, .most = {-1}};
-};
-}  // namespace offline_timing_reach_programme_h
 namespace offline_timing_effort_rows_h {
 /// The same robot, its base held.
 struct Context {
@@ -362,12 +370,15 @@ struct Context : StepContext {
 namespace offline_stance_stance_space_h {
 using Context = StepContext;
 }
-namespace offline_stance_transition_solver_h {
+namespace offline_stance_transition_problem_h {
 struct Context : TransitionContext {
   const Stance& larger = stance;
   const Eigen::VectorXd& home = q;
 };
-}  // namespace offline_stance_transition_solver_h
+}  // namespace offline_stance_transition_problem_h
+namespace offline_stance_transition_solver_h {
+using Context = offline_stance_transition_problem_h::Context;
+}
 namespace online_detour_search_h {
 /// A box on the way, after two metres.
 struct Context : DriveContext {
@@ -487,7 +498,7 @@ struct Context : StepContext {
   const std::shared_ptr<const WorldParameter> seen = std::make_shared<const WorldParameter>();
   const PostureProblem problem = {.stance = stance, .preferred = q};
   const PostureOptions options;
-  PostureSolver::Shapes shapes;
+  PostureShapes shapes;
   Context() {
     shapes.coarse_pairs.assign(robot->self_collision.pairs.size(), false);
     for (std::size_t link = 0; link < robot->robot->links().size(); ++link) {
@@ -497,6 +508,9 @@ struct Context : StepContext {
   }
 };
 }  // namespace posture_posture_graph_h
+namespace posture_posture_problem_h {
+using Context = StepContext;
+}
 namespace posture_posture_solver_h {
 struct Context : posture_contacts_file_h::Context {
   const RobotFiles files = shipped_robot("coman_plus").value();
@@ -517,6 +531,11 @@ struct Context {
   const Contact contact = step_problem().start.contacts[0];
 };
 }  // namespace scenario_contact_place_h
+namespace scenario_contact_task_h {
+struct Context {
+  const Stance &start = step_problem().start, &goal = step_problem().goals[0];
+};
+}  // namespace scenario_contact_task_h
 namespace scenario_contact_task_element_h {
 struct Context {
   const std::vector<EndEffector> effectors = one_step().end_effectors;

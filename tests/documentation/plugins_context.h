@@ -5,8 +5,8 @@
 #include <documentation/example_robots.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/plugins/configuration/frame_parameter.h>
+#include <locograph/plugins/configuration/stance_parameter.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
-#include <locograph/plugins/contact/stance_parameter.h>
 #include <locograph/plugins/robot_types.h>
 #include <locograph/plugins/time_step/vertex_time_step.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits_timed.h>
@@ -115,6 +115,11 @@ struct Context {
   std::vector<int> first_capsules;
 };
 }  // namespace configuration_self_collision_shapes_h
+namespace configuration_stance_parameter_h {
+struct Context : in_plugins::Context {
+  Context() { add_wheels({10, 11}); }
+};
+}  // namespace configuration_stance_parameter_h
 namespace contact_edge_contact_h {
 struct Context : in_plugins::Context {
   const std::shared_ptr<const RobotParameter>& robot = parameter;
@@ -122,11 +127,6 @@ struct Context : in_plugins::Context {
   const VertexId<VertexConfiguration> q = here;
 };
 }  // namespace contact_edge_contact_h
-namespace contact_stance_parameter_h {
-struct Context : in_plugins::Context {
-  Context() { add_wheels({10, 11}); }
-};
-}  // namespace contact_stance_parameter_h
 namespace frame_pose_edge_frame_pose_h {
 struct Context : in_plugins::Context {
   const Eigen::Matrix<double, 6, 1> weights = Eigen::Matrix<double, 6, 1>::Ones();

@@ -3,6 +3,7 @@
 #include <locograph/check/judge.h>
 #include <locograph/common/error.h>
 #include <locograph/planners/offline/stance/improve_stances.h>
+#include <locograph/planners/offline/stance/stance_planners.h>
 
 #include "common/sanitized.h"
 #include "planners/stance_tasks.h"

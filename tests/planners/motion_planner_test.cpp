@@ -5,6 +5,7 @@
 #include <locograph/common/error.h>
 #include <locograph/planners/offline/motion/motion_planner.h>
 #include <locograph/planners/offline/motion/segment_motion.h>
+#include <locograph/planners/offline/stance/stance_planners.h>
 #include <locograph/planners/offline/stance/stance_space.h>
 #include <locograph/robots/dynamics.h>
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <locograph/check/judge.h>
 #include <locograph/common/error.h>
-#include <locograph/planners/offline/stance/stance_planner.h>
+#include <locograph/planners/offline/stance/stance_planners.h>
 
 #include <atomic>
 #include <limits>

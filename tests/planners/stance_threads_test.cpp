@@ -1,6 +1,7 @@
 // Threads within one search for stances. scripts/test.sh runs this under ThreadSanitizer, too.
 #include <gtest/gtest.h>
 #include <locograph/common/error.h>
+#include <locograph/planners/offline/stance/stance_planners.h>
 #include <locograph/planners/offline/stance/transition_ahead.h>
 
 #include <atomic>

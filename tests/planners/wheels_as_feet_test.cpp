@@ -1,6 +1,7 @@
 // Wheels that stances are made of: where they may stand, and that they stand still.
 #include <gtest/gtest.h>
 #include <locograph/check/judge.h>
+#include <locograph/planners/offline/stance/stance_planners.h>
 #include <locograph/planners/offline/stance/standing_wheels.h>
 #include <locograph/robots/wheel.h>
 

@@ -1,9 +1,9 @@
 #include <locograph/common/skew.h>
+#include <locograph/types/bundle/bundle.h>
 #include <locograph/types/bundle/camera_bal.h>
 #include <locograph/types/bundle/camera_view.h>
 #include <locograph/types/bundle/inverse_depth.h>
 #include <locograph/types/bundle/pinhole.h>
-#include <locograph/types/standard_types.h>
 
 namespace locograph {
 template class TypedVertexPool<VertexCam>;

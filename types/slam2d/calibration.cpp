@@ -1,5 +1,4 @@
 #include <locograph/types/slam2d/calibration.h>
-#include <locograph/types/standard_types.h>
 
 namespace locograph {
 template class TypedVertexPool<VertexOdomDifferential>;

@@ -4,6 +4,7 @@
 ///
 /// The mount of a sensor is a VERTEX_SE2 like any other, shared by all edges of that sensor.
 
+#include <locograph/core/type_registry.h>
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/types/slam2d/edges.h>
 
@@ -96,5 +97,8 @@ extern template class TypedVertexPool<VertexOdomDifferential>;
 extern template class TypedEdgePool<EdgeSE2XYCalib>;
 extern template class TypedEdgePool<EdgeSE2Calib>;
 extern template class TypedEdgePool<EdgeSE2OdomDifferentialCalib>;
+
+/// Everything above.
+void add_slam2d_calibration_types(TypeRegistry& types);
 
 }  // namespace locograph

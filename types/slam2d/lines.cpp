@@ -1,5 +1,4 @@
 #include <locograph/types/slam2d/lines.h>
-#include <locograph/types/standard_types.h>
 
 namespace locograph {
 template class TypedVertexPool<VertexLine2D>;

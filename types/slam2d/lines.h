@@ -5,6 +5,7 @@
 /// points. Seen from a pose with heading φ at t, a line has the angle θ − φ and the distance ρ −
 /// n·t.
 
+#include <locograph/core/type_registry.h>
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/types/slam2d/vertices.h>
 
@@ -197,5 +198,8 @@ extern template class TypedEdgePool<EdgeLine2DPointXY>;
 extern template class TypedEdgePool<EdgeSE2Segment2D>;
 extern template class TypedEdgePool<EdgeSE2Segment2DLine>;
 extern template class TypedEdgePool<EdgeSE2Segment2DPointLine>;
+
+/// Everything above.
+void add_slam2d_line_types(TypeRegistry& types);
 
 }  // namespace locograph

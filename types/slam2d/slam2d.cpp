@@ -1,6 +1,8 @@
+#include <locograph/types/slam2d/calibration.h>
 #include <locograph/types/slam2d/edges.h>
+#include <locograph/types/slam2d/lines.h>
 #include <locograph/types/slam2d/point_sets.h>
-#include <locograph/types/standard_types.h>
+#include <locograph/types/slam2d/slam2d.h>
 
 namespace locograph {
 template class TypedVertexPool<VertexSE2>;

@@ -12,6 +12,7 @@
 /// the file holds, and errors are written accordingly.
 
 #include <locograph/core/parameters.h>
+#include <locograph/core/type_registry.h>
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/types/slam3d/vertices.h>
 
@@ -115,5 +116,8 @@ extern template class TypedVertexPool<VertexSE3Expmap>;
 extern template class TypedEdgePool<EdgeSE3Expmap>;
 extern template class TypedEdgePool<EdgeProjectXYZ2UV>;
 extern template class TypedEdgePool<EdgeProjectXYZ2UVU>;
+
+/// Everything above.
+void add_slam3d_expmap_types(TypeRegistry& types);
 
 }  // namespace locograph

@@ -1,6 +1,5 @@
 #include <locograph/types/slam3d/parameters.h>
 #include <locograph/types/slam3d/planes_and_lines.h>
-#include <locograph/types/standard_types.h>
 
 namespace locograph {
 template class TypedVertexPool<VertexPlane>;

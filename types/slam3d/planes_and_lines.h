@@ -10,6 +10,7 @@
 /// its points p. Tangents and errors are those of g2o, which fix no more than their first order
 /// around zero; here both are smooth also where the normal is vertical.
 
+#include <locograph/core/type_registry.h>
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/types/slam3d/vertices.h>
 
@@ -288,5 +289,8 @@ extern template class TypedEdgePool<EdgeSE3Plane>;
 extern template class TypedEdgePool<EdgeSE3PlaneCalib>;
 extern template class TypedEdgePool<EdgePlane>;
 extern template class TypedEdgePool<EdgeSE3Line3D>;
+
+/// Everything above.
+void add_slam3d_plane_and_line_types(TypeRegistry& types);
 
 }  // namespace locograph

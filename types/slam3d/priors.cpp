@@ -1,6 +1,5 @@
 #include <locograph/common/skew.h>
 #include <locograph/types/slam3d/priors.h>
-#include <locograph/types/standard_types.h>
 
 namespace locograph {
 template class TypedEdgePool<EdgeSE3Prior>;

@@ -5,6 +5,7 @@
 ///     gravity.direction = -Eigen::Vector3d::UnitZ();    // in the world
 ///     gravity.measurement = down_in_the_sensor;
 
+#include <locograph/core/type_registry.h>
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/types/slam3d/edges.h>
 
@@ -126,5 +127,8 @@ extern template class TypedEdgePool<EdgeSE3PriorXYZ>;
 extern template class TypedEdgePool<EdgeSE3PriorXY>;
 extern template class TypedEdgePool<EdgeSE3PriorVec>;
 extern template class TypedEdgePool<EdgePointXYZPrior>;
+
+/// Everything above.
+void add_slam3d_prior_types(TypeRegistry& types);
 
 }  // namespace locograph

@@ -1,6 +1,9 @@
 #include <locograph/common/skew.h>
 #include <locograph/types/slam3d/edges.h>
-#include <locograph/types/standard_types.h>
+#include <locograph/types/slam3d/expmap.h>
+#include <locograph/types/slam3d/planes_and_lines.h>
+#include <locograph/types/slam3d/priors.h>
+#include <locograph/types/slam3d/slam3d.h>
 
 namespace locograph {
 template class TypedVertexPool<VertexSE3>;

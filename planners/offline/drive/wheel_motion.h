@@ -5,7 +5,7 @@
 ///     wheels.steer(q, 0, {1.0, 0.2, 0.0});  // the stance's first wheel heads along (1, 0.2)
 ///     wheels.roll(before, q);               // every wheel turns as far as its centre has come
 
-#include <locograph/plugins/contact/stance_parameter.h>
+#include <locograph/plugins/configuration/stance_parameter.h>
 #include <locograph/robots/robot_state.h>
 
 #include <Eigen/Core>

@@ -8,6 +8,8 @@
 
 #include <locograph/planners/offline/motion/segment_planner.h>
 
+#include <memory>
+
 namespace locograph {
 
 std::unique_ptr<SegmentPlanner> make_interpolation();

@@ -2,7 +2,7 @@
 #include <locograph/planners/offline/stance/stance_graph.h>
 #include <locograph/planners/plan/plan.h>
 #include <locograph/planners/plan/plan_edges.h>
-#include <locograph/plugins/contact/segment_parameter.h>
+#include <locograph/plugins/configuration/segment_parameter.h>
 
 namespace locograph {
 

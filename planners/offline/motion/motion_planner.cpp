@@ -1,6 +1,7 @@
 #include <locograph/check/judge.h>
 #include <locograph/planners/offline/motion/motion_planner.h>
 #include <locograph/planners/offline/motion/segment_motion.h>
+#include <locograph/planners/offline/stance/stance_planners.h>
 #include <locograph/planners/offline/stance/stance_space.h>
 #include <locograph/planners/offline/stance/standing_wheels.h>
 

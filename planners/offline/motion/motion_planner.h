@@ -12,6 +12,7 @@
 
 #include <locograph/check/check_report.h>
 #include <locograph/check/motion.h>
+#include <locograph/planners/offline/motion/motion_options.h>
 #include <locograph/planners/offline/stance/stance_planner.h>
 
 #include <optional>
@@ -19,17 +20,6 @@
 #include <vector>
 
 namespace locograph {
-
-struct MotionOptions {
-  std::string stance_planner = "guided";  ///< see stance_planner.h
-  /// Names of segment planners in the order in which they are tried; empty: all.
-  std::vector<std::string> segment_planners = {};
-  double step_s = 0.02;       ///< between configurations of the plan, at most
-  double smoothing_s = 0.04;  ///< of accelerations, see path_timing.h
-  double lift_off_m = 0.035;  ///< along normals, before and after a swing
-  /// Where the scenario has no limit of accelerations [rad/s^2, m/s^2 of prismatic joints].
-  double joint_acceleration_rad_s2 = 10.0;
-};
 
 /// What became of one stance of the plan.
 struct SegmentRecord {

@@ -9,6 +9,8 @@
 
 #include <locograph/planners/offline/motion/segment_planner.h>
 
+#include <memory>
+
 namespace locograph {
 
 /// Two trees, one from each end. Half of what they grow towards are configurations that are valid

@@ -1,5 +1,6 @@
 #include <locograph/check/motion_curve.h>
 #include <locograph/planners/offline/motion/segment_motion.h>
+#include <locograph/planners/offline/motion/segment_planners.h>
 #include <locograph/planners/offline/motion/swing.h>
 #include <locograph/planners/offline/timing/balance_rows.h>
 #include <locograph/planners/plan/slope_limits.h>

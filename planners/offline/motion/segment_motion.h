@@ -10,8 +10,10 @@
 /// evenly, and slowed down by what the curve through the samples (check/motion_curve.h) is faster
 /// than limits allow. The outcome depends on the arguments alone. One for each thread.
 
-#include <locograph/planners/offline/motion/motion_planner.h>
+#include <locograph/check/motion.h>
+#include <locograph/planners/offline/motion/motion_options.h>
 #include <locograph/planners/offline/motion/segment_planner.h>
+#include <locograph/planners/offline/stance/stance_planner.h>
 #include <locograph/planners/offline/timing/path_timing.h>
 
 #include <memory>

@@ -4,25 +4,19 @@
 ///
 ///     SegmentSpace space(problem.robot, problem.world);           // segment_space.h
 ///     space.set_segment(segment);
-///     const SegmentPath path = make_segment_planner("interpolation")->plan(space, {.seed = 7});
+///     const auto planner = make_segment_planner("interpolation");  // segment_planners.h
+///     const SegmentPath path = planner->plan(space, {.seed = 7});
 ///     if (!path.found) std::cerr << path.reason;
 ///
 /// The second offline stage of Rossini et al., "Loco-Manipulation Planning for Legged Robots:
 /// Offline and Online Strategies": a path for each stance, between the configurations in which it
-/// begins and ends. Planners are chosen by name, the cheapest first:
-///
-///   interpolation    configurations half-way, brought back to the contacts, again and again
-///   optimisation     a graph of all configurations between the ends, by the graph optimiser
-///   rrt_connect      OMPL's RRT-Connect on the manifold of closed contacts
-///   atlas_rrt_star   OMPL's RRT* on an atlas of that manifold (Jaillet and Porta, "Asymptotically-
-///                    optimal path planning on manifolds", RSS 2012), as in the paper
+/// begins and ends. Planners are chosen by name (segment_planners.h).
 
 #include <locograph/common/deadline.h>
 #include <locograph/planners/offline/motion/segment_space.h>
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -55,10 +49,5 @@ class SegmentPlanner {
   virtual const std::string& name() const = 0;
   virtual SegmentPath plan(SegmentSpace& space, const SegmentOptions& options) const = 0;
 };
-
-/// In the order in which they are tried.
-const std::vector<std::string>& segment_planner_names();
-/// Throws Error for an unknown name, with those that are known.
-std::unique_ptr<SegmentPlanner> make_segment_planner(const std::string& name);
 
 }  // namespace locograph

@@ -10,8 +10,8 @@
 /// move along the contact's normal; from() and to() are what lies between, so that planners that
 /// draw at random need not find their way out of a surface that is touched.
 
-#include <locograph/planners/offline/stance/balance_region.h>
-#include <locograph/planners/offline/stance/torque_programme.h>
+#include <locograph/planners/balance/balance_region.h>
+#include <locograph/planners/balance/torque_programme.h>
 #include <locograph/planners/offline/stance/transition_rows.h>
 #include <locograph/planners/offline/stance/transition_solver.h>
 

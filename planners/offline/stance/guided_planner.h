@@ -1,5 +1,5 @@
 #pragma once
-/// The planner "guided": see stance_planner.h.
+/// The planner "guided": see stance_planners.h.
 
 #include <locograph/planners/offline/stance/stance_planner.h>
 

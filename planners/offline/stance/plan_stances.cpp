@@ -1,4 +1,4 @@
-#include <locograph/common/check_option.h>
+#include <locograph/planners/offline/stance/judged_path.h>
 #include <locograph/planners/offline/stance/plan_stances.h>
 #include <locograph/planners/offline/stance/stance_tree.h>
 
@@ -62,22 +62,6 @@ std::size_t not_accepted(StanceSpace& space, const StancePlannerOptions& options
 
 }  // namespace
 
-Motion stances_motion(std::vector<Stance> stances, std::vector<Eigen::VectorXd> configurations) {
-  Motion motion;
-  motion.stances_only = true;
-  motion.stances = std::move(stances);
-  motion.configurations = std::move(configurations);
-  for (std::size_t i = 0; i < motion.configurations.size(); ++i) {
-    motion.time_s.push_back(static_cast<double>(i));
-    motion.stance_from.push_back(static_cast<int>(i));
-  }
-  return motion;
-}
-
-Motion stances_motion(const StancePlan& plan) {
-  return stances_motion(plan.stances, plan.configurations);
-}
-
 void note_best(StancePlan& plan, const StanceSpace& space, const Footing& footing,
                const Footing& goal) {
   int reached = 0;
@@ -87,13 +71,6 @@ void note_best(StancePlan& plan, const StanceSpace& space, const Footing& footin
   if (reached <= plan.best_contacts) return;
   plan.best_contacts = reached;
   plan.best = space.stance(footing);
-}
-
-void StancePlannerOptions::validate() const {
-  check_option(grid_m >= 1e-3 && grid_m <= 10.0, "grid_m", "0.001 to 10 m");
-  check_option(reach > 0.0 && reach <= 2.0, "reach", "above 0, up to 2");
-  check_option(threads >= 1, "threads", "1 or more");
-  check_option(max_transitions >= 0, "max_transitions", "0 or more");
 }
 
 StancePlan plan_stances(const StanceProblem& problem, const StancePlannerOptions& options,

@@ -1,13 +1,12 @@
 #pragma once
-/// A way through stances as planners find it, and what they all do with it: shorten it, have it
-/// judged, mend what the judge refuses, and tell it.
+/// A way through stances as planners find it, and what they all do with it: shorten it, and tell
+/// it.
 ///
 ///     StancePath path;
 ///     path.append(footing, configuration);
 ///     shorten(space, path, 0);
-///     CheckReport report = judge_path(space, judge, path).report;
+///     const Motion motion = path_motion(space, path);
 
-#include <locograph/check/judge.h>
 #include <locograph/planners/offline/stance/stance_space.h>
 
 #include <vector>
@@ -28,14 +27,6 @@ struct StancePath {
 /// Leaves out moves that checked transitions make unnecessary. The footings up to number `first`
 /// stay, and so does the last one. Returns how many stances fewer.
 int shorten(StanceSpace& space, StancePath& path, std::size_t first);
-
-/// Judges the whole path; transitions that the judge refuses are solved again with wider margins.
-/// Without success, `refused` is the first change that cannot be mended, and is forbidden.
-struct JudgedPath {
-  CheckReport report;
-  std::size_t refused = 0;  ///< 0: none
-};
-JudgedPath judge_path(StanceSpace& space, const Judge& judge, StancePath& path);
 
 /// See stances_motion.
 Motion path_motion(const StanceSpace& space, const StancePath& path);

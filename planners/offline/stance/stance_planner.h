@@ -3,18 +3,13 @@
 /// less from each to the next, and a configuration for each change that is feasible for both.
 ///
 ///     const StanceProblem problem = stance_problem(scenario).problem;
-///     const auto planner = make_stance_planner("guided");
+///     const auto planner = make_stance_planner("guided");         // stance_planners.h
 ///     const StancePlan plan = planner->plan(problem, {.seed = 7});
 ///     if (!plan.success) std::cerr << plan.reason;
 ///
 /// The first offline stage of Rossini et al., "Loco-Manipulation Planning for Legged Robots:
 /// Offline and Online Strategies", whose S_σ and S_q it gives; wrenches are those of the judge's
-/// certificates. Planners are chosen by name:
-///
-///   guided   best-first search over moves of end effectors, guided by the distances to the goal
-///   and
-///            by what has failed, begun anew while it does not arrive, then shortened; the default
-///   rrt      the published one: a random tree in contact space, on the same transitions
+/// certificates. Planners are chosen by name (stance_planners.h).
 ///
 /// What is found is judged (check/judge.h): success means judged feasible. Deterministic for a seed
 /// but for the deadline, whatever the number of threads.
@@ -136,10 +131,5 @@ class StancePlanner {
   virtual StancePlan plan(const StanceProblem& problem,
                           const StancePlannerOptions& options) const = 0;
 };
-
-/// "guided", "rrt"
-std::vector<std::string> stance_planner_names();
-/// Throws Error for another name.
-std::unique_ptr<const StancePlanner> make_stance_planner(const std::string& name);
 
 }  // namespace locograph

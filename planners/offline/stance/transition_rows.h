@@ -11,8 +11,9 @@
 /// others are kept away by the spheres that cover them.
 
 #include <locograph/planners/offline/stance/transition_places.h>
-#include <locograph/planners/offline/stance/transition_solver.h>
+#include <locograph/planners/offline/stance/transition_problem.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
+#include <locograph/robots/contact_closure.h>
 #include <locograph/world/convex_shape.h>
 #include <locograph/world/distance_field.h>
 

@@ -4,7 +4,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -27,13 +26,6 @@ constexpr int kMostDamped = 5;
 constexpr double kExactlyClosed = 1e-8;
 
 }  // namespace
-
-const std::string& transition_failure_name(TransitionFailure failure) {
-  static const std::array<std::string, 8> names = {"none",           "contact", "joint limit",
-                                                   "self-collision", "surface", "obstacle",
-                                                   "balance",        "torque"};
-  return names[static_cast<std::size_t>(failure)];
-}
 
 struct TransitionSolver::Parts {
   TransitionRows rows;

@@ -1,12 +1,12 @@
+#include <locograph/common/check_option.h>
 #include <locograph/common/error.h>
+#include <locograph/planners/balance/reach_programme.h>
 #include <locograph/planners/offline/timing/balance_rows.h>
-#include <locograph/planners/offline/timing/reach_programme.h>
 #include <locograph/planners/offline/timing/speed_polygon.h>
 #include <locograph/robots/dynamics.h>
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 namespace locograph {
 namespace {
@@ -342,15 +342,17 @@ class BalanceRows::Work {
   std::vector<Eigen::VectorXd> halfspaces_;  // y of length 1
 };
 
+void BalanceRowsOptions::validate() const {
+  check_option(margin >= 0.0 && margin < 1.0, "margin", "a part in [0, 1)");
+  check_option(effort_scale >= 0.0, "effort_scale", "0 or more");
+  check_option(pieces >= 1, "pieces", "1 or more");
+  check_option(looks >= 1, "looks", "1 or more");
+}
+
 BalanceRows::BalanceRows(const Robot& robot, std::span<const BearingContact> contacts,
                          const BalanceRowsOptions& options) {
   if (!robot.floating_base()) throw Error("balance of a fixed base", "a floating base");
-  if (!(options.margin >= 0.0 && options.margin < 1.0)) {
-    throw Error("a margin of balance of " + std::to_string(options.margin), "0 to less than 1");
-  }
-  if (!(options.effort_scale >= 0.0) || options.pieces < 1 || options.looks < 1) {
-    throw Error("rows of balance with an effort scale below 0, no pieces or no looks", "some");
-  }
+  options.validate();
   if (std::ranges::none_of(contacts, [](const auto& one) { return one.contact.bears_load; })) {
     throw Error("balance without a contact that bears", "one at least");
   }

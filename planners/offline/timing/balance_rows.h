@@ -24,7 +24,7 @@
 ///
 /// Thread-safety: one thread at a time. The robot must outlive it, not what along() returns.
 
-#include <locograph/planners/offline/stance/balance_region.h>
+#include <locograph/planners/balance/balance_region.h>
 #include <locograph/planners/offline/timing/speed_profile.h>
 
 #include <memory>
@@ -37,6 +37,9 @@ struct BalanceRowsOptions {
   double effort_scale = 0.0;  ///< of the URDF's efforts, which limit torques; 0: no limit
   int pieces = 16;            ///< of a path, at least; between two knots there is one at least
   int looks = 16;             ///< places on a path where half-spaces are looked for, about
+
+  /// Throws Error naming the option that is out of range.
+  void validate() const;
 };
 
 class BalanceRows {

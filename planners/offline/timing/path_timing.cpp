@@ -1,3 +1,4 @@
+#include <locograph/common/check_option.h>
 #include <locograph/common/error.h>
 #include <locograph/planners/offline/timing/path_timing.h>
 
@@ -52,9 +53,7 @@ PathTiming::PathTiming(const Robot& robot, std::vector<Eigen::VectorXd> waypoint
 PathTiming::PathTiming(PathSpline path, const TimingLimits& limits, const TimingOptions& options,
                        const TimingRowsAt& rows)
     : path_(std::move(path)), smoothing_s_(options.smoothing_s) {
-  if (!(smoothing_s_ >= 0.0) || std::isinf(smoothing_s_)) {
-    throw Error("smoothing over " + std::to_string(smoothing_s_) + " s", "0 or more");
-  }
+  check_option(smoothing_s_ >= 0.0 && !std::isinf(smoothing_s_), "smoothing_s", "0 or more");
   std::optional<SpeedProfile> profile =
       fastest_profile(path_, limits, {options.intervals, options.intervals_per_step}, rows);
   if (!profile) return;

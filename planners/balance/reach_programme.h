@@ -8,8 +8,9 @@
 /// which C f is within a box about m_0 + t (m - m_0). The dual variables of C are the half-space.
 /// Thread-safety: one thread at a time.
 
+#include <locograph/planners/balance/linear_programme.h>
+
 #include <Eigen/Core>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -26,15 +27,14 @@ class ReachProgramme {
   /// columns: what each force does. within: half the size of the box, row by row. inside: f_0.
   ReachProgramme(const Eigen::MatrixXd& columns, const Eigen::VectorXd& within,
                  const Eigen::VectorXd& inside, const Bounds& bounds);
-  ~ReachProgramme();
 
   /// y of length 1 with y . m larger than forces allow; nothing when they reach m.
   std::optional<Eigen::VectorXd> halfspace_before(const Eigen::VectorXd& target);
 
  private:
-  struct Model;
-  std::unique_ptr<Model> model_;
   Eigen::VectorXd middle_;
+  int way_;  ///< the column of t
+  LinearProgramme programme_{LinearProgramme::Perturbation::kNone};
 };
 
 }  // namespace locograph

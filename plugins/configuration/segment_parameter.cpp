@@ -1,6 +1,6 @@
 #include <locograph/common/ranges.h>
-#include <locograph/plugins/contact/segment_parameter.h>
-#include <locograph/plugins/contact/stance_parameter.h>
+#include <locograph/plugins/configuration/segment_parameter.h>
+#include <locograph/plugins/configuration/stance_parameter.h>
 
 #include <cmath>
 

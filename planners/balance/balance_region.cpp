@@ -1,7 +1,7 @@
-#include <locograph/planners/offline/stance/balance_region.h>
+#include <locograph/planners/balance/balance_region.h>
+#include <locograph/planners/balance/linear_programme.h>
 #include <locograph/robots/statics.h>
 
-#include <ClpSimplex.hpp>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,8 +14,6 @@ constexpr int kFacets = 8;
 /// Corners that are nearer to each other, or less far out, are left out.
 constexpr double kSame_m = 1e-4;
 constexpr int kMostProgrammes = 40;
-
-constexpr double kNoBound = std::numeric_limits<double>::max();
 
 using Wrench = Eigen::Matrix<double, 6, 1>;
 
@@ -56,9 +54,9 @@ std::vector<BearingRay> grasp_rays(const Contact& contact, double part, double w
 
 /// The linear programme: forces at the contacts in parts of the weight, then x and y of the centre
 /// of mass about `origin`.
-class Programme {
+class CentreOfMassProgramme {
  public:
-  Programme(double weight_N, std::span<const BearingContact> contacts, double margin)
+  CentreOfMassProgramme(double weight_N, std::span<const BearingContact> contacts, double margin)
       : weight_N_(weight_N), part_(1.0 - margin) {
     for (const BearingContact& bearing : contacts) origin_ += bearing.contact.position;
     origin_ /= static_cast<double>(contacts.size());
@@ -70,12 +68,12 @@ class Programme {
 
   /// The furthest point along a direction; false where nothing balances.
   bool furthest(const Eigen::Vector2d& direction, Eigen::Vector2d& point) {
-    const int x = model_.numberColumns() - 2;
-    model_.objective()[x] = -direction.x();
-    model_.objective()[x + 1] = -direction.y();
-    model_.primal();  // from the last direction's corner
-    if (!model_.isProvenOptimal()) return false;
-    const double* solution = model_.primalColumnSolution();
+    const int x = static_cast<int>(columns_.size());
+    programme_.set_cost(x, -direction.x());
+    programme_.set_cost(x + 1, -direction.y());
+    // From the last direction's corner.
+    if (programme_.primal() != LinearAnswer::kOptimal) return false;
+    const double* solution = programme_.solution().data();
     point = origin_.head<2>() + Eigen::Vector2d(solution[x], solution[x + 1]);
     return point.allFinite();
   }
@@ -103,43 +101,23 @@ class Programme {
 
   void build() {
     const int rows = 6 + limits_;
-    std::vector<CoinBigIndex> starts = {0};
-    std::vector<int> indices;
-    std::vector<double> elements, lower, upper;
-    const auto end_column = [&](double from, double to) {
-      starts.push_back(static_cast<CoinBigIndex>(indices.size()));
-      lower.push_back(from);
-      upper.push_back(to);
-    };
-    const auto put = [&](int row, double value) {
-      if (value == 0.0) return;
-      indices.push_back(row);
-      elements.push_back(value);
-    };
+    LinearColumns columns;
     for (const Column& column : columns_) {
-      for (int i = 0; i < 6; ++i) put(i, column.wrench[i]);
-      if (column.limit >= 0) put(6 + column.limit, 1.0);
-      end_column(column.lower, column.upper);
+      for (int i = 0; i < 6; ++i) columns.put(i, column.wrench[i]);
+      if (column.limit >= 0) columns.put(6 + column.limit, 1.0);
+      columns.end(column.lower, column.upper);
     }
     // The weight at (x, y): moment (x, y, .) x (0, 0, -1) = (-y, x, 0).
-    put(4, 1.0);
-    end_column(-kNoBound, kNoBound);
-    put(3, -1.0);
-    end_column(-kNoBound, kNoBound);
+    columns.put(4, 1.0);
+    columns.end(-kNoBound, kNoBound);
+    columns.put(3, -1.0);
+    columns.end(-kNoBound, kNoBound);
     std::vector<double> row_lower(static_cast<std::size_t>(rows), -kNoBound), row_upper;
     std::fill_n(row_lower.begin(), 6, 0.0);
     row_upper.assign(6, 0.0);
     row_lower[2] = row_upper[2] = 1.0;
     row_upper.insert(row_upper.end(), most_.begin(), most_.end());
-    const std::vector<double> costs(lower.size(), 0.0);
-    model_.setLogLevel(0);
-    model_.scaling(0);            // all is of the order of one
-    model_.setPerturbation(102);  // none: so small a programme does not stall
-    model_.setPrimalTolerance(1e-9);
-    model_.setDualTolerance(1e-9);
-    model_.loadProblem(static_cast<int>(lower.size()), rows, starts.data(), indices.data(),
-                       elements.data(), lower.data(), upper.data(), costs.data(), row_lower.data(),
-                       row_upper.data());
+    programme_.load(columns, row_lower, row_upper);
   }
 
   double weight_N_, part_;
@@ -147,12 +125,14 @@ class Programme {
   std::vector<Column> columns_;
   std::vector<double> most_;
   int limits_ = 0;
-  ClpSimplex model_;
+  /// So small a programme does not stall without perturbation.
+  LinearProgramme programme_{LinearProgramme::Perturbation::kNone};
 };
 
 /// Appends the corners between two, counter-clockwise.
-void corners_between(Programme& programme, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
-                     int& programmes, std::vector<Eigen::Vector2d>& corners) {
+void corners_between(CentreOfMassProgramme& programme, const Eigen::Vector2d& from,
+                     const Eigen::Vector2d& to, int& programmes,
+                     std::vector<Eigen::Vector2d>& corners) {
   const Eigen::Vector2d along = to - from;
   if (along.norm() < kSame_m || ++programmes > kMostProgrammes) return;
   const Eigen::Vector2d out = Eigen::Vector2d(along.y(), -along.x()).normalized();
@@ -164,7 +144,7 @@ void corners_between(Programme& programme, const Eigen::Vector2d& from, const Ei
 }
 
 /// Counter-clockwise; fewer than three where there is no area.
-std::vector<Eigen::Vector2d> corners_of(Programme& programme) {
+std::vector<Eigen::Vector2d> corners_of(CentreOfMassProgramme& programme) {
   Eigen::Vector2d left, right;
   if (!programme.furthest(-Eigen::Vector2d::UnitX(), left) ||
       !programme.furthest(Eigen::Vector2d::UnitX(), right)) {
@@ -222,7 +202,7 @@ BalanceRegion balance_region(double mass_kg, std::span<const BearingContact> con
                    [](const BearingContact& bearing) { return bearing.contact.bears_load; })) {
     return region;
   }
-  Programme programme(mass_kg * standard_gravity().norm(), contacts, margin);
+  CentreOfMassProgramme programme(mass_kg * standard_gravity().norm(), contacts, margin);
   const std::vector<Eigen::Vector2d> corners = corners_of(programme);
   if (corners.size() < 3) return region;
   for (std::size_t i = 0; i < corners.size(); ++i) {

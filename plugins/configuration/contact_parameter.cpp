@@ -1,6 +1,6 @@
 #include <locograph/common/ranges.h>
+#include <locograph/plugins/configuration/contact_parameter.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
-#include <locograph/plugins/contact/contact_parameter.h>
 
 #include <cmath>
 #include <cstdio>

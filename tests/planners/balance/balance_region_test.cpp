@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <locograph/check/balance_certificate.h>
 #include <locograph/common/uniform.h>
-#include <locograph/planners/offline/stance/balance_region.h>
+#include <locograph/planners/balance/balance_region.h>
 
 #include <cmath>
 #include <limits>

@@ -3,7 +3,7 @@
 #include <locograph/planners/offline/motion/interpolation.h>
 #include <locograph/planners/offline/motion/ompl_planners.h>
 #include <locograph/planners/offline/motion/optimisation.h>
-#include <locograph/planners/offline/motion/segment_planner.h>
+#include <locograph/planners/offline/motion/segment_planners.h>
 
 #include <array>
 

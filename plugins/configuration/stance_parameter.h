@@ -9,7 +9,7 @@
 /// The contacts are PARAMS_CONTACTs of one robot that stand before it in the file. A stance is held
 /// from every VERTEX_CONFIGURATION that names it to the next one in time.
 
-#include <locograph/plugins/contact/contact_parameter.h>
+#include <locograph/plugins/configuration/contact_parameter.h>
 #include <locograph/robots/wheel.h>
 
 #include <memory>

@@ -10,12 +10,12 @@
 /// limit at every joint. By the envelope theorem its gradient is that of the torques with the
 /// optimal forces held, weighted by the dual variables.
 
-#include <locograph/planners/offline/stance/balance_region.h>
+#include <locograph/planners/balance/balance_region.h>
+#include <locograph/planners/balance/linear_programme.h>
 #include <locograph/robots/robot_state.h>
 #include <locograph/robots/statics.h>
 
 #include <Eigen/Core>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -26,8 +26,6 @@ class TorqueProgramme {
   /// margin: the part of friction, areas and limits of force that is left unused.
   TorqueProgramme(const Robot& robot, std::span<const BearingContact> contacts, double effort_scale,
                   double margin);
-  ~TorqueProgramme();
-  TorqueProgramme(TorqueProgramme&&) noexcept;
 
   /// gradient: tangent_size numbers, overwritten. Infinity, and no gradient, where nothing
   /// balances.
@@ -36,8 +34,6 @@ class TorqueProgramme {
   int heaviest_joint() const { return heaviest_; }
 
  private:
-  struct Model;
-
   /// One ray of a pyramid, or one component of a grasp: force and moment in the world [parts of the
   /// robot's weight].
   struct Ray {
@@ -58,7 +54,7 @@ class TorqueProgramme {
   Eigen::MatrixXd columns_;
   Eigen::VectorXd gravity_;
   Eigen::MatrixXd derivative_;
-  std::unique_ptr<Model> model_;
+  LinearProgramme programme_{LinearProgramme::Perturbation::kAutomatic};
   int heaviest_ = -1;
 };
 

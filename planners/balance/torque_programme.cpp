@@ -1,19 +1,9 @@
-#include <locograph/planners/offline/stance/torque_programme.h>
+#include <locograph/planners/balance/torque_programme.h>
 
-#include <ClpSimplex.hpp>
 #include <cmath>
 #include <limits>
 
 namespace locograph {
-namespace {
-
-constexpr double kUnlimited = std::numeric_limits<double>::max();
-
-}  // namespace
-
-struct TorqueProgramme::Model {
-  ClpSimplex simplex;
-};
 
 TorqueProgramme::TorqueProgramme(const Robot& robot, std::span<const BearingContact> contacts,
                                  double effort_scale, double margin)
@@ -21,21 +11,13 @@ TorqueProgramme::TorqueProgramme(const Robot& robot, std::span<const BearingCont
       weight_N_(robot.total_mass() * standard_gravity().norm()),
       effort_scale_(effort_scale),
       gravity_(robot.tangent_size()),
-      derivative_(robot.tangent_size(), robot.tangent_size()),
-      model_(std::make_unique<Model>()) {
+      derivative_(robot.tangent_size(), robot.tangent_size()) {
   for (const BearingContact& bearing : contacts) add(bearing, margin);
   for (int i = 0; i < robot.active_joint_count(); ++i) {
     const double effort = robot.active_joint(i).max_effort;
     if (effort > 0.0 && std::isfinite(effort)) joints_.push_back(i);
   }
-  model_->simplex.setLogLevel(0);
-  model_->simplex.scaling(0);
-  model_->simplex.setPrimalTolerance(1e-9);
-  model_->simplex.setDualTolerance(1e-9);
 }
-
-TorqueProgramme::~TorqueProgramme() = default;
-TorqueProgramme::TorqueProgramme(TorqueProgramme&&) noexcept = default;
 
 void TorqueProgramme::add(const BearingContact& bearing, double margin) {
   const Contact& contact = bearing.contact;
@@ -72,37 +54,24 @@ double TorqueProgramme::solve(const RobotState& state, Eigen::VectorXd& gradient
     return effort_scale_ * robot_.active_joint(joints_[static_cast<std::size_t>(i)]).max_effort;
   };
   // Columns: the rays, then t.
-  std::vector<CoinBigIndex> starts = {0};
-  std::vector<int> indices;
-  std::vector<double> elements, lower, upper, costs;
-  const auto put = [&](int row, double value) {
-    if (value == 0.0) return;
-    indices.push_back(row);
-    elements.push_back(value);
-  };
-  const auto end_column = [&](double from, double to, double cost) {
-    starts.push_back(static_cast<CoinBigIndex>(indices.size()));
-    lower.push_back(from);
-    upper.push_back(to);
-    costs.push_back(cost);
-  };
+  LinearColumns columns;
   for (int r = 0; r < rays; ++r) {
     const Ray& ray = rays_[static_cast<std::size_t>(r)];
-    for (int i = 0; i < base; ++i) put(i, columns_(i, r) / weight_N_);
+    for (int i = 0; i < base; ++i) columns.put(i, columns_(i, r) / weight_N_);
     for (int i = 0; i < torques; ++i) {
       const double share = columns_(base + joints_[static_cast<std::size_t>(i)], r) / limit(i);
-      put(base + 2 * i, -share);
-      put(base + 2 * i + 1, share);
+      columns.put(base + 2 * i, -share);
+      columns.put(base + 2 * i + 1, share);
     }
     if (most_[static_cast<std::size_t>(ray.contact)] >= 0.0) {
-      put(base + 2 * torques + ray.contact, 1.0);
+      columns.put(base + 2 * torques + ray.contact, 1.0);
     }
-    end_column(ray.lower, ray.upper, 0.0);
+    columns.end(ray.lower, ray.upper);
   }
-  for (int i = 0; i < 2 * torques; ++i) put(base + i, -1.0);
-  end_column(0.0, kUnlimited, 1.0);
-  std::vector<double> row_lower(static_cast<std::size_t>(rows), -kUnlimited);
-  std::vector<double> row_upper(static_cast<std::size_t>(rows), kUnlimited);
+  for (int i = 0; i < 2 * torques; ++i) columns.put(base + i, -1.0);
+  columns.end(0.0, kNoBound, 1.0);
+  std::vector<double> row_lower(static_cast<std::size_t>(rows), -kNoBound);
+  std::vector<double> row_upper(static_cast<std::size_t>(rows), kNoBound);
   for (int i = 0; i < base; ++i) {
     const std::size_t k = static_cast<std::size_t>(i);
     row_lower[k] = row_upper[k] = gravity_[i] / weight_N_;
@@ -119,16 +88,13 @@ double TorqueProgramme::solve(const RobotState& state, Eigen::VectorXd& gradient
           most_[static_cast<std::size_t>(c)];
     }
   }
-  ClpSimplex& simplex = model_->simplex;
-  simplex.loadProblem(rays + 1, rows, starts.data(), indices.data(), elements.data(), lower.data(),
-                      upper.data(), costs.data(), row_lower.data(), row_upper.data());
-  simplex.allSlackBasis(true);
-  simplex.dual();
-  if (simplex.status() > 1) simplex.primal();
-  if (!simplex.isProvenOptimal()) return std::numeric_limits<double>::infinity();
+  programme_.load(columns, row_lower, row_upper);
+  LinearAnswer answer = programme_.dual();
+  if (answer == LinearAnswer::kUnsolved) answer = programme_.primal();
+  if (answer != LinearAnswer::kOptimal) return std::numeric_limits<double>::infinity();
 
-  const double* solution = simplex.primalColumnSolution();
-  const double* prices = simplex.dualRowSolution();
+  const double* solution = programme_.solution().data();
+  const double* prices = programme_.prices().data();
   std::vector<PointWrench> wrenches;
   for (int r = 0; r < rays; ++r) {
     if (solution[r] == 0.0) continue;
@@ -156,7 +122,7 @@ double TorqueProgramme::solve(const RobotState& state, Eigen::VectorXd& gradient
       heaviest_ = joint;
     }
   }
-  return simplex.objectiveValue();
+  return programme_.value();
 }
 
 }  // namespace locograph

@@ -1,5 +1,5 @@
 #include <locograph/common/ranges.h>
-#include <locograph/plugins/contact/stance_parameter.h>
+#include <locograph/plugins/configuration/stance_parameter.h>
 
 namespace locograph {
 

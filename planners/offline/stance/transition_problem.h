@@ -1,0 +1,61 @@
+#pragma once
+/// What is asked of a configuration between two stances, and what may be in its way.
+///
+///     const TransitionProblem problem{.closed = larger.contacts, .balance = &region_of_smaller,
+///                                     .start = q, .preferred = home};
+///     const std::string& name = transition_failure_name(TransitionFailure::kBalance);
+
+#include <locograph/planners/balance/balance_region.h>
+#include <locograph/planners/balance/torque_programme.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace locograph {
+
+struct TransitionOptions {
+  int max_iterations = 40;  ///< of each attempt
+  int patience = 12;        ///< iterations that have to bring the merit down by a tenth
+  int restarts = 0;
+  double joint_margin_rad = 2e-3;  ///< metres for prismatic joints
+  double self_margin_m = 4e-3;
+  double surface_margin_m = 8e-3;  ///< of links that do not touch, also to bars
+  double obstacle_margin_m = 0.01;
+  double balance_margin_m = 4e-3;  ///< of the centre of mass to the sides of the polygon
+  double torque_margin = 0.03;     ///< the part of efforts left unused
+
+  bool operator==(const TransitionOptions&) const = default;
+};
+
+struct TransitionProblem {
+  std::span<const Contact> closed;
+  const BalanceRegion* balance = nullptr;  ///< null: not asked for
+  TorqueProgramme* torques = nullptr;      ///< of the contacts that balance; null: not limited
+  Eigen::VectorXd start;
+  Eigen::VectorXd preferred;  ///< a configuration whose joints the posture tends to
+  std::uint64_t seed = 0;
+  /// The contacts of the smaller stance: links of others may touch, and not reach into what they
+  /// touch. Empty: those that are closed.
+  std::span<const Contact> held = {};
+  /// Contacts that are not closed, but whose links may be near what they touch: of what has just
+  /// been lifted or is about to come down. near_m: how far above it, at least.
+  std::span<const Contact> near = {};
+  double near_m = 0.0;
+};
+
+/// What was violated most where no posture was found.
+enum class TransitionFailure {
+  kNone,
+  kContact,
+  kJoint,
+  kSelf,
+  kSurface,
+  kObstacle,
+  kBalance,
+  kTorque
+};
+const std::string& transition_failure_name(TransitionFailure failure);
+
+}  // namespace locograph
