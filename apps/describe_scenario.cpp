@@ -23,7 +23,7 @@ Json effector_json(const EndEffector& effector) {
     json["half_y_m"] = effector.half_y_m;
   }
   if (effector.radius_m > 0.0) json["radius_m"] = effector.radius_m;
-  if (effector.kind == ContactKind::kRung) {
+  if (effector.kind == ContactKind::kGrasp) {
     json["max_moment_Nm"] = effector.max_moment_Nm;
   } else {
     json["friction"] = effector.friction;

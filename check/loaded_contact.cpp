@@ -25,7 +25,7 @@ LoadedContact loaded_contact(const RobotState& state, const Contact& given) {
   const int link = state.robot().link_index(effector.link);
   const Eigen::Isometry3d& pose = state.world_from_link(link);
   const bool fixed_in_link =
-      effector.kind == ContactKind::kSurface || effector.kind == ContactKind::kRung;
+      effector.kind == ContactKind::kSurface || effector.kind == ContactKind::kGrasp;
   LoadedContact contact{&given, &effector, link, {}, pose * effector.point};
   contact.axes = fixed_in_link ? pose.linear() * axes_in_link(effector) : axes_in_world(given);
   if (effector.kind == ContactKind::kPoint) {

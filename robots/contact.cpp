@@ -130,10 +130,10 @@ void require_sound_effector(const Robot& robot, const EndEffector& effector) {
     throw Error(name + " is at a place that is not finite", "finite numbers");
   }
   require_positive(effector, "force limit", effector.max_force_N);
-  if (effector.kind == ContactKind::kSurface || effector.kind == ContactKind::kRung) {
+  if (effector.kind == ContactKind::kSurface || effector.kind == ContactKind::kGrasp) {
     axes_in_link(effector);
   }
-  if (effector.kind == ContactKind::kRung) {
+  if (effector.kind == ContactKind::kGrasp) {
     require_not_negative(effector, "moment limit", effector.max_moment_Nm);
     return;
   }
@@ -173,7 +173,7 @@ void require_sound_contact(const Robot& robot, const Contact& contact) {
   if (!contact.position.allFinite()) {
     throw Error(name + " is at a place that is not finite", "finite numbers");
   }
-  if (contact.effector.kind == ContactKind::kRung && !contact.forward) {
+  if (contact.effector.kind == ContactKind::kGrasp && !contact.forward) {
     throw Error(name + " is a rung without forward", "a direction across the bar");
   }
   if (contact.locked && contact.effector.kind != ContactKind::kWheel) {

@@ -42,7 +42,7 @@
 
 namespace locograph {
 
-enum class ContactKind { kSurface, kPoint, kRung, kWheel };
+enum class ContactKind { kSurface, kPoint, kGrasp, kWheel };
 
 /// "surface", "point", "rung", "wheel"
 const std::string& contact_kind_name(ContactKind kind);

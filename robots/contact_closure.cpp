@@ -23,7 +23,7 @@ void with_orientation(ContactKind kind, bool free_yaw, const Eigen::Matrix3d& co
     if (free_yaw) return f(TiltError(contact, effector, kNormal));
     return f(OrientationError(contact, effector));
   }
-  if (kind == ContactKind::kRung) return f(TiltError(contact, effector, kBar));
+  if (kind == ContactKind::kGrasp) return f(TiltError(contact, effector, kBar));
 }
 
 /// √(1 − tilt²), never so small that its derivative is not finite.
@@ -40,7 +40,7 @@ ContactClosure::ContactClosure(const Robot& robot, const Contact& contact)
       place_(contact.position) {
   require_sound_contact(robot, contact);
   link_ = robot.link_index(contact.effector.link);
-  if (kind_ == ContactKind::kSurface || kind_ == ContactKind::kRung) {
+  if (kind_ == ContactKind::kSurface || kind_ == ContactKind::kGrasp) {
     link_from_axes_ = axes_in_link(contact.effector);
   } else if (kind_ == ContactKind::kPoint) {
     place_ += contact.effector.radius_m * axes_.col(2);
@@ -55,7 +55,7 @@ std::span<const int> ContactClosure::held() const {
       return std::span<const int>(kSurface).first(free_yaw_ ? 5 : 6);
     case ContactKind::kPoint:
       return std::span<const int>(kSurface).first(3);
-    case ContactKind::kRung:
+    case ContactKind::kGrasp:
       return kRung;
     case ContactKind::kWheel:
       break;

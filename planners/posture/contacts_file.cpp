@@ -47,12 +47,12 @@ class ContactsReader {
     const ContactKind kind = read_contact_kind(xml_, element);
     std::set<std::string> allowed = effector_attributes(kind);
     allowed.insert({"kind", "position", "normal", "forward", "load"});
-    if (kind != ContactKind::kRung) allowed.insert("mu");
+    if (kind != ContactKind::kGrasp) allowed.insert("mu");
     xml_.allow(element, allowed, {});
 
     Contact contact;
     contact.effector = read_effector(xml_, element, kind);
-    if (kind != ContactKind::kRung) {
+    if (kind != ContactKind::kGrasp) {
       contact.effector.friction = read_positive(xml_, element, "mu", ranges::kFriction);
     }
     const int before = of_link_[contact.effector.link]++;

@@ -68,7 +68,7 @@ double gap_to_bar_m(const Bar& bar, const Contact& contact) {
       return gap_of_point(seen, bar.radius_m, normal);
     case ContactKind::kSurface:
       return gap_of_sole(seen, bar.radius_m, normal, contact.effector);
-    case ContactKind::kRung:
+    case ContactKind::kGrasp:
       return gap_of_grasp(seen, normal.cross(contact.forward->stableNormalized()));
     case ContactKind::kWheel:
       break;

@@ -19,7 +19,7 @@ Eigen::Vector3d nearest_point(const Surface& surface, const Eigen::Vector3d& loc
 }
 
 bool lies_on(const Surface& surface, const Contact& contact) {
-  if (contact.effector.kind == ContactKind::kRung) return false;
+  if (contact.effector.kind == ContactKind::kGrasp) return false;
   const Eigen::Isometry3d& pose = surface.world_from_surface;
   if (!(pose.linear().col(2).dot(contact.normal) > 0.0)) return false;  // cheap
   if (angle_between(pose.linear().col(2), contact.normal) > limits::kClosed_rad) return false;

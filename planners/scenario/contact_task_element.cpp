@@ -106,7 +106,7 @@ class ContactTaskReader {
     contact.normal = read_vector(xml_, element, "normal");
     if (element.Attribute("forward") != nullptr) {
       contact.forward = read_vector(xml_, element, "forward");
-    } else if (contact.effector.kind == ContactKind::kRung) {
+    } else if (contact.effector.kind == ContactKind::kGrasp) {
       throw xml_.error(element, "contact of " + contact.effector.name + " without forward",
                        "forward=\"…\": the bar lies along normal x forward");
     }

@@ -7,7 +7,7 @@ namespace locograph {
 namespace {
 
 bool has_axes(ContactKind kind) {
-  return kind == ContactKind::kSurface || kind == ContactKind::kRung;
+  return kind == ContactKind::kSurface || kind == ContactKind::kGrasp;
 }
 
 std::string short_text(double value) {
@@ -33,7 +33,7 @@ std::set<std::string> effector_attributes(ContactKind kind) {
   if (has_axes(kind)) names.insert({"link_normal", "link_forward"});
   if (kind == ContactKind::kSurface) names.insert({"half_x", "half_y"});
   if (kind == ContactKind::kPoint || kind == ContactKind::kWheel) names.insert("radius");
-  if (kind == ContactKind::kRung) names.insert("max_moment");
+  if (kind == ContactKind::kGrasp) names.insert("max_moment");
   return names;
 }
 
@@ -55,7 +55,7 @@ EndEffector read_effector(const XmlFile& xml, const XmlFile::Element& element, C
   if (kind == ContactKind::kWheel || element.Attribute("radius") != nullptr) {
     effector.radius_m = read_size(xml, element, "radius");
   }
-  if (kind == ContactKind::kRung) {
+  if (kind == ContactKind::kGrasp) {
     effector.max_moment_Nm = xml.number(element, "max_moment");
     if (!(effector.max_moment_Nm >= 0.0 && effector.max_moment_Nm <= ranges::kMoment_Nm)) {
       throw xml.error(element, "max_moment is " + short_text(effector.max_moment_Nm),

@@ -177,7 +177,7 @@ class ScenarioReader {
       xml_.allow(element, allowed, {});
       EndEffector effector = read_effector(xml_, element, kind);
       effector.name = xml_.attribute(element, "name");
-      if (kind != ContactKind::kRung) {
+      if (kind != ContactKind::kGrasp) {
         if (!friction) friction = effector_friction(xml_, environment_);
         if (!friction) {
           throw xml_.error(element, "the friction of " + effector.name + " is not known",

@@ -28,7 +28,7 @@ bool is_found_in(const std::string& place, std::span<const std::string> scanned_
 }
 
 bool touches_surfaces(const Contact& contact) {
-  return contact.effector.kind != ContactKind::kRung;
+  return contact.effector.kind != ContactKind::kGrasp;
 }
 
 void turn_to(const Eigen::Vector3d& normal, Contact& contact) {
@@ -72,7 +72,7 @@ std::optional<Snapped> snapped(const Contact& contact, const Bar& bar) {
   const double along =
       std::clamp(axis.dot(contact.position - bar.from), 0.0, (bar.to - bar.from).norm());
   const Eigen::Vector3d on_axis = bar.from + along * axis;
-  if (kind == ContactKind::kRung) return grasp(contact, on_axis, axis);
+  if (kind == ContactKind::kGrasp) return grasp(contact, on_axis, axis);
   const Eigen::Vector3d radial = contact.normal.stableNormalized();
   if (std::abs(angle_between(axis, radial) - 0.5 * std::numbers::pi) > kSnap_rad) {
     return std::nullopt;

@@ -43,10 +43,10 @@ void read_kind(FieldReader& in, EndEffector& effector) {
   }
   if (*kind == ContactKind::kPoint || *kind == ContactKind::kWheel)
     effector.radius_m = read_up_to(in, ranges::kMostSize_m, "the radius");
-  if (*kind != ContactKind::kRung)
+  if (*kind != ContactKind::kGrasp)
     effector.friction = read_up_to(in, ranges::kFriction, "the friction");
   effector.max_force_N = read_up_to(in, ranges::kForce_N, "the force");
-  if (*kind == ContactKind::kRung)
+  if (*kind == ContactKind::kGrasp)
     effector.max_moment_Nm = read_up_to(in, ranges::kMoment_Nm, "the moment");
 }
 
@@ -59,9 +59,9 @@ void write_kind(FieldWriter& out, const EndEffector& effector) {
   if (effector.kind == ContactKind::kPoint || effector.kind == ContactKind::kWheel) {
     out.number(effector.radius_m);
   }
-  if (effector.kind != ContactKind::kRung) out.number(effector.friction);
+  if (effector.kind != ContactKind::kGrasp) out.number(effector.friction);
   out.number(effector.max_force_N);
-  if (effector.kind == ContactKind::kRung) out.number(effector.max_moment_Nm);
+  if (effector.kind == ContactKind::kGrasp) out.number(effector.max_moment_Nm);
 }
 
 void read_place(FieldReader& in, Contact& contact) {
@@ -93,7 +93,7 @@ ContactParameter::ContactParameter(std::shared_ptr<const RobotParameter> paramet
   if (axes_in_world) touching_offset = -effector.radius_m * axes.col(2);
 
   const std::string name = "contact of " + contact.name();
-  if (kind() == ContactKind::kRung) {
+  if (kind() == ContactKind::kGrasp) {
     if (friction.cone == FrictionCone::kCircle) return;
     throw Error(name + " is a rung with a friction cone", "none: it is held by a grasp");
   }
@@ -115,12 +115,12 @@ ContactParameter::ContactParameter(std::shared_ptr<const RobotParameter> paramet
 
 std::span<const int> ContactParameter::components() const {
   static constexpr int kSurface[] = {0, 1, 2, 3, 4, 5}, kRung[] = {0, 1, 2, 3, 5};
-  if (kind() == ContactKind::kRung) return kRung;
+  if (kind() == ContactKind::kGrasp) return kRung;
   return std::span<const int>(kSurface).first(kind() == ContactKind::kSurface ? 6 : 3);
 }
 
 int ContactParameter::limit_rows() const {
-  if (kind() == ContactKind::kRung) return 5;
+  if (kind() == ContactKind::kGrasp) return 5;
   const int force = 2 + (friction.cone == FrictionCone::kCircle ? 1 : friction.facets);
   return kind() == ContactKind::kSurface ? force + 12 : force;
 }

@@ -22,7 +22,7 @@ void each_limit(const ContactParameter& contact, const double* w, F&& f) {
   const EndEffector& given = contact.contact.effector;
   int row = 0;
   const auto next = [&](const Row& limit) { f(row++, limit); };
-  if (given.kind == ContactKind::kRung) {
+  if (given.kind == ContactKind::kGrasp) {
     for (int c = 0; c < 5; ++c) {
       Row limit;
       limit.gradient[c] = w[c] < 0.0 ? -1.0 : 1.0;
@@ -72,7 +72,7 @@ void each_limit(const ContactParameter& contact, const double* w, F&& f) {
 
 /// Of a row of each_limit().
 RowLabel limit_label(const ContactParameter& contact, int row) {
-  if (contact.kind() == ContactKind::kRung) {
+  if (contact.kind() == ContactKind::kGrasp) {
     return row < 3 ? RowLabel{"force", "N"} : RowLabel{"moment", "N m"};
   }
   const int yaw_rows = 8, pressure_rows = 4;

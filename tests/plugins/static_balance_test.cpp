@@ -37,7 +37,7 @@ std::vector<Contact> some_contacts(const RobotCase& robot, Random& random) {
   }
   contacts[1].effector.kind = ContactKind::kPoint;
   contacts[1].effector.radius_m = 0.03;
-  contacts[2].effector.kind = ContactKind::kRung;
+  contacts[2].effector.kind = ContactKind::kGrasp;
   contacts[2].effector.max_moment_Nm = 20.0;
   contacts[4].effector.kind = ContactKind::kPoint;
   if (!robot.wheels.empty()) {

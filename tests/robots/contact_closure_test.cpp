@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(
                     ClosureCase{"SurfaceWithFreeYaw", ContactKind::kSurface, true},
                     ClosureCase{"Point", ContactKind::kPoint},
                     ClosureCase{"Ball", ContactKind::kPoint, false, 0.04},
-                    ClosureCase{"Rung", ContactKind::kRung},
+                    ClosureCase{"Rung", ContactKind::kGrasp},
                     ClosureCase{"Wheel", ContactKind::kWheel, false, 0.078},
                     ClosureCase{"LockedWheel", ContactKind::kWheel, false, 0.078, true}),
     [](const testing::TestParamInfo<ClosureCase>& one) { return one.param.name; });
@@ -209,7 +209,7 @@ TEST_F(OneClosure, OfAWheelDoesNotChangeWhenItTurns) {
 }
 
 TEST_F(OneClosure, OfARungIsBlindToTurningRoundTheBarOnly) {
-  Contact grasp{.effector = end(ContactKind::kRung, "ball1_tip")};
+  Contact grasp{.effector = end(ContactKind::kGrasp, "ball1_tip")};
   const Eigen::Isometry3d& pose = state.world_from_link(robot.link_index("ball1_tip"));
   grasp.position = pose.translation();
   const Eigen::Matrix3d turned =

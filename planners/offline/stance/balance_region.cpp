@@ -90,7 +90,7 @@ class Programme {
   void add(const BearingContact& bearing) {
     const EndEffector& effector = bearing.contact.effector;
     int limit = -1;
-    if (effector.kind != ContactKind::kRung) {
+    if (effector.kind != ContactKind::kGrasp) {
       limit = limits_++;
       most_.push_back(part_ * effector.max_force_N / weight_N_);
     }
@@ -184,7 +184,7 @@ std::vector<BearingRay> bearing_rays(const BearingContact& bearing, double margi
                                      double weight_N) {
   const Contact& contact = bearing.contact;
   const double part = 1.0 - margin;
-  if (contact.effector.kind == ContactKind::kRung) return grasp_rays(contact, part, weight_N);
+  if (contact.effector.kind == ContactKind::kGrasp) return grasp_rays(contact, part, weight_N);
   const Eigen::Matrix3d axes = axes_in_world(contact);
   const double friction = part * contact.effector.friction;
   std::vector<BearingRay> rays;

@@ -239,7 +239,7 @@ bool StanceSpace::has_room(int number) {
 void StanceSpace::places_on(int effector, const Surface& surface, const Eigen::Vector3d& point,
                             double reach_m, std::vector<int>& places) {
   const EndEffector& of = problem_.end_effectors[static_cast<std::size_t>(effector)];
-  if (of.kind == ContactKind::kRung) return;
+  if (of.kind == ContactKind::kGrasp) return;
   const Eigen::Isometry3d& pose = surface.world_from_surface;
   const Eigen::Vector3d local = pose.inverse() * point;
   const double off = std::abs(local.z());
@@ -304,7 +304,7 @@ void StanceSpace::places_on(int effector, const Bar& bar, const Eigen::Vector3d&
       contact.effector = of;
       contact.normal = normal;
       contact.position = on_axis;
-      if (of.kind != ContactKind::kRung) contact.position += bar.radius_m * normal;
+      if (of.kind != ContactKind::kGrasp) contact.position += bar.radius_m * normal;
       if (of.kind != ContactKind::kPoint) contact.forward = way.cross(normal);
       places.push_back(intern(effector, contact));
     }

@@ -40,7 +40,7 @@ struct Rays {
         upper.push_back(ray.upper);
       }
       const EndEffector& effector = one.contact.effector;
-      const bool grasp = effector.kind == ContactKind::kRung;
+      const bool grasp = effector.kind == ContactKind::kGrasp;
       most.push_back(grasp ? -1.0 : (1.0 - kOfPyramids) * effector.max_force_N / weight_N);
     }
     wrenches.resize(6, static_cast<Eigen::Index>(rays.size()));
