@@ -110,7 +110,7 @@ Json wrenches_json(const VertexWrenches& wrenches, const StanceParameter& stance
       return nullptr;
     }
     Eigen::VectorXd wrench = Eigen::VectorXd::Zero(6);
-    for (const int component : contact.components()) wrench[component] = wrenches.state[at++];
+    for (const int component : contact.cone->components()) wrench[component] = wrenches.state[at++];
     result[contact.contact.name()] = numbers_json(wrench);
   }
   const auto bears = std::ranges::count_if(

@@ -1,4 +1,5 @@
 #include <locograph/check/bar_contact.h>
+#include <locograph/check/judged_kind.h>
 #include <locograph/check/judged_stance.h>
 #include <locograph/check/limits.h>
 #include <locograph/robots/kinematic_tree.h>
@@ -216,6 +217,7 @@ JudgedStance::JudgedStance(const Robot& robot, const World& world, const Stance&
   }
   touching.assign(robot.links().size(), false);
   for (const Contact& contact : taken.contacts) {
+    require_judged_kind(contact.effector);
     JudgedContact judged;
     judged.contact = contact;
     judged.link = robot.link_index(contact.effector.link);

@@ -1,8 +1,10 @@
 // Closure of contacts: what each kind holds, its Jacobian against differences, and allocation.
 #include <locograph/common/error.h>
 #include <locograph/robots/contact_closure.h>
+#include <locograph/robots/wheel.h>
 
 #include "common/allocation_counter.h"
+#include "robots/blade_contact.h"
 #include "robots/robot_test_support.h"
 
 namespace locograph::test {
@@ -119,7 +121,8 @@ INSTANTIATE_TEST_SUITE_P(
                     ClosureCase{"Ball", ContactKind::kPoint, false, 0.04},
                     ClosureCase{"Rung", ContactKind::kGrasp},
                     ClosureCase{"Wheel", ContactKind::kWheel, false, 0.078},
-                    ClosureCase{"LockedWheel", ContactKind::kWheel, false, 0.078, true}),
+                    ClosureCase{"LockedWheel", ContactKind::kWheel, false, 0.078, true},
+                    ClosureCase{"KindOfTheTest", blade()}),
     [](const testing::TestParamInfo<ClosureCase>& one) { return one.param.name; });
 
 class OneClosure : public testing::Test {
