@@ -2,6 +2,7 @@
 #include <locograph/common/data_folder.h>
 #include <locograph/planners/posture/contacts_file.h>
 #include <locograph/planners/scenario/scenario.h>
+#include <locograph/robots/contact_kinds/contact_kind_entry.h>
 
 namespace locograph {
 namespace {
@@ -18,15 +19,12 @@ Json effector_json(const EndEffector& effector) {
   Json json = {{"name", effector.name.empty() ? effector.link : effector.name},
                {"link", effector.link},
                {"touches_as", contact_kind_name(effector.kind)}};
-  if (effector.kind == ContactKind::kSurface) {
-    json["half_x_m"] = effector.half_x_m;
-    json["half_y_m"] = effector.half_y_m;
-  }
-  if (effector.radius_m > 0.0) json["radius_m"] = effector.radius_m;
-  if (effector.kind == ContactKind::kRung) {
-    json["max_moment_Nm"] = effector.max_moment_Nm;
-  } else {
-    json["friction"] = effector.friction;
+  for (const EffectorField& field : contact_kind_entry(effector.kind).fields) {
+    const double value = effector.*field.value;
+    const bool left_out = field.zero == EffectorField::Zero::kWhenLeftOut && value == 0.0;
+    if (left_out || field.value == &EndEffector::max_force_N) continue;
+    const std::string unit = field.unit;
+    json[field.attribute + (unit.empty() ? "" : "_" + unit)] = value;
   }
   json["max_force_N"] = effector.max_force_N;
   return json;

@@ -6,6 +6,7 @@
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/plugins/static_balance/static_rows.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
+#include <locograph/robots/contact_kinds/contact_kind_entry.h>
 #include <locograph/robots/robot_state.h>
 
 #include <algorithm>
@@ -49,7 +50,7 @@ std::map<int, WrenchPlace> wrench_places(const PlanFile& file, std::size_t i) {
     int first = 0;
     for (std::size_t c = 0; c < wrenches.contact_numbers.size(); ++c) {
       places.emplace(wrenches.contact_numbers[c], WrenchPlace{&wrenches, first});
-      first += static_cast<int>((*wrenches.contacts)[c]->components().size());
+      first += static_cast<int>((*wrenches.contacts)[c]->cone->components().size());
     }
   }
   return places;
@@ -138,21 +139,15 @@ Json area_json(const Support& support, const ContactParameter& parameter, const 
 Json contact_json(const ContactParameter& parameter, const RobotState& state,
                   const Support& support) {
   const Contact& contact = parameter.contact;
-  Eigen::Vector3d position = contact.position;
-  if (parameter.kind() == ContactKind::kWheel) {
-    // The lowest point of the disc touches.
-    const WheelPose pose(state, wheel_of(state.robot(), contact.effector));
-    position = lowest_point(pose, contact.effector.radius_m, contact.normal);
-  }
+  const ContactKindEntry& kind = contact_kind_entry(parameter.kind());
   Json json = {{"name", contact.name()},
                {"link", parameter.link},
-               {"kind", contact_kind_name(parameter.kind())},
-               {"position", vector_json(position)},
+               {"kind", kind.name},
+               {"position", vector_json(kind.touching_point(state, contact))},
                {"normal", vector_json(contact.normal.stableNormalized())}};
   if (contact.effector.radius_m > 0.0) json["radius"] = contact.effector.radius_m;
   if (support.friction > 0.0) json["friction"] = support.friction;
-  if (parameter.kind() == ContactKind::kSurface)
-    json["area"] = area_json(support, parameter, state);
+  if (kind.has_area()) json["area"] = area_json(support, parameter, state);
   if (contact.locked) json["locked"] = true;
   return json;
 }

@@ -151,7 +151,7 @@ class Programme {
     for (const int axis : robot_.support(contacts_.back().link))
       moving_joint_[std::size_t(robot_.axes()[std::size_t(axis)].active)] = true;
     switch (effector.kind) {
-      case ContactKind::kRung:
+      case ContactKind::kGrasp:
         ++places_;
         for (const int component : {0, 1, 2, 3, 5}) {
           if (component >= 3 && effector.max_moment_Nm == 0.0) continue;
@@ -230,7 +230,7 @@ class Programme {
   bool torques_limited() const { return options_.enforce_torque_limits || mode_ == Mode::kTorques; }
   int torque_rows() const { return torques_limited() ? 2 * static_cast<int>(limited_.size()) : 0; }
   static int rows_of(const EndEffector& effector) {
-    if (effector.kind != ContactKind::kRung) return 1;
+    if (effector.kind != ContactKind::kGrasp) return 1;
     return effector.max_moment_Nm > 0.0 ? 10 : 6;
   }
 
@@ -251,7 +251,7 @@ class Programme {
     int row = base_rows() + torque_rows();
     for (int i = 0; i < unknown.contact; ++i) row += rows_of(*contacts_[std::size_t(i)].effector);
     const EndEffector& given = *contacts_[std::size_t(unknown.contact)].effector;
-    if (given.kind != ContactKind::kRung) {
+    if (given.kind != ContactKind::kGrasp) {
       column[row] = unknown.wrench[2] / given.max_force_N;
       return;
     }
@@ -365,7 +365,7 @@ class Programme {
       Wrench& wrench = wrenches[std::size_t(unknown.place)];
       wrench.head<3>() += amount * unknown.wrench.head<3>();
       const LoadedContact& contact = contacts_[std::size_t(unknown.contact)];
-      if (contact.effector->kind == ContactKind::kRung)
+      if (contact.effector->kind == ContactKind::kGrasp)
         wrench.tail<3>() += amount * unknown.wrench.tail<3>();
     };
     for (const Reserve& reserve : reserves_) add(reserve.force, margin);

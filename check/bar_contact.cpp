@@ -70,7 +70,7 @@ double off_bar_m(const Contact& contact, const Bar& bar) {
                            std::hypot(effector.half_x_m, effector.half_y_m);
       return std::hypot(height, std::max(0.0, aside));
     }
-    case ContactKind::kRung: {
+    case ContactKind::kGrasp: {
       const Eigen::Vector3d held = normal.cross(contact.forward->stableNormalized());
       const double turned = angle_between(held, axis);
       if (std::min(turned, std::numbers::pi - turned) > limits::kClosed_rad) return kNowhere;

@@ -41,7 +41,7 @@ Eigen::Vector3d held_turn(const JudgedContact& contact, const Eigen::Matrix3d& f
   switch (effector.kind) {
     case ContactKind::kSurface:
       return rotation_vector(now * first.transpose());
-    case ContactKind::kRung:
+    case ContactKind::kGrasp:
       return (now * effector.normal.cross(effector.forward)).normalized();
     case ContactKind::kWheel: {
       const Joint& axle = axle_of(robot, contact);

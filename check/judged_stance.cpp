@@ -1,4 +1,5 @@
 #include <locograph/check/bar_contact.h>
+#include <locograph/check/judged_kind.h>
 #include <locograph/check/judged_stance.h>
 #include <locograph/check/limits.h>
 #include <locograph/robots/kinematic_tree.h>
@@ -30,7 +31,7 @@ std::string other_claim(const EndEffector& claimed, const EndEffector& known) {
   if (claimed.link != known.link) return " is on " + claimed.link + ", known: on " + known.link;
   const double apart = (claimed.point - known.point).norm();
   if (!(apart <= kRounding)) return amounts("a place that is off by (m)", apart, 0.0);
-  if (known.kind == ContactKind::kSurface || known.kind == ContactKind::kRung) {
+  if (known.kind == ContactKind::kSurface || known.kind == ContactKind::kGrasp) {
     const double turned = Eigen::Matrix3d(axes_in_link(claimed) - axes_in_link(known)).norm();
     if (!(turned <= kRounding)) return amounts("axes that are off by", turned, 0.0);
   }
@@ -48,11 +49,11 @@ std::string excess_claim(const EndEffector& claimed, const EndEffector& known) {
     if (more(claimed.half_y_m, known.half_y_m))
       return amounts("half_y", claimed.half_y_m, known.half_y_m);
   }
-  if (known.kind != ContactKind::kRung && more(claimed.friction, known.friction))
+  if (known.kind != ContactKind::kGrasp && more(claimed.friction, known.friction))
     return amounts("friction", claimed.friction, known.friction);
   if (more(claimed.max_force_N, known.max_force_N))
     return amounts("max_force", claimed.max_force_N, known.max_force_N);
-  if (known.kind == ContactKind::kRung && more(claimed.max_moment_Nm, known.max_moment_Nm))
+  if (known.kind == ContactKind::kGrasp && more(claimed.max_moment_Nm, known.max_moment_Nm))
     return amounts("max_moment", claimed.max_moment_Nm, known.max_moment_Nm);
   return "";
 }
@@ -216,6 +217,7 @@ JudgedStance::JudgedStance(const Robot& robot, const World& world, const Stance&
   }
   touching.assign(robot.links().size(), false);
   for (const Contact& contact : taken.contacts) {
+    require_judged_kind(contact.effector);
     JudgedContact judged;
     judged.contact = contact;
     judged.link = robot.link_index(contact.effector.link);
@@ -298,7 +300,7 @@ ContactError closure_error(const JudgedContact& judged,
       error.angle_rad = angle_between(normal, contact.normal);
       if (!contact.forward) break;
       [[fallthrough]];
-    case ContactKind::kRung:
+    case ContactKind::kGrasp:
       error.angle_rad =
           std::max(error.angle_rad,
                    angle_between(normal.cross(forward), contact.normal.cross(*contact.forward)));

@@ -39,7 +39,7 @@ struct JudgedContact {
   int wheel_joint = -1;                            ///< active joint that turns it; -1: none
 
   bool is_wheel() const { return contact.effector.kind == ContactKind::kWheel; }
-  bool is_grasp() const { return contact.effector.kind == ContactKind::kRung; }
+  bool is_grasp() const { return contact.effector.kind == ContactKind::kGrasp; }
   /// On something that the world has.
   bool is_placed() const { return !surfaces.empty() || !bars.empty(); }
   /// Stays where it is: no wheel, or a locked one.

@@ -1,3 +1,4 @@
+#include <locograph/check/judged_kind.h>
 #include <locograph/check/loaded_contact.h>
 
 namespace locograph {
@@ -22,10 +23,11 @@ Eigen::Vector3d lowest_of_disc(const RobotState& state, const Contact& contact, 
 
 LoadedContact loaded_contact(const RobotState& state, const Contact& given) {
   const EndEffector& effector = given.effector;
+  require_judged_kind(effector);
   const int link = state.robot().link_index(effector.link);
   const Eigen::Isometry3d& pose = state.world_from_link(link);
   const bool fixed_in_link =
-      effector.kind == ContactKind::kSurface || effector.kind == ContactKind::kRung;
+      effector.kind == ContactKind::kSurface || effector.kind == ContactKind::kGrasp;
   LoadedContact contact{&given, &effector, link, {}, pose * effector.point};
   contact.axes = fixed_in_link ? pose.linear() * axes_in_link(effector) : axes_in_world(given);
   if (effector.kind == ContactKind::kPoint) {

@@ -65,7 +65,7 @@ bool NearbyBalance::place(const RobotState& state, std::span<const Contact> cont
     if (effector.kind == ContactKind::kSurface)
       corners = corners_of(
           effector, options.areas.empty() ? std::vector<Eigen::Vector2d>() : options.areas[i]);
-    const bool cone = effector.kind != ContactKind::kRung;
+    const bool cone = effector.kind != ContactKind::kGrasp;
     for (const Eigen::Vector2d& corner : corners) {
       const int place = static_cast<int>(places_.size());
       places_.push_back({static_cast<int>(i),
@@ -196,7 +196,7 @@ double NearbyBalance::least_left(const std::vector<Wrench>& wrenches, int facets
   }
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const EndEffector& effector = *contacts_[i].effector;
-    if (effector.kind != ContactKind::kRung)
+    if (effector.kind != ContactKind::kGrasp)
       least = std::min(least, 1.0 - pressing[i] / effector.max_force_N);
   }
   return least;

@@ -19,8 +19,8 @@ std::string off_by(const std::string& what, double off_m, double off_rad) {
 double turned_rad(const Contact& contact, const Contact& asked) {
   const ContactKind kind = asked.effector.kind;
   const double tilted =
-      kind == ContactKind::kRung ? 0.0 : angle_between(contact.normal, asked.normal);
-  const bool in_yaw = kind == ContactKind::kSurface || kind == ContactKind::kRung;
+      kind == ContactKind::kGrasp ? 0.0 : angle_between(contact.normal, asked.normal);
+  const bool in_yaw = kind == ContactKind::kSurface || kind == ContactKind::kGrasp;
   if (!in_yaw || !asked.forward) return tilted;
   if (!contact.forward) return std::numbers::pi;  // it may be anything
   return std::max(tilted, angle_between(contact.normal.cross(*contact.forward),

@@ -1,19 +1,16 @@
 #include <locograph/common/error.h>
 #include <locograph/robots/contact.h>
+#include <locograph/robots/contact_kinds/contact_kind_entry.h>
 #include <locograph/robots/kinematic_tree.h>
 #include <locograph/robots/robot_state.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace locograph {
 namespace {
 
 constexpr double kSameDistance_m = 1e-4, kSameAngle_rad = 1e-3;
-constexpr double kOnAxle_m = 1e-6;
-
-const std::array<std::string, 4> kKindNames = {"surface", "point", "rung", "wheel"};
 
 /// Any direction that is not along the normal.
 Eigen::Vector3d some_forward(const Eigen::Vector3d& normal) {
@@ -25,16 +22,12 @@ std::string contact_of(const EndEffector& effector) {
   return "contact of " + (effector.name.empty() ? effector.link : effector.name);
 }
 
-void require_positive(const EndEffector& effector, const char* what, double value) {
-  if (value > 0.0 && std::isfinite(value)) return;
-  throw Error(contact_of(effector) + " has a " + what + " of " + std::to_string(value),
-              "a positive number");
-}
-
-void require_not_negative(const EndEffector& effector, const char* what, double value) {
-  if (value >= 0.0 && std::isfinite(value)) return;
-  throw Error(contact_of(effector) + " has a " + what + " of " + std::to_string(value),
-              "zero or more");
+void require_in_range(const EndEffector& effector, const EffectorField& field) {
+  const double value = effector.*field.value;
+  const bool positive = field.zero == EffectorField::Zero::kRefused;
+  if ((positive ? value > 0.0 : value >= 0.0) && std::isfinite(value)) return;
+  throw Error(contact_of(effector) + " has a " + field.description + " of " + std::to_string(value),
+              positive ? "a positive number" : "zero or more");
 }
 
 /// Contacts of one rigid body: where they are to each other is fixed.
@@ -46,17 +39,20 @@ void require_consistent(const RobotState& state, const Contact& a, const Contact
   const Eigen::Isometry3d &pose_a = state.world_from_link(link_a),
                           &pose_b = state.world_from_link(link_b);
   const double own = (pose_a * first.point - pose_b * second.point).norm();
+  const ContactKindEntry &kind_a = contact_kind_entry(first.kind),
+                         &kind_b = contact_kind_entry(second.kind);
   const auto place = [](const Contact& c) {
-    const bool ball = c.effector.kind == ContactKind::kPoint;
-    return ball ? Eigen::Vector3d(c.position + c.effector.radius_m * c.normal.stableNormalized())
-                : c.position;
+    const ContactKindEntry& kind = contact_kind_entry(c.effector.kind);
+    return kind.is_round() && !kind.rolls
+               ? Eigen::Vector3d(c.position + c.effector.radius_m * c.normal.stableNormalized())
+               : c.position;
   };
   const double asked = (place(a) - place(b)).norm();
   if (own <= kSameDistance_m && asked <= kSameDistance_m) {
     throw Error("contacts " + numbers + " are the same, of " + second.link, "each contact once");
   }
   // The touching point of a wheel is anywhere on its rim.
-  if (first.kind == ContactKind::kWheel || second.kind == ContactKind::kWheel) return;
+  if (kind_a.rolls || kind_b.rolls) return;
   const std::string names = "contacts " + numbers + ", of " + first.link + " and " + second.link +
                             ", contradict each other";
   if (!(std::abs(own - asked) <= kSameDistance_m)) {
@@ -64,7 +60,7 @@ void require_consistent(const RobotState& state, const Contact& a, const Contact
                     " m on the robot",
                 "places that one rigid body can have");
   }
-  if (first.kind != ContactKind::kSurface || second.kind != ContactKind::kSurface) return;
+  if (!kind_a.holds_normal || !kind_b.holds_normal) return;
   const double between =
       angle_between(pose_a.linear() * first.normal, pose_b.linear() * second.normal);
   if (!(std::abs(between - angle_between(a.normal, b.normal)) <= kSameAngle_rad)) {
@@ -73,16 +69,6 @@ void require_consistent(const RobotState& state, const Contact& a, const Contact
 }
 
 }  // namespace
-
-const std::string& contact_kind_name(ContactKind kind) {
-  return kKindNames[static_cast<std::size_t>(kind)];
-}
-
-std::optional<ContactKind> contact_kind_of(const std::string& name) {
-  const auto found = std::find(kKindNames.begin(), kKindNames.end(), name);
-  if (found == kKindNames.end()) return std::nullopt;
-  return static_cast<ContactKind>(found - kKindNames.begin());
-}
 
 Eigen::Matrix3d contact_axes(const std::string& contact, const Eigen::Vector3d& normal,
                              const Eigen::Vector3d& forward) {
@@ -124,47 +110,16 @@ double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }
 
 void require_sound_effector(const Robot& robot, const EndEffector& effector) {
-  const int link = robot.link_index(effector.link);
-  const std::string name = contact_of(effector);
+  robot.link_index(effector.link);  // throws for an unknown one
+  const ContactKindEntry& kind = contact_kind_entry(effector.kind);
   if (!effector.point.allFinite()) {
-    throw Error(name + " is at a place that is not finite", "finite numbers");
+    throw Error(contact_of(effector) + " is at a place that is not finite", "finite numbers");
   }
-  require_positive(effector, "force limit", effector.max_force_N);
-  if (effector.kind == ContactKind::kSurface || effector.kind == ContactKind::kRung) {
-    axes_in_link(effector);
-  }
-  if (effector.kind == ContactKind::kRung) {
-    require_not_negative(effector, "moment limit", effector.max_moment_Nm);
-    return;
-  }
-  require_positive(effector, "friction coefficient", effector.friction);
-  if (effector.kind == ContactKind::kSurface) {
-    require_positive(effector, "half size x", effector.half_x_m);
-    require_positive(effector, "half size y", effector.half_y_m);
-  } else if (effector.kind == ContactKind::kPoint) {
-    require_not_negative(effector, "radius", effector.radius_m);
-  } else {
-    require_positive(effector, "radius", effector.radius_m);
-    const int joint = robot.links()[static_cast<std::size_t>(link)].parent_joint;
-    const JointType type =
-        joint < 0 ? JointType::kFixed : robot.joints()[static_cast<std::size_t>(joint)].type;
-    if (type != JointType::kRevolute && type != JointType::kContinuous) {
-      throw Error(name + " is a wheel that no joint turns",
-                  "a link below a revolute or continuous joint");
-    }
-    const Joint& axle = robot.joints()[static_cast<std::size_t>(joint)];
-    if (axle.mimics >= 0) {
-      throw Error(name + " is a wheel whose joint mimics '" +
-                      robot.joints()[static_cast<std::size_t>(axle.mimics)].name + "'",
-                  "a wheel that turns on its own");
-    }
-    const Eigen::Vector3d& axis = axle.axis;
-    const double off_m = (effector.point - axis * axis.dot(effector.point)).norm();
-    if (!(off_m <= kOnAxle_m)) {
-      throw Error(name + " has its centre " + std::to_string(off_m) + " m beside its axle",
-                  "a point on the axis that the joint turns about");
-    }
-  }
+  require_in_range(effector, effector_fields::kMaxForce);
+  if (kind.axes_on_link) axes_in_link(effector);
+  if (kind.has_friction()) require_in_range(effector, effector_fields::kFriction);
+  for (const EffectorField& field : kind.fields) require_in_range(effector, field);
+  kind.require_sound(robot, effector);
 }
 
 void require_sound_contact(const Robot& robot, const Contact& contact) {
@@ -173,10 +128,12 @@ void require_sound_contact(const Robot& robot, const Contact& contact) {
   if (!contact.position.allFinite()) {
     throw Error(name + " is at a place that is not finite", "finite numbers");
   }
-  if (contact.effector.kind == ContactKind::kRung && !contact.forward) {
-    throw Error(name + " is a rung without forward", "a direction across the bar");
+  const ContactKindEntry& kind = contact_kind_entry(contact.effector.kind);
+  if (!kind.forward_needed.empty() && !contact.forward) {
+    throw Error(name + " is a " + kind.name + " without forward",
+                "a direction " + kind.forward_needed);
   }
-  if (contact.locked && contact.effector.kind != ContactKind::kWheel) {
+  if (contact.locked && !kind.rolls) {
     throw Error(name + " is locked", "wheels only are");
   }
   axes_in_world(contact);

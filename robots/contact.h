@@ -32,6 +32,7 @@
 /// still on the ground: its touching point stays, and its joint turns back what its carrier
 /// pitches.
 
+#include <locograph/robots/contact_kinds/table.h>
 #include <locograph/robots/robot.h>
 
 #include <Eigen/Core>
@@ -42,12 +43,19 @@
 
 namespace locograph {
 
-enum class ContactKind { kSurface, kPoint, kRung, kWheel };
+/// kSurface, kPoint, kGrasp, kWheel: the kinds of contact_kinds/table.h, in its order.
+enum class ContactKind {
+#define LOCOGRAPH_CONTACT_ENUMERATOR(enumerator, entry) enumerator,
+  LOCOGRAPH_CONTACT_KINDS(LOCOGRAPH_CONTACT_ENUMERATOR)
+#undef LOCOGRAPH_CONTACT_ENUMERATOR
+};
 
-/// "surface", "point", "rung", "wheel"
+/// In files: "surface", "point", "rung", "wheel".
 const std::string& contact_kind_name(ContactKind kind);
 /// Nothing for another word.
 std::optional<ContactKind> contact_kind_of(const std::string& name);
+/// "surface, point, rung or wheel", each name between quotes.
+std::string contact_kind_names(const std::string& quote = "");
 
 struct EndEffector {
   std::string name = {};  ///< contacts files may leave it empty
@@ -73,6 +81,11 @@ struct Contact {
 
   /// The end effector's name, or its link's.
   const std::string& name() const { return effector.name.empty() ? effector.link : effector.name; }
+};
+
+/// What a row of a contact's closure or of its wrench cone is called.
+struct ContactRowLabel {
+  std::string name, unit;
 };
 
 struct Stance {

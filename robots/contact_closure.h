@@ -21,17 +21,50 @@
 ///   wheel, locked         4  c − p along x y [m], which is where an upright disc touches; then
 ///                            those of a wheel
 ///
-/// For the tilt see orientation_error.h. What is fixed is worked out by the constructor; error()
+/// For the tilt see orientation_error.h. The kind of the contact makes the rows
+/// (contact_kinds/contact_kind_entry.h); what is fixed is worked out by the constructor; error()
 /// and add_jacobian() do not allocate. Const functions may be shared between threads.
 
 #include <locograph/robots/contact.h>
 #include <locograph/robots/robot_state.h>
-#include <locograph/robots/wheel.h>
 
-#include <Eigen/Geometry>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
 
 namespace locograph {
 
+/// The rows of one contact, as its kind has them.
+class ClosureRows {
+ public:
+  virtual ~ClosureRows() = default;
+
+  int rows() const { return static_cast<int>(held_.size()); }
+  /// What each row holds: 0-2 position along the contact's axes, 3-5 rotation about them; of a
+  /// wheel 2, its height, and 3, its tilt; of a locked one 0 and 1, too.
+  std::span<const int> held() const { return held_; }
+  /// Link whose movement opens and closes it; of a wheel, the one that carries it.
+  int link() const { return link_; }
+  /// What a row is called, where held() does not say it.
+  virtual std::optional<ContactRowLabel> label(int row) const;
+
+  /// e: rows() numbers.
+  virtual void error(const RobotState& state, double* e) const = 0;
+  /// jacobian: rows() rows of tangent_size numbers, one row after the other, `stride` apart. Adds
+  /// to the columns of the base and of support(link()) only.
+  virtual void add_jacobian(const RobotState& state, double* jacobian,
+                            std::ptrdiff_t stride) const = 0;
+
+ protected:
+  ClosureRows(std::vector<int> held, int link) : held_(std::move(held)), link_(link) {}
+
+ private:
+  std::vector<int> held_;
+  int link_;
+};
+
+/// The rows of a contact of any kind, as a value.
 class ContactClosure {
  public:
   /// Closes nothing.
@@ -40,28 +73,17 @@ class ContactClosure {
   ContactClosure(const Robot& robot, const Contact& contact);
 
   int rows() const { return static_cast<int>(held().size()); }
-  /// What each row holds: 0-2 position along the contact's axes, 3-5 rotation about them; of a
-  /// wheel 2, its height, and 3, its tilt; of a locked one 0 and 1, too.
-  std::span<const int> held() const;
-  /// Link whose movement opens and closes it; of a wheel, the one that carries it.
-  int link() const { return kind_ == ContactKind::kWheel ? wheel_.carrier : link_; }
+  std::span<const int> held() const { return rows_ ? rows_->held() : std::span<const int>(); }
+  int link() const { return rows_ ? rows_->link() : -1; }
+  std::optional<ContactRowLabel> label(int row) const { return rows_->label(row); }
 
-  /// e: rows() numbers.
-  void error(const RobotState& state, double* e) const;
-  /// jacobian: rows() rows of tangent_size numbers, one row behind the other, `stride` apart. Adds
-  /// to the columns of the base and of support(link()) only.
-  void add_jacobian(const RobotState& state, double* jacobian, std::ptrdiff_t stride) const;
+  void error(const RobotState& state, double* e) const { rows_->error(state, e); }
+  void add_jacobian(const RobotState& state, double* jacobian, std::ptrdiff_t stride) const {
+    rows_->add_jacobian(state, jacobian, stride);
+  }
 
  private:
-  ContactKind kind_ = ContactKind::kPoint;
-  bool free_yaw_ = false;
-  bool locked_ = false;
-  int link_ = -1;
-  Eigen::Vector3d point_in_link_ = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d link_from_axes_ = Eigen::Matrix3d::Identity();
-  Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();  ///< in the world
-  Eigen::Vector3d place_ = Eigen::Vector3d::Zero();     ///< where the point belongs, world
-  Wheel wheel_;
+  std::shared_ptr<const ClosureRows> rows_;
 };
 
 }  // namespace locograph

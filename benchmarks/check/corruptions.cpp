@@ -252,7 +252,7 @@ std::optional<Lie> drop_contacts(const Honest& honest, Random&) {
       *std::max_element(stance.contacts.begin(), stance.contacts.end(),
                         [&](const Contact& a, const Contact& b) { return far(a) < far(b); });
   // A rung holds a moment; a contact that is not upright needs a second one anyway.
-  if (farthest.effector.kind == ContactKind::kRung || far(farthest) < 0.01) return std::nullopt;
+  if (farthest.effector.kind == ContactKind::kGrasp || far(farthest) < 0.01) return std::nullopt;
   stance.contacts = {farthest};
   stance.contacts.front().bears_load = true;
   return lie;
@@ -280,7 +280,7 @@ std::optional<Lie> larger_sole(const Honest& honest, Random& random) {
 std::optional<Lie> more_friction(const Honest& honest, Random& random) {
   return claim(honest, random, [](EndEffector& effector) {
     effector.friction *= kBeyond;
-    return effector.kind != ContactKind::kRung;
+    return effector.kind != ContactKind::kGrasp;
   });
 }
 std::optional<Lie> more_force(const Honest& honest, Random& random) {
@@ -566,7 +566,7 @@ std::optional<Lie> stand_in_a_slab(const Honest& honest, Random& random) {
   const std::size_t vertex = any_below(random, vertices(honest));
   const std::vector<Contact>& contacts = stance_at(honest.motion, vertex).contacts;
   const Contact& contact = contacts[any_below(random, contacts.size())];
-  if (contact.effector.kind == ContactKind::kRung) return std::nullopt;
+  if (contact.effector.kind == ContactKind::kGrasp) return std::nullopt;
   const Link& link =
       honest.robot
           ->links()[static_cast<std::size_t>(honest.robot->link_index(contact.effector.link))];

@@ -44,7 +44,7 @@ Contact draw_contact(const BalanceRobot& robot, const RobotState& state, const s
   effector.friction = uniform(random, 0.3, 0.9);
   effector.max_force_N = uniform(random, 0.5, 1.5) * weight_of(robot);
   if (hand && uniform(random, 0.0, 1.0) < 0.4) {
-    effector.kind = ContactKind::kRung;
+    effector.kind = ContactKind::kGrasp;
     effector.max_force_N = uniform(random, 0.1, 0.8) * weight_of(robot);
     effector.max_moment_Nm = uniform(random, 0.0, 20.0);
   }
@@ -82,7 +82,7 @@ Eigen::VectorXd contact_weights(const std::vector<Contact>& contacts, int facets
   };
   for (const Contact& contact : contacts) {
     const EndEffector& effector = contact.effector;
-    if (effector.kind == ContactKind::kRung) {
+    if (effector.kind == ContactKind::kGrasp) {
       add(3, effector.max_force_N);
       add(2, effector.max_moment_Nm);
       continue;
@@ -169,7 +169,7 @@ double graph_residual(const BalanceRobot& robot, const BalanceCase& posture,
   for (const Contact& contact : contacts) {
     numbers.push_back(kFirst + static_cast<int>(numbers.size()));
     FrictionModel cone;
-    if (contact.effector.kind != ContactKind::kRung) cone = {FrictionCone::kInner, posture.facets};
+    if (contact.effector.kind != ContactKind::kGrasp) cone = {FrictionCone::kInner, posture.facets};
     graph.parameters().set(numbers.back(), std::make_shared<const ContactParameter>(
                                                robot.parameter, kRobot, contact, cone));
   }

@@ -340,7 +340,7 @@ BENCHMARK_CAPTURE(Contact, surface_linearise, true, ContactKind::kSurface, true)
 BENCHMARK_CAPTURE(Contact, surface_free_yaw_linearise, true, ContactKind::kSurface, false);
 BENCHMARK_CAPTURE(Contact, point_error, false, ContactKind::kPoint, true);
 BENCHMARK_CAPTURE(Contact, point_linearise, true, ContactKind::kPoint, true);
-BENCHMARK_CAPTURE(Contact, rung_linearise, true, ContactKind::kRung, true);
+BENCHMARK_CAPTURE(Contact, rung_linearise, true, ContactKind::kGrasp, true);
 
 void FramePose(benchmark::State& run, bool linearise) {
   Drive drive(true);

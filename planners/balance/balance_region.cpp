@@ -5,59 +5,22 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace locograph {
 namespace {
 
-constexpr int kFacets = 8;
 /// Corners that are nearer to each other, or less far out, are left out.
 constexpr double kSame_m = 1e-4;
 constexpr int kMostProgrammes = 40;
 
 using Wrench = Eigen::Matrix<double, 6, 1>;
 
-/// Corners of what bears, along the contact's axes.
-std::vector<Eigen::Vector2d> corners_of(const BearingContact& bearing) {
-  const EndEffector& sole = bearing.contact.effector;
-  if (sole.kind != ContactKind::kSurface) return {Eigen::Vector2d::Zero()};
-  if (!bearing.area.empty()) return bearing.area;
-  std::vector<Eigen::Vector2d> corners;
-  if (bearing.contact.forward) {
-    for (const double x : {sole.half_x_m, -sole.half_x_m}) {
-      for (const double y : {sole.half_y_m, -sole.half_y_m}) corners.emplace_back(x, y);
-    }
-    return corners;
-  }
-  const double radius = std::min(sole.half_x_m, sole.half_y_m);
-  for (int k = 0; k < kFacets; ++k) {
-    const double angle = k * 2.0 * std::numbers::pi / kFacets;
-    corners.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
-  }
-  return corners;
-}
-
-std::vector<BearingRay> grasp_rays(const Contact& contact, double part, double weight_N) {
-  const Eigen::Matrix3d axes = axes_in_world(contact);
-  const double force = part * contact.effector.max_force_N / weight_N;
-  const double moment = part * contact.effector.max_moment_Nm / weight_N;
-  std::vector<BearingRay> rays;
-  for (int i = 0; i < 3; ++i) {
-    rays.push_back({contact.position, axes.col(i), Eigen::Vector3d::Zero(), -force, force});
-  }
-  for (const int i : {0, 2}) {  // y is the bar
-    if (!(moment > 0.0)) break;
-    rays.push_back({contact.position, Eigen::Vector3d::Zero(), axes.col(i), -moment, moment});
-  }
-  return rays;
-}
-
 /// The linear programme: forces at the contacts in parts of the weight, then x and y of the centre
 /// of mass about `origin`.
 class CentreOfMassProgramme {
  public:
   CentreOfMassProgramme(double weight_N, std::span<const BearingContact> contacts, double margin)
-      : weight_N_(weight_N), part_(1.0 - margin) {
+      : weight_N_(weight_N), margin_(margin) {
     for (const BearingContact& bearing : contacts) origin_ += bearing.contact.position;
     origin_ /= static_cast<double>(contacts.size());
     for (const BearingContact& bearing : contacts) {
@@ -86,13 +49,12 @@ class CentreOfMassProgramme {
   };
 
   void add(const BearingContact& bearing) {
-    const EndEffector& effector = bearing.contact.effector;
     int limit = -1;
-    if (effector.kind != ContactKind::kRung) {
+    if (const double most = most_of_rays(bearing.contact, margin_, weight_N_); most >= 0.0) {
       limit = limits_++;
-      most_.push_back(part_ * effector.max_force_N / weight_N_);
+      most_.push_back(most);
     }
-    for (const BearingRay& ray : bearing_rays(bearing, 1.0 - part_, weight_N_)) {
+    for (const BearingRay& ray : bearing_rays(bearing, margin_, weight_N_)) {
       Column column{{}, limit, ray.lower, ray.upper};
       column.wrench << ray.force, (ray.at - origin_).cross(ray.force) + ray.moment;
       columns_.push_back(column);
@@ -120,7 +82,7 @@ class CentreOfMassProgramme {
     programme_.load(columns, row_lower, row_upper);
   }
 
-  double weight_N_, part_;
+  double weight_N_, margin_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   std::vector<Column> columns_;
   std::vector<double> most_;
@@ -159,32 +121,6 @@ std::vector<Eigen::Vector2d> corners_of(CentreOfMassProgramme& programme) {
 }
 
 }  // namespace
-
-std::vector<BearingRay> bearing_rays(const BearingContact& bearing, double margin,
-                                     double weight_N) {
-  const Contact& contact = bearing.contact;
-  const double part = 1.0 - margin;
-  if (contact.effector.kind == ContactKind::kRung) return grasp_rays(contact, part, weight_N);
-  const Eigen::Matrix3d axes = axes_in_world(contact);
-  const double friction = part * contact.effector.friction;
-  std::vector<BearingRay> rays;
-  const std::vector<Eigen::Vector2d> corners = corners_of(bearing);
-  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
-  for (const Eigen::Vector2d& corner : corners) {
-    middle += corner / static_cast<double>(corners.size());
-  }
-  for (const Eigen::Vector2d& corner : corners) {
-    const Eigen::Vector3d at =
-        contact.position + axes.leftCols<2>() * (middle + part * (corner - middle));
-    for (int k = 0; k < kFacets; ++k) {
-      // The edges of the pyramid lie on the cone.
-      const double angle = (k + 0.5) * 2.0 * std::numbers::pi / kFacets;
-      const Eigen::Vector3d along(friction * std::cos(angle), friction * std::sin(angle), 1.0);
-      rays.push_back({at, axes * along, Eigen::Vector3d::Zero(), 0.0, kNoBound});
-    }
-  }
-  return rays;
-}
 
 double BalanceRegion::depth_m(const Eigen::Vector2d& centre_of_mass) const {
   double depth = sides.empty() ? -std::numeric_limits<double>::infinity()

@@ -13,7 +13,7 @@
 /// edge between two, until there is none. The polygon of these points lies inside the true region.
 /// Torque limits are not in it.
 
-#include <locograph/robots/contact.h>
+#include <locograph/robots/bearing_rays.h>
 
 #include <Eigen/Core>
 #include <span>
@@ -21,28 +21,8 @@
 
 namespace locograph {
 
-/// A contact that bears, closed, and its area.
-struct BearingContact {
-  Contact contact;
-  /// Corners of what of a surface contact lies on something, along the contact's axes [m]; none:
-  /// its rectangle, or, where its yaw is free, what of it bears whatever the yaw.
-  std::vector<Eigen::Vector2d> area = {};
-};
-
-/// What a contact can do to the robot: a force on an edge of its friction pyramid at a corner of
-/// its area, or a component of a grasp; in parts of the robot's weight.
-struct BearingRay {
-  Eigen::Vector3d at;     ///< m, world
-  Eigen::Vector3d force;  ///< world; of a pyramid with 1 along the normal
-  Eigen::Vector3d moment;
-  double lower, upper;  ///< how much of it there may be
-};
-
 /// Of friction, areas and limits of force: what stances and motions leave unused.
 inline constexpr double kRegionMargin = 0.1;
-
-/// margin: the part of friction, areas and limits of force that is left unused.
-std::vector<BearingRay> bearing_rays(const BearingContact& bearing, double margin, double weight_N);
 
 struct BalanceRegion {
   /// normal . (x, y) <= offset_m, world; the normal has length 1.

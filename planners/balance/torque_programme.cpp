@@ -25,8 +25,7 @@ void TorqueProgramme::add(const BearingContact& bearing, double margin) {
   const int number = static_cast<int>(links_.size());
   links_.push_back(robot_.link_index(contact.effector.link));
   positions_.push_back(contact.position);
-  const bool grasp = contact.effector.kind == ContactKind::kRung;
-  most_.push_back(grasp ? -1.0 : (1.0 - margin) * contact.effector.max_force_N / weight_N_);
+  most_.push_back(most_of_rays(contact, margin, weight_N_));
   for (const BearingRay& ray : bearing_rays(bearing, margin, weight_N_)) {
     rays_.push_back(
         {number, ray.at - contact.position, ray.force, ray.moment, ray.lower, ray.upper});

@@ -179,7 +179,7 @@ StanceWrenches wrenches_at(const Graph& graph, const Plan& plan, std::size_t i) 
     const auto found = std::ranges::find(stance.contact_numbers, given.contact_numbers[c]);
     if (found == stance.contact_numbers.end()) return {};
     const auto k = static_cast<std::size_t>(found - stance.contact_numbers.begin());
-    for (const int component : (*given.contacts)[c]->components()) {
+    for (const int component : (*given.contacts)[c]->cone->components()) {
       wrenches[k][component] = given.state[at++];
     }
     bearing += stance.contacts[k]->contact.bears_load ? 1 : 0;

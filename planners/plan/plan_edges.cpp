@@ -213,7 +213,7 @@ class PlanEdges {
     for (std::size_t c = 0; c < bearing->contacts.size(); ++c) {
       if (!bearing->contacts[c]->contact.bears_load) continue;
       numbers.push_back(bearing->contact_numbers[c]);
-      for (const int component : bearing->contacts[c]->components()) {
+      for (const int component : bearing->contacts[c]->cone->components()) {
         components.push_back(wrenches[c][component]);
       }
     }

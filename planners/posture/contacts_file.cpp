@@ -1,5 +1,6 @@
 #include <locograph/planners/posture/contacts_file.h>
 #include <locograph/planners/scenario/effector_element.h>
+#include <locograph/robots/contact_kinds/contact_kind_entry.h>
 
 #include <map>
 #include <set>
@@ -47,12 +48,13 @@ class ContactsReader {
     const ContactKind kind = read_contact_kind(xml_, element);
     std::set<std::string> allowed = effector_attributes(kind);
     allowed.insert({"kind", "position", "normal", "forward", "load"});
-    if (kind != ContactKind::kRung) allowed.insert("mu");
+    const bool has_friction = contact_kind_entry(kind).has_friction();
+    if (has_friction) allowed.insert("mu");
     xml_.allow(element, allowed, {});
 
     Contact contact;
     contact.effector = read_effector(xml_, element, kind);
-    if (kind != ContactKind::kRung) {
+    if (has_friction) {
       contact.effector.friction = read_positive(xml_, element, "mu", ranges::kFriction);
     }
     const int before = of_link_[contact.effector.link]++;

@@ -265,7 +265,7 @@ void PostureGraph::set(const Eigen::VectorXd& configuration, const StanceWrenche
   VertexWrenches& vertex = graph.vertex(w_);
   Eigen::Index at = 0;
   for (std::size_t i = 0; i < loaded_.size(); ++i) {
-    for (const int component : (*vertex.contacts)[i]->components()) {
+    for (const int component : (*vertex.contacts)[i]->cone->components()) {
       vertex.state[at++] = wrenches[loaded_[i]][component];
     }
   }

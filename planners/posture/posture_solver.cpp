@@ -5,6 +5,7 @@
 #include <locograph/planners/posture/posture_solver.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
+#include <locograph/robots/contact_kinds/contact_kind_entry.h>
 #include <locograph/solvers/linear_solvers.h>
 #include <locograph/world/distance_view.h>
 
@@ -291,20 +292,18 @@ Eigen::VectorXd placed_at(const Robot& robot, const Eigen::VectorXd& configurati
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), ahead = Eigen::Vector3d::UnitX();
   // What the robot stands on says where it is; a hand reaches out from there.
   const bool stands = std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) {
-    return c.effector.kind == ContactKind::kSurface || c.effector.kind == ContactKind::kWheel;
+    return contact_kind_entry(c.effector.kind).stood_on;
   });
   for (const Contact& placed : contacts) {
     const EndEffector& effector = placed.effector;
-    const bool bears =
-        effector.kind == ContactKind::kSurface || effector.kind == ContactKind::kWheel;
-    if (stands && !bears) continue;
+    const ContactKindEntry& kind = contact_kind_entry(effector.kind);
+    if (stands && !kind.stood_on) continue;
     const Eigen::Isometry3d& pose = state.world_from_link(robot.link_index(effector.link));
     const Eigen::Vector3d point = pose * effector.point;
     // A ball's centre, and that of an upright wheel, is above the place it touches.
-    const bool round = effector.kind == ContactKind::kPoint || effector.kind == ContactKind::kWheel;
     const Eigen::Vector3d place =
-        placed.position +
-        (round ? effector.radius_m : 0.0) * Eigen::Vector3d(placed.normal.stableNormalized());
+        placed.position + (kind.is_round() ? effector.radius_m : 0.0) *
+                              Eigen::Vector3d(placed.normal.stableNormalized());
     const auto pair = [&](const Eigen::Vector3d& of_robot, const Eigen::Vector3d& of_world) {
       own.push_back(point + of_robot);
       wanted.push_back(place + of_world);
@@ -312,7 +311,7 @@ Eigen::VectorXd placed_at(const Robot& robot, const Eigen::VectorXd& configurati
     pair(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
     pair(kUpright_m * up, kUpright_m * up);
     pair(kHeading_m * ahead, kHeading_m * ahead);
-    if (round) continue;
+    if (!kind.axes_on_link) continue;
     const Eigen::Vector3d normal = pose.linear() * effector.normal.normalized();
     pair(kAxis_m * normal, kAxis_m * placed.normal.normalized());
     if (!placed.forward) continue;

@@ -1,5 +1,6 @@
 #include <locograph/check/limits.h>
 #include <locograph/planners/scenario/bar_place.h>
+#include <locograph/robots/contact_kinds/contact_kind_entry.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -63,14 +64,14 @@ double gap_of_grasp(const SeenBar& seen, const Eigen::Vector3d& held) {
 double gap_to_bar_m(const Bar& bar, const Contact& contact) {
   const SeenBar seen(bar, contact.position);
   const Eigen::Vector3d normal = contact.normal.stableNormalized();
-  switch (contact.effector.kind) {
-    case ContactKind::kPoint:
+  switch (contact_kind_entry(contact.effector.kind).bar_touch) {
+    case BarTouch::kPoint:
       return gap_of_point(seen, bar.radius_m, normal);
-    case ContactKind::kSurface:
+    case BarTouch::kArea:
       return gap_of_sole(seen, bar.radius_m, normal, contact.effector);
-    case ContactKind::kRung:
+    case BarTouch::kGrasp:
       return gap_of_grasp(seen, normal.cross(contact.forward->stableNormalized()));
-    case ContactKind::kWheel:
+    case BarTouch::kNone:
       break;
   }
   return kNowhere;

@@ -1,6 +1,7 @@
 #include <locograph/check/limits.h>
 #include <locograph/planners/scenario/bar_place.h>
 #include <locograph/planners/scenario/contact_place.h>
+#include <locograph/robots/contact_kinds/contact_kind_entry.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,14 +20,12 @@ Eigen::Vector3d nearest_point(const Surface& surface, const Eigen::Vector3d& loc
 }
 
 bool lies_on(const Surface& surface, const Contact& contact) {
-  if (contact.effector.kind == ContactKind::kRung) return false;
+  if (!contact_kind_entry(contact.effector.kind).touches_surfaces) return false;
   const Eigen::Isometry3d& pose = surface.world_from_surface;
   if (!(pose.linear().col(2).dot(contact.normal) > 0.0)) return false;  // cheap
   if (angle_between(pose.linear().col(2), contact.normal) > limits::kClosed_rad) return false;
   const Eigen::Vector3d local = pose.inverse() * contact.position;
-  const double sole = contact.effector.kind == ContactKind::kSurface
-                          ? std::hypot(contact.effector.half_x_m, contact.effector.half_y_m)
-                          : 0.0;
+  const double sole = area_reach_m(contact.effector);
   return std::abs(local.z()) <= limits::kClosed_m &&
          (nearest_point(surface, local) - local).norm() <= sole + limits::kClosed_m;
 }

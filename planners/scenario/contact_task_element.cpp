@@ -1,6 +1,7 @@
 #include <locograph/common/suggestion.h>
 #include <locograph/planners/scenario/contact_task_element.h>
 #include <locograph/planners/scenario/effector_element.h>
+#include <locograph/robots/contact_kinds/contact_kind_entry.h>
 
 #include <algorithm>
 #include <cmath>
@@ -102,15 +103,16 @@ class ContactTaskReader {
     xml_.allow(element, {"end_effector", "position", "normal", "forward"}, {});
     Contact contact;
     contact.effector = end_effector(element);
+    const ContactKindEntry& kind = contact_kind_entry(contact.effector.kind);
     contact.position = read_vector(xml_, element, "position");
     contact.normal = read_vector(xml_, element, "normal");
     if (element.Attribute("forward") != nullptr) {
       contact.forward = read_vector(xml_, element, "forward");
-    } else if (contact.effector.kind == ContactKind::kRung) {
+    } else if (!kind.forward_needed.empty()) {
       throw xml_.error(element, "contact of " + contact.effector.name + " without forward",
-                       "forward=\"…\": the bar lies along normal x forward");
+                       "forward=\"…\": a direction " + kind.forward_needed);
     }
-    contact.locked = contact.effector.kind == ContactKind::kWheel;
+    contact.locked = kind.rolls;
     blame(xml_, element, [&] { axes_in_world(contact); });
     return contact;
   }

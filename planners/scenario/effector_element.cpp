@@ -1,4 +1,5 @@
 #include <locograph/planners/scenario/effector_element.h>
+#include <locograph/robots/contact_kinds/contact_kind_entry.h>
 
 #include <cmath>
 #include <cstdio>
@@ -6,14 +7,22 @@
 namespace locograph {
 namespace {
 
-bool has_axes(ContactKind kind) {
-  return kind == ContactKind::kSurface || kind == ContactKind::kRung;
-}
-
 std::string short_text(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);
   return text;
+}
+
+double read_field(const XmlFile& xml, const XmlFile::Element& element, const EffectorField& field) {
+  using Zero = EffectorField::Zero;
+  if (field.zero == Zero::kWhenLeftOut && element.Attribute(field.attribute) == nullptr) return 0.0;
+  if (field.zero != Zero::kAllowed) {
+    return read_positive(xml, element, field.attribute, field.most, field.least);
+  }
+  const double value = xml.number(element, field.attribute);
+  if (value >= 0.0 && value <= field.most) return value;
+  throw xml.error(element, std::string(field.attribute) + " is " + short_text(value),
+                  "zero or more, at most " + short_text(field.most));
 }
 
 }  // namespace
@@ -22,18 +31,18 @@ ContactKind read_contact_kind(const XmlFile& xml, const XmlFile::Element& elemen
   const std::string word = xml.attribute(element, "kind");
   const std::optional<ContactKind> kind = contact_kind_of(word);
   if (!kind) {
-    throw xml.error(element, "unknown kind of contact '" + word + "'",
-                    "surface, point, rung or wheel");
+    throw xml.error(element, "unknown kind of contact '" + word + "'", contact_kind_names());
   }
   return *kind;
 }
 
 std::set<std::string> effector_attributes(ContactKind kind) {
+  const ContactKindEntry& entry = contact_kind_entry(kind);
   std::set<std::string> names = {"link", "point", "max_force"};
-  if (has_axes(kind)) names.insert({"link_normal", "link_forward"});
-  if (kind == ContactKind::kSurface) names.insert({"half_x", "half_y"});
-  if (kind == ContactKind::kPoint || kind == ContactKind::kWheel) names.insert("radius");
-  if (kind == ContactKind::kRung) names.insert("max_moment");
+  if (entry.axes_on_link) names.insert({"link_normal", "link_forward"});
+  for (const EffectorField& field : entry.fields) {
+    if (field.value != &EndEffector::friction) names.insert(field.attribute);
+  }
   return names;
 }
 
@@ -48,19 +57,10 @@ EndEffector read_effector(const XmlFile& xml, const XmlFile::Element& element, C
   vector("link_normal", effector.normal);
   vector("link_forward", effector.forward);
   effector.max_force_N = read_positive(xml, element, "max_force", ranges::kForce_N);
-  if (kind == ContactKind::kSurface) {
-    effector.half_x_m = read_size(xml, element, "half_x");
-    effector.half_y_m = read_size(xml, element, "half_y");
-  }
-  if (kind == ContactKind::kWheel || element.Attribute("radius") != nullptr) {
-    effector.radius_m = read_size(xml, element, "radius");
-  }
-  if (kind == ContactKind::kRung) {
-    effector.max_moment_Nm = xml.number(element, "max_moment");
-    if (!(effector.max_moment_Nm >= 0.0 && effector.max_moment_Nm <= ranges::kMoment_Nm)) {
-      throw xml.error(element, "max_moment is " + short_text(effector.max_moment_Nm),
-                      "zero or more, at most " + short_text(ranges::kMoment_Nm));
-    }
+  for (const EffectorField& field : contact_kind_entry(kind).fields) {
+    const bool read_elsewhere =
+        field.value == &EndEffector::max_force_N || field.value == &EndEffector::friction;
+    if (!read_elsewhere) effector.*field.value = read_field(xml, element, field);
   }
   return effector;
 }

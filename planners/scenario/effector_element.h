@@ -18,10 +18,10 @@
 
 namespace locograph {
 
-/// `kind`: surface, point, rung or wheel.
+/// `kind`: a name of the table of kinds (robots/contact_kinds).
 ContactKind read_contact_kind(const XmlFile& xml, const XmlFile::Element& element);
 
-/// link, point, max_force and, by kind, link_normal, link_forward, half_x, half_y, radius,
+/// link, point, max_force and what the kind has beside them: link_normal and link_forward, sizes,
 /// max_moment. Friction has other names in other files.
 std::set<std::string> effector_attributes(ContactKind kind);
 

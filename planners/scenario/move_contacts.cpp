@@ -1,6 +1,7 @@
 #include <locograph/common/uniform.h>
 #include <locograph/planners/scenario/contact_place.h>
 #include <locograph/planners/scenario/move_contacts.h>
+#include <locograph/robots/contact_kinds/contact_kind_entry.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +12,8 @@ namespace {
 /// How far a contact reaches from its position along a direction of the world [m].
 double reach_along(const Contact& contact, const Eigen::Vector3d& direction) {
   const EndEffector& effector = contact.effector;
-  if (effector.kind != ContactKind::kSurface) return 0.0;
-  if (!contact.forward) return std::hypot(effector.half_x_m, effector.half_y_m);  // in any yaw
+  if (!contact_kind_entry(effector.kind).has_area()) return 0.0;
+  if (!contact.forward) return area_reach_m(effector);  // in any yaw
   const Eigen::Matrix3d axes = axes_in_world(contact);
   return effector.half_x_m * std::abs(axes.col(0).dot(direction)) +
          effector.half_y_m * std::abs(axes.col(1).dot(direction));

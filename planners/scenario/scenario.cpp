@@ -3,6 +3,7 @@
 #include <locograph/planners/scenario/effector_element.h>
 #include <locograph/planners/scenario/environment_element.h>
 #include <locograph/planners/scenario/scenario.h>
+#include <locograph/robots/contact_kinds/contact_kind_entry.h>
 #include <locograph/robots/shipped_robot.h>
 #include <locograph/robots/xml_file.h>
 #include <locograph/world/octree.h>
@@ -177,7 +178,7 @@ class ScenarioReader {
       xml_.allow(element, allowed, {});
       EndEffector effector = read_effector(xml_, element, kind);
       effector.name = xml_.attribute(element, "name");
-      if (kind != ContactKind::kRung) {
+      if (contact_kind_entry(kind).has_friction()) {
         if (!friction) friction = effector_friction(xml_, environment_);
         if (!friction) {
           throw xml_.error(element, "the friction of " + effector.name + " is not known",

@@ -1,5 +1,6 @@
 #include <locograph/planners/scenario/contact_place.h>
 #include <locograph/planners/scenario/snap_to_places.h>
+#include <locograph/robots/contact_kinds/contact_kind_entry.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,10 +28,6 @@ bool is_found_in(const std::string& place, std::span<const std::string> scanned_
   });
 }
 
-bool touches_surfaces(const Contact& contact) {
-  return contact.effector.kind != ContactKind::kRung;
-}
-
 void turn_to(const Eigen::Vector3d& normal, Contact& contact) {
   const Eigen::Vector3d from = contact.normal.stableNormalized();
   if (contact.forward) {
@@ -40,7 +37,7 @@ void turn_to(const Eigen::Vector3d& normal, Contact& contact) {
 }
 
 std::optional<Snapped> snapped(const Contact& contact, const Surface& surface) {
-  if (!touches_surfaces(contact)) return std::nullopt;
+  if (!contact_kind_entry(contact.effector.kind).touches_surfaces) return std::nullopt;
   const Eigen::Isometry3d& pose = surface.world_from_surface;
   const Eigen::Vector3d normal = pose.linear().col(2);
   if (angle_between(normal, contact.normal) > kSnap_rad) return std::nullopt;
@@ -66,13 +63,13 @@ std::optional<Snapped> grasp(const Contact& contact, const Eigen::Vector3d& on_a
 }
 
 std::optional<Snapped> snapped(const Contact& contact, const Bar& bar) {
-  const ContactKind kind = contact.effector.kind;
-  if (kind == ContactKind::kWheel) return std::nullopt;
+  const BarTouch touch = contact_kind_entry(contact.effector.kind).bar_touch;
+  if (touch == BarTouch::kNone) return std::nullopt;
   const Eigen::Vector3d axis = (bar.to - bar.from).normalized();
   const double along =
       std::clamp(axis.dot(contact.position - bar.from), 0.0, (bar.to - bar.from).norm());
   const Eigen::Vector3d on_axis = bar.from + along * axis;
-  if (kind == ContactKind::kRung) return grasp(contact, on_axis, axis);
+  if (touch == BarTouch::kGrasp) return grasp(contact, on_axis, axis);
   const Eigen::Vector3d radial = contact.normal.stableNormalized();
   if (std::abs(angle_between(axis, radial) - 0.5 * std::numbers::pi) > kSnap_rad) {
     return std::nullopt;

@@ -1,14 +1,13 @@
 #include <locograph/common/ranges.h>
 #include <locograph/plugins/configuration/contact_parameter.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
+#include <locograph/robots/contact_kinds/contact_kind_entry.h>
 
 #include <cmath>
 #include <cstdio>
 
 namespace locograph {
 namespace {
-
-constexpr int kMostFacets = 64;
 
 std::string brief(double value) {
   char text[32];
@@ -17,11 +16,11 @@ std::string brief(double value) {
 }
 
 /// A number up to `most`; what is positive, the contact itself demands.
-double read_up_to(FieldReader& in, double most, const char* what) {
+double read_up_to(FieldReader& in, double most, const std::string& what) {
   const std::string token(in.peek());
   const double value = in.number();
   if (std::abs(value) <= most) return value;
-  in.fail(std::string(what) + " " + token, "at most " + brief(most));
+  in.fail(what + " " + token, "at most " + brief(most));
 }
 
 /// A place [m] or a direction.
@@ -35,33 +34,17 @@ Eigen::Vector3d read_vector(FieldReader& in) {
 void read_kind(FieldReader& in, EndEffector& effector) {
   const std::string word = in.word();
   const std::optional<ContactKind> kind = contact_kind_of(word);
-  if (!kind) in.fail("contact kind '" + word + "'", "'surface', 'point', 'rung' or 'wheel'");
+  if (!kind) in.fail("contact kind '" + word + "'", contact_kind_names("'"));
   effector.kind = *kind;
-  if (*kind == ContactKind::kSurface) {
-    effector.half_x_m = read_up_to(in, ranges::kMostSize_m, "the size");
-    effector.half_y_m = read_up_to(in, ranges::kMostSize_m, "the size");
+  for (const EffectorField& field : contact_kind_entry(*kind).fields) {
+    effector.*field.value = read_up_to(in, field.most, std::string("the ") + field.quantity);
   }
-  if (*kind == ContactKind::kPoint || *kind == ContactKind::kWheel)
-    effector.radius_m = read_up_to(in, ranges::kMostSize_m, "the radius");
-  if (*kind != ContactKind::kRung)
-    effector.friction = read_up_to(in, ranges::kFriction, "the friction");
-  effector.max_force_N = read_up_to(in, ranges::kForce_N, "the force");
-  if (*kind == ContactKind::kRung)
-    effector.max_moment_Nm = read_up_to(in, ranges::kMoment_Nm, "the moment");
 }
 
 void write_kind(FieldWriter& out, const EndEffector& effector) {
-  out.word(contact_kind_name(effector.kind));
-  if (effector.kind == ContactKind::kSurface) {
-    out.number(effector.half_x_m);
-    out.number(effector.half_y_m);
-  }
-  if (effector.kind == ContactKind::kPoint || effector.kind == ContactKind::kWheel) {
-    out.number(effector.radius_m);
-  }
-  if (effector.kind != ContactKind::kRung) out.number(effector.friction);
-  out.number(effector.max_force_N);
-  if (effector.kind == ContactKind::kRung) out.number(effector.max_moment_Nm);
+  const ContactKindEntry& kind = contact_kind_entry(effector.kind);
+  out.word(kind.name);
+  for (const EffectorField& field : kind.fields) out.number(effector.*field.value);
 }
 
 void read_place(FieldReader& in, Contact& contact) {
@@ -88,41 +71,11 @@ ContactParameter::ContactParameter(std::shared_ptr<const RobotParameter> paramet
   const EndEffector& effector = contact.effector;
   closure = ContactClosure(*robot->robot, contact);
   link = robot->robot->link_index(effector.link);
-  axes_in_world = kind() == ContactKind::kPoint || kind() == ContactKind::kWheel;
+  const ContactKindEntry& entry = contact_kind_entry(kind());
+  axes_in_world = !entry.axes_on_link;
   axes = axes_in_world ? locograph::axes_in_world(contact) : axes_in_link(effector);
   if (axes_in_world) touching_offset = -effector.radius_m * axes.col(2);
-
-  const std::string name = "contact of " + contact.name();
-  if (kind() == ContactKind::kRung) {
-    if (friction.cone == FrictionCone::kCircle) return;
-    throw Error(name + " is a rung with a friction cone", "none: it is held by a grasp");
-  }
-  const bool outer = friction.cone == FrictionCone::kOuter;
-  yaw_mu = outer ? effector.friction : effector.friction / std::sqrt(2.0);
-  facet_mu = effector.friction;
-  if (friction.cone == FrictionCone::kCircle) return;
-  if (friction.facets < 3 || friction.facets > kMostFacets) {
-    throw Error(name + " has a friction pyramid of " + std::to_string(friction.facets) + " sides",
-                "3 to " + std::to_string(kMostFacets));
-  }
-  if (!outer) facet_mu *= std::cos(EIGEN_PI / friction.facets);
-  const auto exact = [](double value) { return std::abs(value) < 1e-15 ? 0.0 : value; };
-  for (int i = 0; i < friction.facets; ++i) {
-    const double angle = 2.0 * EIGEN_PI * i / friction.facets;
-    facets.emplace_back(exact(std::cos(angle)), exact(std::sin(angle)));
-  }
-}
-
-std::span<const int> ContactParameter::components() const {
-  static constexpr int kSurface[] = {0, 1, 2, 3, 4, 5}, kRung[] = {0, 1, 2, 3, 5};
-  if (kind() == ContactKind::kRung) return kRung;
-  return std::span<const int>(kSurface).first(kind() == ContactKind::kSurface ? 6 : 3);
-}
-
-int ContactParameter::limit_rows() const {
-  if (kind() == ContactKind::kRung) return 5;
-  const int force = 2 + (friction.cone == FrictionCone::kCircle ? 1 : friction.facets);
-  return kind() == ContactKind::kSurface ? force + 12 : force;
+  cone = entry.wrench_cone(contact, friction);
 }
 
 void ContactParameter::read(FieldReader& in) {

@@ -10,7 +10,8 @@
 ///
 /// All of a Contact (robots/contact.h): name of the end effector ("" for none), link, kind, and on
 /// the link its point [m], normal and forward; `at`: position [m], normal and forward in the world,
-/// `free` where it has no forward. KIND, with the components of its wrench:
+/// `free` where it has no forward. KIND and its fields are those of the table of kinds
+/// (robots/contact_kinds); here with the components of the wrench:
 ///
 ///   surface half_x half_y friction f_max   fx fy fz mx my mz   a rectangle about the point [m]
 ///   point radius friction f_max            fx fy fz            a ball, or a bare point: radius 0
@@ -28,21 +29,13 @@
 
 #include <locograph/plugins/configuration/robot_parameters.h>
 #include <locograph/robots/contact_closure.h>
+#include <locograph/robots/wrench_cone.h>
 
 #include <Eigen/Core>
 #include <memory>
-#include <span>
 #include <vector>
 
 namespace locograph {
-
-enum class FrictionCone { kCircle, kInner, kOuter };
-
-/// How the edges see Coulomb's cone.
-struct FrictionModel {
-  FrictionCone cone = FrictionCone::kCircle;
-  int facets = 0;  ///< of a cone that is no circle
-};
 
 struct ContactParameter final : Parameter {
   int robot_number = 0;
@@ -56,23 +49,16 @@ struct ContactParameter final : Parameter {
   /// From the effector's point to where its force acts, fixed in the world; zero where the axes
   /// are fixed in the link.
   Eigen::Vector3d touching_offset = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector2d> facets;  ///< outward unit normals of the pyramid's sides
-  double facet_mu = 0.0;                ///< facet · (fx, fy) <= facet_mu fz
-  /// Friction coefficient in the yaw rows of the contact wrench cone, which hold for corner forces
-  /// in a pyramid of four sides: mu / √2 makes it an inner one.
-  double yaw_mu = 0.0;
+  /// What it can bear: components of its wrench, rows of their limits.
+  std::shared_ptr<const WrenchCone> cone;
 
   ContactParameter() = default;
-  /// Throws Error for a contact that is not sound (robots/contact.h), and for a pyramid of fewer
-  /// than 3 or more than 64 sides.
+  /// Throws Error for a contact that is not sound (robots/contact.h), and for a friction model that
+  /// its kind cannot have.
   ContactParameter(std::shared_ptr<const RobotParameter> robot, int robot_number, Contact contact,
                    const FrictionModel& friction = {});
 
   ContactKind kind() const { return contact.effector.kind; }
-  /// Components of its wrench: indices into fx fy fz mx my mz.
-  std::span<const int> components() const;
-  /// Rows of the limits on its wrench (edge_contact_wrench.h).
-  int limit_rows() const;
 
   std::string_view tag() const override { return "PARAMS_CONTACT"; }
   void read(FieldReader& in) override;

@@ -25,12 +25,10 @@ double EdgeContact::row_tolerance(int row) const {
 
 RowLabel EdgeContact::row_label(int row) const {
   const std::string& name = contact->contact.name();
-  const int held = contact->closure.held()[static_cast<std::size_t>(row)];
-  if (contact->kind() == ContactKind::kWheel && held >= 2) {
-    // The sine of the tilt has no unit.
-    return held == 2 ? RowLabel{name + " height", "m"} : RowLabel{name + " axle tilt", ""};
+  if (const std::optional<ContactRowLabel> label = contact->closure.label(row)) {
+    return {name + " " + label->name, label->unit};
   }
-  RowLabel label = pose_row(held);
+  RowLabel label = pose_row(contact->closure.held()[static_cast<std::size_t>(row)]);
   label.name = name + " " + label.name;
   return label;
 }

@@ -18,7 +18,7 @@ void EdgeBalance::error(const ConfigurationState& q, const WrenchesState& wrench
   const double* components = wrenches.components.data();
   for (const auto& contact : *wrenches.contacts) {
     add_wrench_on_base(q.kinematics, AppliedWrench(q.kinematics, *contact, components), e);
-    components += contact->components().size();
+    components += contact->cone->components().size();
   }
 }
 
@@ -36,7 +36,7 @@ void EdgeBalance::jacobians(const ConfigurationState& q, const WrenchesState& wr
     const AppliedWrench applied(q.kinematics, *contact, wrenches.components.data() + first);
     add_wrench_on_base_gradient(q.kinematics, applied, by_q);
     add_wrench_on_base_by_components(q.kinematics, applied, first, by_wrenches);
-    first += static_cast<int>(contact->components().size());
+    first += static_cast<int>(contact->cone->components().size());
   }
 }
 

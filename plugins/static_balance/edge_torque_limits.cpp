@@ -58,7 +58,7 @@ void EdgeTorqueLimits::error(const ConfigurationState& q, const WrenchesState& w
       const Axis& axis = axes[static_cast<std::size_t>(i)];
       e[axis.active] -= axis.multiplier * wrench_torque(state, applied, i);
     }
-    components += contact->components().size();
+    components += contact->cone->components().size();
   }
   for (int i = 0; i < robot.active_joint_count(); ++i) {
     e[i] = std::max(0.0, std::abs(e[i]) - fraction * robot.active_joint(i).max_effort);
@@ -77,7 +77,7 @@ void EdgeTorqueLimits::jacobians(const ConfigurationState& q, const WrenchesStat
       if (supports(robot, axis, contact->link)) {
         f(AppliedWrench(state, *contact, wrenches.components.data() + first), first);
       }
-      first += static_cast<int>(contact->components().size());
+      first += static_cast<int>(contact->cone->components().size());
     }
   };
   for (int i = 0; i < robot.active_joint_count(); ++i) {

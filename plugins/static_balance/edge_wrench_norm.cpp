@@ -17,7 +17,7 @@ void EdgeWrenchNorm::jacobians(const WrenchesState&, JacobianRef<EdgeWrenchNorm,
 
 RowLabel EdgeWrenchNorm::row_label(int row, const VertexWrenches& wrenches) const {
   for (const auto& contact : *wrenches.contacts) {
-    const std::span<const int> components = contact->components();
+    const std::span<const int> components = contact->cone->components();
     const int count = static_cast<int>(components.size());
     if (row < count) {
       RowLabel label = pose_row(components[row], "N", "N m");

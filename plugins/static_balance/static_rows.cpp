@@ -54,7 +54,7 @@ AppliedWrench::AppliedWrench(const RobotState& state, const ContactParameter& c,
   }
   force.setZero();
   moment.setZero();
-  for (const int component : c.components()) {
+  for (const int component : c.cone->components()) {
     (component < 3 ? force : moment) += *components * axes.col(component % 3);
     ++components;
   }
@@ -122,7 +122,7 @@ void add_wrench_on_base_by_components(const RobotState& state, const AppliedWren
   const Eigen::Vector3d arm =
       base_from_world(state) *
       (applied.point + applied.contact->touching_offset - state.world_from_link(0).translation());
-  for (const int component : applied.contact->components()) {
+  for (const int component : applied.contact->cone->components()) {
     const Eigen::Vector3d direction = directions.col(component % 3);
     if (component < 3) {
       gradient.block<3, 1>(0, first) += direction;
@@ -202,7 +202,7 @@ void add_wrench_gradient_by_components(const RobotState& state, const AppliedWre
       scale * point_column(state, i, applied.point + applied.contact->touching_offset);
   Eigen::Vector3d by_moment = Eigen::Vector3d::Zero();
   if (revolute(state, i)) by_moment = scale * state.joint_axis(i);
-  for (const int component : applied.contact->components()) {
+  for (const int component : applied.contact->cone->components()) {
     const Eigen::Vector3d& direction = component < 3 ? by_force : by_moment;
     *row++ += applied.axes.col(component % 3).dot(direction);
   }

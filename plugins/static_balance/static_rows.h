@@ -49,7 +49,7 @@ void add_gravity_on_base_gradient(const RobotState& state, BaseWrenchGradient gr
 void add_wrench_on_base(const RobotState& state, const AppliedWrench& applied, BaseWrench wrench);
 void add_wrench_on_base_gradient(const RobotState& state, const AppliedWrench& applied,
                                  BaseWrenchGradient gradient);
-/// By the components of the wrench: columns first … first + contact.components().size() − 1.
+/// By the components of the wrench: columns first … first + contact.cone->components().size() − 1.
 void add_wrench_on_base_by_components(const RobotState& state, const AppliedWrench& applied,
                                       int first, BaseWrenchGradient gradient);
 

@@ -23,7 +23,7 @@ VertexWrenches::VertexWrenches(const Parameters& parameters, std::vector<int> nu
     if (list.back()->robot != list.front()->robot) {
       throw Error("wrenches at contacts of different robots", "one robot");
     }
-    size += static_cast<Eigen::Index>(list.back()->components().size());
+    size += static_cast<Eigen::Index>(list.back()->cone->components().size());
   }
   contacts = std::make_shared<const ContactList>(std::move(list));
   state.setZero(size);

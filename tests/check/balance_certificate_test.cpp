@@ -152,7 +152,7 @@ TEST(BalanceCertificate, SqueezesABlockBetweenTwoWalls) {
 }
 
 TEST(BalanceCertificate, HangsABlockFromARungThatTakesNoMomentAboutItsBar) {
-  GivenContact rung = contact_at("block", ContactKind::kRung, 0.0);
+  GivenContact rung = contact_at("block", ContactKind::kGrasp, 0.0);
   rung.point = Vector3d(0.0, 0.0, 0.3);
   rung.max_force_N = 4.0 * kWeight;
   rung.max_moment_Nm = 0.1 * kWeight;
@@ -382,7 +382,7 @@ RandomStance random_stance(std::mt19937& random) {
     stance.contacts.push_back(contact);
   }
   GivenContact& rung = stance.contacts[3];
-  rung.kind = ContactKind::kRung;
+  rung.kind = ContactKind::kGrasp;
   rung.axes_in_world = false;
   rung.max_force_N = 100.0;
   rung.max_moment_Nm = 5.0;
@@ -433,7 +433,7 @@ TEST(BalanceCertificate, GivesWrenchesThatSatisfyEveryConditionWithTheMarginItSt
 
       const double reserve = certificate.margin * weight - 1e-6 * weight;
       const double used = (1.0 - certificate.margin) * (1.0 + 1e-6) + 1e-6;
-      if (contact.kind == ContactKind::kRung) {
+      if (contact.kind == ContactKind::kGrasp) {
         EXPECT_LE(w.head<3>().cwiseAbs().maxCoeff(), used * contact.max_force_N);
         EXPECT_LE(w.tail<3>().cwiseAbs().maxCoeff(), used * contact.max_moment_Nm);
         EXPECT_EQ(w[4], 0.0);
@@ -538,7 +538,7 @@ TEST(BalanceCertificate, RefusesWhatMakesNoSenseByName) {
   EXPECT_NE(error([&](C c, Q, O) { c.half_y_m = nan; }).find("half size y"), std::string::npos);
   EXPECT_NE(error([&](C c, Q, O) { c.max_force_N = INFINITY; }).find("force limit"),
             std::string::npos);
-  EXPECT_NE(error([](C c, Q, O) { c.max_moment_Nm = -1.0; }, ContactKind::kRung).find("moment"),
+  EXPECT_NE(error([](C c, Q, O) { c.max_moment_Nm = -1.0; }, ContactKind::kGrasp).find("moment"),
             std::string::npos);
   EXPECT_NE(error([](C, Q q, O) { q = VectorXd::Zero(6); }).find("6 numbers"), std::string::npos);
   EXPECT_NE(error([&](C, Q q, O) { q[1] = nan; }).find("not finite"), std::string::npos);

@@ -41,7 +41,7 @@ void expect_balanced(const Expected& expected, bool on_rungs) {
     contact.normal = at.normal;
     contact.forward = at.normal.z() > 0.5 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitZ();
     contact.kind = foot       ? ContactKind::kSurface
-                   : on_rungs ? ContactKind::kRung
+                   : on_rungs ? ContactKind::kGrasp
                               : ContactKind::kPoint;
     contact.half_x_m = on_rungs ? 0.01 : 0.08;
     contact.half_y_m = 0.035;

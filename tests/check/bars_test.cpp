@@ -63,7 +63,7 @@ class OnBars : public ::testing::Test {
   static Contact grasp() {
     return {.effector = {.name = "hand",
                          .link = "block",
-                         .kind = ContactKind::kRung,
+                         .kind = ContactKind::kGrasp,
                          .point = {0.0, 0.0, -0.05},
                          .max_force_N = 1000.0,
                          .max_moment_Nm = 10.0},

@@ -38,7 +38,7 @@ std::vector<Contact> four_contacts() {
   contacts.push_back(hand);
   hand.effector = {.name = "right_hand",
                    .link = "RBall",
-                   .kind = ContactKind::kRung,
+                   .kind = ContactKind::kGrasp,
                    .max_force_N = 300.0,
                    .max_moment_Nm = 5.0};
   hand.forward = Eigen::Vector3d::UnitY();

@@ -89,7 +89,7 @@ TEST(PlanEnds, OnlyDirectionsThatAKindHoldsCount) {
   asked.forward.reset();
   EXPECT_TRUE(starts(turned(at("hand", 0.0), 1.0), asked)) << "a sole whose yaw is free";
   asked = at("hand", 0.0);
-  asked.effector.kind = ContactKind::kRung;
+  asked.effector.kind = ContactKind::kGrasp;
   Contact round = asked;
   round.normal = Eigen::Vector3d::UnitX();
   round.forward = -Eigen::Vector3d::UnitZ();

@@ -304,7 +304,7 @@ std::vector<Corruption> corruptions() {
                    Contact grasp;
                    grasp.effector = {.name = "hand",
                                      .link = "ball1_tip",
-                                     .kind = ContactKind::kRung,
+                                     .kind = ContactKind::kGrasp,
                                      .max_force_N = 1e5,
                                      .max_moment_Nm = 1e5};
                    const Eigen::Isometry3d& pose =

@@ -151,7 +151,7 @@ TEST_P(ContactsAndTasks, ContactIsClosedWhereItsFreeCoordinatesAreAnything) {
       Eigen::Isometry3d open = Eigen::Isometry3d::Identity();
       if (held.free_yaw) open = turn(angle, Eigen::Vector3d::UnitZ());
       if (held.kind == ContactKind::kPoint) open = turn(angle, random.direction());
-      if (held.kind == ContactKind::kRung) open = turn(angle, Eigen::Vector3d::UnitY());
+      if (held.kind == ContactKind::kGrasp) open = turn(angle, Eigen::Vector3d::UnitY());
       EXPECT_LT(opened(robot, held, open).norm(), 1e-12) << held.name;
     }
   }

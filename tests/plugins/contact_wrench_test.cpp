@@ -107,7 +107,7 @@ TEST(ContactLimits, HaveAGradientJustBeyondThem) {
   Graph graph = graph_of(robot);
   Contact rung = sole();
   rung.effector.link = "TCP_R";
-  rung.effector.kind = ContactKind::kRung;
+  rung.effector.kind = ContactKind::kGrasp;
   rung.effector.max_moment_Nm = 5.0;
   const std::vector<int> numbers = add_contacts(graph, robot, {sole(), rung});
   std::vector<Eigen::VectorXd> states(4, Eigen::VectorXd::Zero(11));

@@ -27,7 +27,7 @@ struct HeldKind {
 inline constexpr HeldKind kHeldKinds[] = {{"surface", ContactKind::kSurface, false, 6},
                                           {"surface with free yaw", ContactKind::kSurface, true, 5},
                                           {"point", ContactKind::kPoint, false, 3},
-                                          {"rung", ContactKind::kRung, false, 5}};
+                                          {"rung", ContactKind::kGrasp, false, 5}};
 
 inline Eigen::Isometry3d random_pose(Random& random, double reach) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();

@@ -125,12 +125,12 @@ TEST_P(PublishedPosture, HasThePublishedWrenchesOfLeastNorm) {
   for (int i = 0, row = 0, component = 0; i < 4; ++i) {
     const ContactParameter& contact = *(*graph.vertex(w).contacts)[i];
     if (contact.kind() == ContactKind::kSurface) {
-      limits.weights.segment(row + contact.limit_rows() - 8, 8).setZero();
+      limits.weights.segment(row + contact.cone->rows() - 8, 8).setZero();
       const bool floor = posture.contacts[i].normal.z() > 0.5;
       norm.weights[component + (floor ? 5 : 3)] = 1e10;
     }
-    row += contact.limit_rows();
-    component += static_cast<int>(contact.components().size());
+    row += contact.cone->rows();
+    component += static_cast<int>(contact.cone->components().size());
   }
   graph.add_edge(EdgeBalance(1e8, 1e8), q, w);
   graph.add_edge(limits, w);
@@ -155,7 +155,7 @@ TEST_P(PublishedPosture, HasThePublishedWrenchesOfLeastNorm) {
     if (contact.kind() == ContactKind::kSurface) {
       moment = axes * Eigen::Map<const Eigen::Vector3d>(component + 3);
     }
-    component += contact.components().size();
+    component += contact.cone->components().size();
     EXPECT_LT((force - expected.force).norm(), 0.03 * expected.force.norm())
         << expected.frame << ": " << force.transpose() << ", published "
         << expected.force.transpose();

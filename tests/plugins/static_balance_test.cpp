@@ -37,7 +37,7 @@ std::vector<Contact> some_contacts(const RobotCase& robot, Random& random) {
   }
   contacts[1].effector.kind = ContactKind::kPoint;
   contacts[1].effector.radius_m = 0.03;
-  contacts[2].effector.kind = ContactKind::kRung;
+  contacts[2].effector.kind = ContactKind::kGrasp;
   contacts[2].effector.max_moment_Nm = 20.0;
   contacts[4].effector.kind = ContactKind::kPoint;
   if (!robot.wheels.empty()) {
@@ -95,7 +95,7 @@ Eigen::VectorXd torques_by_statics(const Standing& standing, std::size_t i) {
     Eigen::Matrix3d axes = contact->axes;
     if (!contact->axes_in_world) axes = state.world_from_link(contact->link).linear() * axes;
     Eigen::Matrix<double, 6, 1> full = Eigen::Matrix<double, 6, 1>::Zero();
-    for (const int c : contact->components()) full[c] = *component++;
+    for (const int c : contact->cone->components()) full[c] = *component++;
     // A ball and a wheel are pressed where they touch, a radius below their centre.
     const Eigen::Isometry3d& pose = state.world_from_link(contact->link);
     const EndEffector& effector = contact->contact.effector;

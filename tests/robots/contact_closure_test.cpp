@@ -1,8 +1,10 @@
 // Closure of contacts: what each kind holds, its Jacobian against differences, and allocation.
 #include <locograph/common/error.h>
 #include <locograph/robots/contact_closure.h>
+#include <locograph/robots/wheel.h>
 
 #include "common/allocation_counter.h"
+#include "robots/blade_contact.h"
 #include "robots/robot_test_support.h"
 
 namespace locograph::test {
@@ -117,9 +119,10 @@ INSTANTIATE_TEST_SUITE_P(
                     ClosureCase{"SurfaceWithFreeYaw", ContactKind::kSurface, true},
                     ClosureCase{"Point", ContactKind::kPoint},
                     ClosureCase{"Ball", ContactKind::kPoint, false, 0.04},
-                    ClosureCase{"Rung", ContactKind::kRung},
+                    ClosureCase{"Rung", ContactKind::kGrasp},
                     ClosureCase{"Wheel", ContactKind::kWheel, false, 0.078},
-                    ClosureCase{"LockedWheel", ContactKind::kWheel, false, 0.078, true}),
+                    ClosureCase{"LockedWheel", ContactKind::kWheel, false, 0.078, true},
+                    ClosureCase{"KindOfTheTest", blade()}),
     [](const testing::TestParamInfo<ClosureCase>& one) { return one.param.name; });
 
 class OneClosure : public testing::Test {
@@ -209,7 +212,7 @@ TEST_F(OneClosure, OfAWheelDoesNotChangeWhenItTurns) {
 }
 
 TEST_F(OneClosure, OfARungIsBlindToTurningRoundTheBarOnly) {
-  Contact grasp{.effector = end(ContactKind::kRung, "ball1_tip")};
+  Contact grasp{.effector = end(ContactKind::kGrasp, "ball1_tip")};
   const Eigen::Isometry3d& pose = state.world_from_link(robot.link_index("ball1_tip"));
   grasp.position = pose.translation();
   const Eigen::Matrix3d turned =

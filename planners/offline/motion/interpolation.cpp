@@ -1,5 +1,6 @@
 #include <locograph/planners/offline/motion/interpolation.h>
 #include <locograph/planners/offline/motion/swing.h>
+#include <locograph/robots/contact_kinds/contact_kind_entry.h>
 
 #include <algorithm>
 #include <array>
@@ -76,7 +77,7 @@ class Interpolation : public SegmentPlanner {
     }
     // Balls and wheels have no axes to turn: they take each arc once.
     const bool turns = std::ranges::any_of(swings, [](const Swing& swing) {
-      return swing.contact().effector.kind == ContactKind::kSurface;
+      return contact_kind_entry(swing.contact().effector.kind).holds_normal;
     });
     std::vector<ArcOptions> held, free, blocked;
     for (const ArcOptions& arc : kArcs) {

@@ -1,4 +1,5 @@
 #include <locograph/planners/offline/motion/segment_space.h>
+#include <locograph/robots/contact_kinds/contact_kind_entry.h>
 #include <locograph/robots/wheel.h>
 
 #include <Eigen/Cholesky>
@@ -47,7 +48,7 @@ Contact contact_in_air(const Robot& robot, const Contact& contact, const Eigen::
   Contact held = contact;
   held.position = link * effector.point;
   held.locked = false;
-  if (with_axes && effector.kind == ContactKind::kSurface) {
+  if (with_axes && contact_kind_entry(effector.kind).holds_normal) {
     const Eigen::Matrix3d axes = link.linear() * axes_in_link(effector);
     held.normal = axes.col(2);
     held.forward = axes.col(0);
@@ -140,7 +141,7 @@ std::vector<bool> SegmentSpace::what_is_near(const Eigen::VectorXd& q,
       if (other.name() == contact.name()) at = other.position;
     }
     const EndEffector& of = contact.effector;
-    const double radius_m = of.kind == ContactKind::kSurface ? 0.0 : of.radius_m;
+    const double radius_m = contact_kind_entry(of.kind).is_round() ? of.radius_m : 0.0;
     const Eigen::Vector3d off =
         at - contact.position - radius_m * contact.normal.stableNormalized();
     result.push_back(off.norm() < kNear_m &&

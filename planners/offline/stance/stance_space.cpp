@@ -1,6 +1,7 @@
 #include <locograph/check/limits.h>
 #include <locograph/planners/offline/stance/stance_space.h>
 #include <locograph/planners/scenario/bar_place.h>
+#include <locograph/robots/contact_kinds/contact_kind_entry.h>
 
 #include <algorithm>
 #include <cmath>
@@ -111,16 +112,15 @@ int StanceSpace::intern(int effector, const Contact& contact) {
   if (!added) return found->second;
   Place place{effector, {contact, area_on_surfaces(contact)}};
   place.bearing.contact.effector.friction = friction_at(contact);
-  place.bearing.contact.locked = contact.effector.kind == ContactKind::kWheel;
+  place.bearing.contact.locked = contact_kind_entry(contact.effector.kind).rolls;
   places_.push_back(std::move(place));
   return found->second;
 }
 
 std::vector<int> StanceSpace::surfaces_at(const Contact& contact) const {
   constexpr double kRound_m = 1e-3;
-  const EndEffector& of = contact.effector;
-  const double sole = of.kind == ContactKind::kSurface ? std::hypot(of.half_x_m, of.half_y_m) : 0.0;
-  return surfaces_.touching(box_around(contact.position, sole + kRound_m));
+  return surfaces_.touching(
+      box_around(contact.position, area_reach_m(contact.effector) + kRound_m));
 }
 
 double StanceSpace::friction_at(const Contact& contact) const {
@@ -143,7 +143,7 @@ double StanceSpace::friction_at(const Contact& contact) const {
 }
 
 std::vector<Eigen::Vector2d> StanceSpace::area_on_surfaces(const Contact& contact) const {
-  if (contact.effector.kind != ContactKind::kSurface) return {};
+  if (!contact_kind_entry(contact.effector.kind).has_area()) return {};
   Contact standing = contact;
   EndEffector& sole = standing.effector;
   if (!contact.forward) sole.half_x_m = sole.half_y_m = std::min(sole.half_x_m, sole.half_y_m);
@@ -222,7 +222,8 @@ bool StanceSpace::has_room(int number) {
   const auto [found, fresh] = has_room_.emplace(number, true);
   const Contact& contact = place(number).bearing.contact;
   const double radius_m = contact.effector.radius_m;
-  if (!fresh || contact.effector.kind != ContactKind::kPoint || !(radius_m > 0.0)) {
+  const ContactKindEntry& kind = contact_kind_entry(contact.effector.kind);
+  if (!fresh || !kind.is_round() || kind.rolls || !(radius_m > 0.0)) {
     return found->second;
   }
   const Eigen::Vector3d normal = contact.normal.stableNormalized();
@@ -239,7 +240,8 @@ bool StanceSpace::has_room(int number) {
 void StanceSpace::places_on(int effector, const Surface& surface, const Eigen::Vector3d& point,
                             double reach_m, std::vector<int>& places) {
   const EndEffector& of = problem_.end_effectors[static_cast<std::size_t>(effector)];
-  if (of.kind == ContactKind::kRung) return;
+  const ContactKindEntry& kind = contact_kind_entry(of.kind);
+  if (!kind.touches_surfaces) return;
   const Eigen::Isometry3d& pose = surface.world_from_surface;
   const Eigen::Vector3d local = pose.inverse() * point;
   const double off = std::abs(local.z());
@@ -247,20 +249,15 @@ void StanceSpace::places_on(int effector, const Surface& surface, const Eigen::V
   const double radius = std::sqrt(reach_m * reach_m - off * off);
   // A sole stays whole on the surface where that leaves it some room, else with its middle in the
   // inner half, as a larger one bears no less; a wheel a radius away from where it would roll off.
-  Eigen::Vector2d inset = Eigen::Vector2d::Zero();
+  const Eigen::Vector2d inset = kind.inset_m(of);
   Contact contact;
   contact.effector = of;
   contact.normal = pose.linear().col(2);
-  if (of.kind == ContactKind::kSurface) {
-    contact.forward = pose.linear().col(0);
-    inset << of.half_x_m, of.half_y_m;
-  } else if (of.kind == ContactKind::kWheel) {
-    inset.setConstant(of.radius_m);
-  }
+  if (kind.axes_on_link) contact.forward = pose.linear().col(0);
   std::vector<double> along[2];
   for (int axis = 0; axis < 2; ++axis) {
     const double half = axis == 0 ? surface.half_x_m : surface.half_y_m;
-    const double least = of.kind == ContactKind::kSurface ? 0.5 * half : 0.0;
+    const double least = kind.has_area() ? 0.5 * half : 0.0;
     const double most = std::max(least, half - inset[axis]);
     const double step = options_.grid_m;
     const double first = std::ceil((local[axis] - radius) / step);
@@ -281,7 +278,8 @@ void StanceSpace::places_on(int effector, const Surface& surface, const Eigen::V
 void StanceSpace::places_on(int effector, const Bar& bar, const Eigen::Vector3d& point,
                             double reach_m, std::vector<int>& places) {
   const EndEffector& of = problem_.end_effectors[static_cast<std::size_t>(effector)];
-  if (of.kind == ContactKind::kWheel) return;
+  const ContactKindEntry& kind = contact_kind_entry(of.kind);
+  if (kind.bar_touch == BarTouch::kNone) return;
   const double length = (bar.to - bar.from).norm();
   const Eigen::Vector3d way = (bar.to - bar.from) / length;
   const double at = way.dot(point - bar.from);
@@ -292,8 +290,9 @@ void StanceSpace::places_on(int effector, const Bar& bar, const Eigen::Vector3d&
   if (!(up.norm() > 1e-3)) up = way.unitOrthogonal();
   up.normalize();
   const double middle = 0.5 * length, step = options_.grid_m;
-  const int sides = of.kind == ContactKind::kSurface ? 1 : kBarSides;
-  const double end = of.kind == ContactKind::kSurface ? std::min(of.half_y_m, 0.5 * middle) : 0.0;
+  const bool across = kind.bar_touch == BarTouch::kArea;
+  const int sides = across ? 1 : kBarSides;
+  const double end = across ? std::min(of.half_y_m, 0.5 * middle) : 0.0;
   for (double k = std::ceil((at - radius - middle) / step); k * step <= at + radius - middle; ++k) {
     if (std::abs(k * step) > middle - end + 1e-9) continue;
     const Eigen::Vector3d on_axis = bar.from + (middle + k * step) * way;
@@ -304,8 +303,8 @@ void StanceSpace::places_on(int effector, const Bar& bar, const Eigen::Vector3d&
       contact.effector = of;
       contact.normal = normal;
       contact.position = on_axis;
-      if (of.kind != ContactKind::kRung) contact.position += bar.radius_m * normal;
-      if (of.kind != ContactKind::kPoint) contact.forward = way.cross(normal);
+      if (kind.bar_touch != BarTouch::kGrasp) contact.position += bar.radius_m * normal;
+      if (kind.axes_on_link) contact.forward = way.cross(normal);
       places.push_back(intern(effector, contact));
     }
   }

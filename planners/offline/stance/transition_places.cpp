@@ -1,5 +1,6 @@
 #include <locograph/check/limits.h>
 #include <locograph/planners/offline/stance/transition_places.h>
+#include <locograph/robots/contact_kinds/contact_kind_entry.h>
 #include <locograph/robots/kinematic_tree.h>
 #include <locograph/world/link_solid.h>
 
@@ -99,12 +100,13 @@ void TransitionPlaces::add_touch(const Contact& contact, bool is_closed, bool is
               std::vector<bool>(bounds, false)};
   const int body = body_of[static_cast<std::size_t>(link)];
   const std::vector<bool> links = touching_links(model, {&contact, 1});
+  const bool turns_freely = contact_kind_entry(effector.kind).turns_freely;
   for (std::size_t b = 0; b < bounds; ++b) {
     const std::size_t touching = static_cast<std::size_t>(robot_->bounds[b].link);
     if (!links[touching]) continue;
     touch.bounds.push_back(static_cast<int>(b));
     touch.fixed[b] = body_of[touching] == body;
-    touch.closed[b] = is_closed && touch.fixed[b] && effector.kind != ContactKind::kPoint;
+    touch.closed[b] = is_closed && touch.fixed[b] && !turns_freely;
   }
   touches_.push_back(std::move(touch));
 }
@@ -199,10 +201,10 @@ bool TransitionPlaces::is_under(const Surface& surface, const Touch& touch) cons
   const Eigen::Vector3d at = surface_from_world * touch.contact.position;
   const double x_m = surface.half_x_m + limits::kClosed_m,
                y_m = surface.half_y_m + limits::kClosed_m;
-  if (effector.kind != ContactKind::kSurface || !touch.contact.forward) {
-    const double sole = effector.kind == ContactKind::kSurface
-                            ? std::min(effector.half_x_m, effector.half_y_m)
-                            : limits::kClosed_m;
+  const bool has_area = contact_kind_entry(effector.kind).has_area();
+  if (!has_area || !touch.contact.forward) {
+    const double sole =
+        has_area ? std::min(effector.half_x_m, effector.half_y_m) : limits::kClosed_m;
     return std::abs(at.x()) <= x_m + sole && std::abs(at.y()) <= y_m + sole;
   }
   const Eigen::Matrix3d axes = surface_from_world.linear() * axes_in_world(touch.contact);

@@ -39,9 +39,7 @@ struct Rays {
         lower.push_back(ray.lower);
         upper.push_back(ray.upper);
       }
-      const EndEffector& effector = one.contact.effector;
-      const bool grasp = effector.kind == ContactKind::kRung;
-      most.push_back(grasp ? -1.0 : (1.0 - kOfPyramids) * effector.max_force_N / weight_N);
+      most.push_back(most_of_rays(one.contact, kOfPyramids, weight_N));
     }
     wrenches.resize(6, static_cast<Eigen::Index>(rays.size()));
     at_contact.resize(6, wrenches.cols());

@@ -190,8 +190,8 @@ TEST(BalanceRegion, TwoWallsHoldWhatFrictionAndForceAllow) {
 }
 
 TEST(BalanceRegion, GraspsPullAsWellAsTheyPush) {
-  std::vector<Contact> grasps = {contact_at(ContactKind::kRung, {-0.3, 0.0, 1.0}),
-                                 contact_at(ContactKind::kRung, {0.3, 0.0, 1.0})};
+  std::vector<Contact> grasps = {contact_at(ContactKind::kGrasp, {-0.3, 0.0, 1.0}),
+                                 contact_at(ContactKind::kGrasp, {0.3, 0.0, 1.0})};
   for (Contact& grasp : grasps) {
     grasp.effector.max_force_N = 2.0 * kWeight_N;
     grasp.effector.max_moment_Nm = 0.05 * kWeight_N;
@@ -264,7 +264,7 @@ Contact random_contact(std::mt19937_64& random) {
   const double draw = uniform(random, 0.0, 1.0);
   const ContactKind kind = draw < 0.4   ? ContactKind::kSurface
                            : draw < 0.8 ? ContactKind::kPoint
-                                        : ContactKind::kRung;
+                                        : ContactKind::kGrasp;
   const Vector3d position(uniform(random, -0.5, 0.5), uniform(random, -0.5, 0.5),
                           uniform(random, 0.0, 1.0));
   const double tilt = uniform(random, 0.0, 1.2), azimuth = uniform(random, -3.0, 3.0);
@@ -275,7 +275,7 @@ Contact random_contact(std::mt19937_64& random) {
   Contact contact = contact_at(kind, position, normal, forward);
   contact.effector.friction = uniform(random, 0.3, 1.0);
   contact.effector.max_force_N = uniform(random, 0.3, 3.0) * kWeight_N;
-  if (kind == ContactKind::kRung) contact.effector.max_moment_Nm = uniform(random, 0.0, 10.0);
+  if (kind == ContactKind::kGrasp) contact.effector.max_moment_Nm = uniform(random, 0.0, 10.0);
   if (kind == ContactKind::kSurface && uniform(random, 0.0, 1.0) < 0.3) contact.forward.reset();
   return contact;
 }

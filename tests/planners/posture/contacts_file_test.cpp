@@ -43,7 +43,7 @@ TEST(ContactsFile, ReadsEveryKind) {
   EXPECT_EQ(contacts[1].effector.point, Eigen::Vector3d(0.0, 0.0, 0.01));
   EXPECT_FALSE(contacts[1].forward);
   EXPECT_FALSE(contacts[1].bears_load);
-  EXPECT_EQ(contacts[2].effector.kind, ContactKind::kRung);
+  EXPECT_EQ(contacts[2].effector.kind, ContactKind::kGrasp);
   EXPECT_EQ(contacts[2].effector.normal, Eigen::Vector3d::UnitY());
   EXPECT_EQ(contacts[2].effector.forward, Eigen::Vector3d::UnitZ());
   EXPECT_EQ(contacts[2].effector.max_moment_Nm, 5.0);

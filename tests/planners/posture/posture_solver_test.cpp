@@ -337,7 +337,7 @@ TEST(PostureSolver, RefusesContactsThatMakeNoSense) {
   refused([](PostureProblem& p) { p.stance.contacts.push_back(p.stance.contacts[0]); }, "the same");
   refused(
       [](PostureProblem& p) {
-        p.stance.contacts[0].effector.kind = ContactKind::kRung;
+        p.stance.contacts[0].effector.kind = ContactKind::kGrasp;
         p.stance.contacts[0].forward.reset();
       },
       "rung without forward");

@@ -40,11 +40,11 @@ class BarContacts {
     const double at_m = length_m * between(-0.3, 1.3);
     contact.position = bar.from + at_m * along + amount() * direction();
     const Vector3d aside = along.cross(out);
-    if (kind != ContactKind::kRung) contact.position += (bar.radius_m + amount()) * out;
+    if (kind != ContactKind::kGrasp) contact.position += (bar.radius_m + amount()) * out;
     if (kind == ContactKind::kSurface) contact.position += between(-0.3, 0.3) * aside;
     contact.normal = between(0.1, 3.0) * turned(out);
-    contact.forward = kind == ContactKind::kRung ? Vector3d(turned(aside)) : direction();
-    if (kind == ContactKind::kRung && between(0.0, 1.0) < 0.5) *contact.forward *= -1.0;
+    contact.forward = kind == ContactKind::kGrasp ? Vector3d(turned(aside)) : direction();
+    if (kind == ContactKind::kGrasp && between(0.0, 1.0) < 0.5) *contact.forward *= -1.0;
     return contact;
   }
 
@@ -129,7 +129,7 @@ TEST(BarPlace, PlannersAndTheJudgeAgreeOnTenThousandSoles) {
 }
 
 TEST(BarPlace, PlannersAndTheJudgeAgreeOnTenThousandGrasps) {
-  expect_agreement(ContactKind::kRung);
+  expect_agreement(ContactKind::kGrasp);
 }
 
 TEST(BarPlace, WheelsTouchNoBar) {

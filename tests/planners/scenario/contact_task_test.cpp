@@ -59,7 +59,7 @@ TEST(ContactTask, AContactTaskHasAStartWithItsPostureAndGoalsInTheirOrder) {
   ASSERT_EQ(task.goals[0].contacts.size(), 1u);
   EXPECT_EQ(task.goals[0].contacts[0].position, Eigen::Vector3d(1.0, 0.0, 0.2));
   EXPECT_FALSE(task.goals[0].contacts[0].forward.has_value()) << "its yaw is free";
-  EXPECT_EQ(task.goals[1].contacts[0].effector.kind, ContactKind::kRung);
+  EXPECT_EQ(task.goals[1].contacts[0].effector.kind, ContactKind::kGrasp);
 }
 
 TEST(ContactTask, AStartMayLeaveThePostureToTheRobotsState) {

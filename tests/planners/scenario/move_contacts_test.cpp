@@ -59,7 +59,7 @@ Contact on_table(ContactKind kind, double x_m, double y_m, double yaw_rad = 0.0)
 Contact grasp_at(double y_m) {
   Contact contact;
   contact.effector.name = "it";
-  contact.effector.kind = ContactKind::kRung;
+  contact.effector.kind = ContactKind::kGrasp;
   contact.position = {3.0, y_m, 1.0};
   contact.normal = Eigen::Vector3d::UnitZ();
   contact.forward = Eigen::Vector3d::UnitX();

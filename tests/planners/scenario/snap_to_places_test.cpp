@@ -135,14 +135,14 @@ TEST(SnapToPlaces, PointsAndSolesComeOntoTheLineOfABarAlongTheirNormal) {
 TEST(SnapToPlaces, GraspsComeOntoTheAxisWithTheirBarAlongItInEitherSense) {
   const Bar bar = scanned_world().bars[0];
   for (const double sense : {1.0, -1.0}) {
-    Contact grasp = contact_of(ContactKind::kRung, {1.02, 0.2, 1.02});
+    Contact grasp = contact_of(ContactKind::kGrasp, {1.02, 0.2, 1.02});
     grasp.forward = Eigen::Vector3d(sense, 0.0, 0.0);
     const Contact after = snapped(grasp);
     EXPECT_LT(off_bar_m(after, bar), 1e-9);
     EXPECT_GT(after.forward->x() * sense, 0.99);
     EXPECT_GT(after.normal.z(), 0.99);
   }
-  Contact along = contact_of(ContactKind::kRung, {1.01, 0.0, 1.0});
+  Contact along = contact_of(ContactKind::kGrasp, {1.01, 0.0, 1.0});
   along.forward = Eigen::Vector3d::UnitY();
   expect_as_it_was(along);
 }

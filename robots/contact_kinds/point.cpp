@@ -1,0 +1,41 @@
+#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds/frame_closure.h>
+#include <locograph/robots/contact_kinds/pressed_cone.h>
+
+namespace locograph {
+namespace {
+
+/// A ball that does not roll, or a bare point.
+struct PointContact final : ContactKindEntry {
+  PointContact()
+      : ContactKindEntry("point", {effector_fields::kBallRadius, effector_fields::kFriction,
+                                   effector_fields::kMaxForce}) {
+    turns_freely = true;
+    bar_touch = BarTouch::kPoint;
+  }
+
+  std::unique_ptr<const ClosureRows> closure(const Robot& robot,
+                                             const Contact& contact) const override {
+    Eigen::Vector3d centre = contact.position;
+    centre += contact.effector.radius_m * axes_in_world(contact).col(2);
+    return std::make_unique<FrameClosure>(robot, contact, centre, FrameClosure::Held::kPosition);
+  }
+
+  std::unique_ptr<const WrenchCone> wrench_cone(const Contact& contact,
+                                                const FrictionModel& friction) const override {
+    return std::make_unique<PressedCone>(contact, friction);
+  }
+
+  std::vector<BearingRay> rays(const BearingContact& bearing, double part, double) const override {
+    return pressed_rays(bearing.contact, {Eigen::Vector2d::Zero()}, part);
+  }
+};
+
+}  // namespace
+
+const ContactKindEntry& point_contact() {
+  static const PointContact entry;
+  return entry;
+}
+
+}  // namespace locograph
