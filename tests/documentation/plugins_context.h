@@ -209,6 +209,13 @@ struct Context : in_plugins::Context {
   Context() { add_wheels({4, 5, 7}); }
 };
 }  // namespace static_balance_vertex_wrenches_h
+namespace surface_distance_edge_surface_distance_h {
+struct Context : RollingContext {
+  const std::shared_ptr<const RobotParameter>& robot = parameter;
+  const VertexId<VertexConfiguration> q = here;
+  const World world = small_room();
+};
+}  // namespace surface_distance_edge_surface_distance_h
 namespace surface_distance_place_relations_h {
 struct Context : PlacesContext {
   const Stance stance = PlacesContext::stance->stance;
@@ -222,6 +229,12 @@ struct Context : PlacesContext {
   Context() { relations.set_contacts(stance->stance.contacts); }
 };
 }  // namespace surface_distance_place_rows_h
+namespace surface_distance_places_parameter_h {
+struct Context : in_plugins::Context {
+  const std::shared_ptr<const RobotParameter>& robot = parameter;
+  const World world = small_room();
+};
+}  // namespace surface_distance_places_parameter_h
 namespace surface_distance_touchable_places_h {
 struct Context : PlacesContext {
   const std::shared_ptr<const RobotParameter>& robot = parameter;
