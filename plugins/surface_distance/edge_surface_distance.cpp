@@ -1,3 +1,4 @@
+#include <locograph/common/ranges.h>
 #include <locograph/plugins/configuration/limit_kind.h>
 #include <locograph/plugins/surface_distance/edge_surface_distance.h>
 
@@ -11,8 +12,8 @@ namespace {
 
 /// Links that touch a surface are in it however far below; so far it is looked for.
 constexpr double kBelowSurface_m = 0.3;
-/// As the stance planner's: the judge allows so much more.
-constexpr double kTouchingTolerance_m = 5e-4;
+/// Of what is near what it touches, above it: rows that hold to their tolerance keep it out.
+constexpr double kOffSurface_m = 2e-4, kTouchingTolerance_m = 1e-4;
 
 /// Of two neighbouring stances.
 struct Closed {
@@ -32,9 +33,28 @@ Closed closed_contacts(const Stance& before, const Stance& after) {
 
 }  // namespace
 
+void ParameterNumbers::read(FieldReader& in) {
+  const int count = in.integer();
+  if (count < 0 || count > ranges::kContacts) {
+    in.fail("number of contacts " + std::to_string(count),
+            "0 to " + std::to_string(ranges::kContacts));
+  }
+  for (int i = 0; i < count; ++i) all.push_back(in.integer());
+}
+
+void ParameterNumbers::write(FieldWriter& out) const {
+  out.integer(static_cast<long>(all.size()));
+  for (const int number : all) out.integer(number);
+}
+
 EdgeSurfaceDistance::EdgeSurfaceDistance(const RobotParameter& robot, int of_places, int of_before,
-                                         int of_after, double margin, double weight)
-    : places_number(of_places), before_number(of_before), after_number(of_after), margin_m(margin) {
+                                         int of_after, double margin, double weight,
+                                         std::vector<int> of_near)
+    : places_number(of_places),
+      before_number(of_before),
+      after_number(of_after),
+      margin_m(margin),
+      near_numbers{std::move(of_near)} {
   weights.setConstant(static_cast<Eigen::Index>(robot.bounds.size()), weight);
 }
 
@@ -46,17 +66,35 @@ void EdgeSurfaceDistance::bind(const Parameters& parameters) {
   require_same_robot(kTag, before_now->robot, robot);
   require_same_robot(kTag, after_now->robot, robot);
   require_rows(kTag, dimension(), static_cast<long>(robot->bounds.size()));
-  if (relations && places == places_now && before == before_now && after == after_now) return;
+  ContactList near_now;
+  for (const int number : near_numbers.all) {
+    near_now.push_back(parameters.get<ContactParameter>(number));
+    require_same_robot(kTag, near_now.back()->robot, robot);
+  }
+  if (relations && places == places_now && before == before_now && after == after_now &&
+      near == near_now) {
+    return;
+  }
   places = places_now;
   before = before_now;
   after = after_now;
+  near = near_now;
   const Closed closed = closed_contacts(before->stance, after->stance);
   if (closed.held.empty()) {
     throw locograph::Error(std::string(kTag) + " between two stances without a common contact",
                            "stances that follow each other in a plan");
   }
+  std::vector<Contact> not_closed;
+  for (const auto& one : near) {
+    const std::string& name = one->contact.name();
+    if (std::ranges::find(closed.all, name, &Contact::name) != closed.all.end()) {
+      throw locograph::Error(std::string(kTag) + " with '" + name + "' both closed and near",
+                             "one of them");
+    }
+    not_closed.push_back(one->contact);
+  }
   PlaceRelations made(places->places);
-  made.set_contacts(closed.all, closed.held);
+  made.set_contacts(closed.all, closed.held, not_closed, kOffSurface_m);
   made.relate_all();
   relations = std::make_shared<const PlaceRelations>(std::move(made));
 }

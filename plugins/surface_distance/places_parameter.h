@@ -39,7 +39,7 @@ struct PlacesParameter final : Parameter {
  private:
   void make_places(std::shared_ptr<const RobotParameter> robot);
 
-  World world_;  ///< poses aside
+  World world_;  ///< its poses are those of a file, too
   std::vector<SavedPose> surface_poses_, solid_poses_;
 };
 

@@ -91,13 +91,14 @@ class SurfaceDistance : public testing::Test {
     parameters.set(kPlaces, std::make_shared<const PlacesParameter>(robot.robot, kRobot, world));
     return graph;
   }
-  EdgeSurfaceDistance edge(int before = kBoth, int after = kBoth) const {
-    return EdgeSurfaceDistance(*robot.robot, kPlaces, before, after, kAway_m, 1.0);
+  EdgeSurfaceDistance edge(int before = kBoth, int after = kBoth,
+                           const std::vector<int>& near = {}) const {
+    return EdgeSurfaceDistance(*robot.robot, kPlaces, before, after, kAway_m, 1.0, near);
   }
   Eigen::VectorXd error(const World& world, const Eigen::VectorXd& q, int before = kBoth,
-                        int after = kBoth) const {
+                        int after = kBoth, const std::vector<int>& near = {}) const {
     Graph graph = graph_in(world);
-    graph.add_edge(edge(before, after), add_configuration(graph, robot, 0, 0.0, q));
+    graph.add_edge(edge(before, after, near), add_configuration(graph, robot, 0, 0.0, q));
     return Evaluated(graph).error(0);
   }
   /// Upright, with the base at this height.
@@ -251,6 +252,17 @@ TEST_F(SurfaceDistance, BetweenTwoStancesAFootThatLiftsMayTouchAndNotReachIn) {
   EXPECT_THROW(error(world, standing(), kOnLeft, kOnRight), Error);
 }
 
+TEST_F(SurfaceDistance, AFootThatHasJustLeftItsPlaceIsKeptOutOfItWithoutTheMargin) {
+  World world;
+  world.surfaces = {ground()};
+  constexpr double kUp_m = 1e-3, kDeep_m = 2e-3, kOff_m = 2e-4;
+  const int right = row_of("right");
+  EXPECT_EQ(error(world, standing(0.7 + kUp_m), kOnLeft, kOnLeft, {11})[right], 0.0);
+  EXPECT_NEAR(error(world, standing(0.7 - kDeep_m), kOnLeft, kOnLeft, {11})[right],
+              kDeep_m + kOff_m, 1e-12);
+  EXPECT_THROW(error(world, standing(), kBoth, kBoth, {11}), Error) << "it is closed";
+}
+
 TEST_F(SurfaceDistance, APlateIsInTheWayFromBothSides) {
   World world;
   world.surfaces = {{.name = "table",
@@ -289,7 +301,7 @@ TEST_F(SurfaceDistance, ComesBackFromAFileWithTheSameBits) {
                             .half_x_m = 0.2 / 3.0});
   Random random(174);
   Graph graph = graph_in(world);
-  EdgeSurfaceDistance one = edge(kBoth, kOnLeft);
+  EdgeSurfaceDistance one = edge(kOnLeft, kOnLeft, {11});
   one.margin_m = 0.5 / 3.0;
   one.weights = random.weights(one.weights.size());
   for (int i = 0; i < 20; ++i) {
@@ -374,7 +386,7 @@ constexpr const char* kGoodPlaces =
     "PARAMS_PLACES 30 0 surface floor 0 0 0 0 0 0 1 endless endless "
     "bar rail 0 0 1 0 1 1 0.02 solid block 1 0 0 0 0 0 1 0.1 0.1 0.1\n"
     "VERTEX_CONFIGURATION 0 0 0 - 0 0 0.7 0 0 0 1 0 0 0\n"
-    "EDGE_SURFACE_DISTANCE 0 4 30 20 20 0.05 scalar 1\n";
+    "EDGE_SURFACE_DISTANCE 0 4 30 20 20 0.05 1 11 scalar 1\n";
 
 const BadLine kBadPlaces[] = {
     {"PlacesOfAnUnknownRobot", "PARAMS_PLACES 9 77", "unknown parameter 77"},
@@ -393,16 +405,20 @@ const BadLine kBadPlaces[] = {
     {"BarWithoutRadius", "PARAMS_PLACES 9 0 bar rail 0 0 0 1 0 0 0", "the radius of 0 m"},
     {"SolidWithANaNSize", "PARAMS_PLACES 9 0 solid block 0 0 0 0 0 0 1 1 nan 1",
      "'nan' is not finite"},
-    {"EdgeWithoutItsPlaces", "EDGE_SURFACE_DISTANCE 0 4 31 20 20 0.05 scalar 1",
+    {"EdgeWithoutItsPlaces", "EDGE_SURFACE_DISTANCE 0 4 31 20 20 0.05 0 scalar 1",
      "unknown parameter 31"},
-    {"EdgeOfARobot", "EDGE_SURFACE_DISTANCE 0 4 0 20 20 0.05 scalar 1",
+    {"EdgeOfARobot", "EDGE_SURFACE_DISTANCE 0 4 0 20 20 0.05 0 scalar 1",
      "parameter 0 is a PARAMS_ROBOT"},
-    {"EdgeOfAnUnknownStance", "EDGE_SURFACE_DISTANCE 0 4 30 25 20 0.05 scalar 1",
+    {"EdgeOfAnUnknownStance", "EDGE_SURFACE_DISTANCE 0 4 30 25 20 0.05 0 scalar 1",
      "unknown parameter 25"},
-    {"EdgeOfStancesWithoutACommonContact", "EDGE_SURFACE_DISTANCE 0 4 30 20 21 0.05 scalar 1",
+    {"EdgeOfStancesWithoutACommonContact", "EDGE_SURFACE_DISTANCE 0 4 30 20 21 0.05 0 scalar 1",
      "without a common contact"},
-    {"EdgeWithTooFewRows", "EDGE_SURFACE_DISTANCE 0 3 30 20 20 0.05 scalar 1", "n = 4"},
-    {"EdgeWithoutWeights", "EDGE_SURFACE_DISTANCE 0 4 30 20 20 0.05", "too few fields"},
+    {"EdgeWithTooFewRows", "EDGE_SURFACE_DISTANCE 0 3 30 20 20 0.05 0 scalar 1", "n = 4"},
+    {"EdgeWithACountBelowZero", "EDGE_SURFACE_DISTANCE 0 4 30 20 20 0.05 -1 scalar 1",
+     "number of contacts -1"},
+    {"EdgeNearWhatItHasClosed", "EDGE_SURFACE_DISTANCE 0 4 30 20 20 0.05 1 10 scalar 1",
+     "'left' both closed and near"},
+    {"EdgeWithoutWeights", "EDGE_SURFACE_DISTANCE 0 4 30 20 20 0.05 0", "too few fields"},
 };
 
 class BadPlaces : public testing::TestWithParam<BadLine> {};
