@@ -19,6 +19,7 @@
 #include <locograph/plugins/static_balance/edge_contact_wrench.h>
 #include <locograph/plugins/static_balance/edge_torque_limits.h>
 #include <locograph/plugins/static_balance/edge_wrench_norm.h>
+#include <locograph/plugins/surface_distance/edge_surface_distance.h>
 #include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
 #include <locograph/plugins/time_step/edge_duration.h>
 #include <locograph/plugins/time_step/edge_time_step_limits.h>
@@ -38,6 +39,7 @@ void add_robot_types(TypeRegistry& types) {
   types.add_parameter<ContactParameter>("PARAMS_CONTACT");
   types.add_parameter<StanceParameter>("PARAMS_STANCE");
   types.add_parameter<SegmentParameter>("PARAMS_SEGMENT");
+  types.add_parameter<PlacesParameter>("PARAMS_PLACES");
   types.add_vertex<VertexConfiguration>();
   types.add_vertex<VertexTimeStep>();
   types.add_vertex<VertexWrenches>();
@@ -60,6 +62,7 @@ void add_robot_types(TypeRegistry& types) {
   types.add_edge<EdgeRolling>();
   types.add_edge<EdgeSelfCollision>();
   types.add_edge<EdgeSteeringSlip>();
+  types.add_edge<EdgeSurfaceDistance>();
   types.add_edge<EdgeSweptObstacleDistance>();
   types.add_edge<EdgeTimeStepLimits>();
   types.add_edge<EdgeTimeStepLimitsSigned>();

@@ -43,19 +43,8 @@ void BoxTree::build(const std::vector<Eigen::AlignedBox3d>& boxes, std::span<int
 }
 
 std::vector<int> BoxTree::touching(const Eigen::AlignedBox3d& box) const {
-  std::vector<int> found = endless_, open;
-  if (!nodes_.empty()) open.push_back(0);
-  while (!open.empty()) {
-    const int index = open.back();
-    open.pop_back();
-    const Node& node = nodes_[static_cast<std::size_t>(index)];
-    if (!node.bounds.intersects(box)) continue;
-    if (node.right < 0) {
-      found.push_back(node.number);
-    } else {
-      open.insert(open.end(), {index + 1, node.right});
-    }
-  }
+  std::vector<int> found;
+  each_touching(box, [&found](int number) { found.push_back(number); });
   std::sort(found.begin(), found.end());
   return found;
 }

@@ -3,6 +3,7 @@
 ///
 ///     const BoxTree tree(bounds_of(world.surfaces));
 ///     for (const int s : tree.touching(box_around(point, 0.5))) use(world.surfaces[s]);
+///     tree.each_touching(box_around(point, 0.5), [&](int s) { use(world.surfaces[s]); });
 ///
 /// Immutable; queries are thread-safe. World frame, metres. Boxes may be without an end.
 
@@ -21,6 +22,13 @@ class BoxTree {
 
   /// Numbers of the boxes that have a point in common with this one, ascending.
   std::vector<int> touching(const Eigen::AlignedBox3d& box) const;
+  /// Calls f(number) for each of them, always in the same order, which is the tree's own. Does not
+  /// allocate.
+  template <class F>
+  void each_touching(const Eigen::AlignedBox3d& box, F&& f) const {
+    for (const int number : endless_) f(number);
+    if (!nodes_.empty()) visit(0, box, f);
+  }
 
  private:
   struct Node {
@@ -30,6 +38,17 @@ class BoxTree {
   };
 
   void build(const std::vector<Eigen::AlignedBox3d>& boxes, std::span<int> numbers);
+  template <class F>
+  void visit(int index, const Eigen::AlignedBox3d& box, F& f) const {
+    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    if (!node.bounds.intersects(box)) return;
+    if (node.right < 0) {
+      f(node.number);
+      return;
+    }
+    visit(index + 1, box, f);
+    visit(node.right, box, f);
+  }
 
   std::vector<Node> nodes_;
   std::vector<int> endless_;  ///< boxes that are near everywhere, or nearly

@@ -284,17 +284,6 @@ struct Context : TransitionContext {
   const double mass_kg = robot->robot->total_mass();
 };
 }  // namespace offline_stance_transition_task_h
-namespace offline_stance_transition_places_h {
-struct Context : TransitionContext {
-  const TransitionProblem problem = transition();
-  const Eigen::AlignedBox3d around_the_robot{Eigen::Vector3d(-1.0, -1.0, -1.0),
-                                             Eigen::Vector3d(1.0, 1.0, 2.0)};
-  double least_m = 1.0;
-  const std::size_t bound = 0;
-  const Eigen::Vector3d centre = {0.0, 0.0, 0.8};
-  const double radius = 0.1;
-};
-}  // namespace offline_stance_transition_places_h
 namespace offline_motion_motion_graph_h {
 struct Context : StepContext {
   const MotionPlan plan = plan_motion(problem, {.seed = 7});

@@ -3,11 +3,13 @@
 
 #include <documentation/example_context.h>
 #include <documentation/example_robots.h>
+#include <documentation/example_world.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/plugins/configuration/frame_parameter.h>
 #include <locograph/plugins/configuration/stance_parameter.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
 #include <locograph/plugins/robot_types.h>
+#include <locograph/plugins/surface_distance/place_rows.h>
 #include <locograph/plugins/time_step/vertex_time_step.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits_timed.h>
 #include <locograph/types/standard_types.h>
@@ -86,6 +88,18 @@ struct RollingContext : Context {
                            std::make_shared<const StanceParameter>(graph.parameters(), contacts));
     return graph.parameters().get<StanceParameter>(20);
   }
+};
+
+/// The same in a room with a step, a rail and a block.
+struct PlacesContext : RollingContext {
+  const std::shared_ptr<const TouchablePlaces> places =
+      std::make_shared<const TouchablePlaces>(parameter, small_room());
+  const Eigen::AlignedBox3d around_the_robot{Eigen::Vector3d(-1.0, -1.0, -1.0),
+                                             Eigen::Vector3d(1.0, 1.0, 2.0)};
+  const std::size_t bound = 0;
+  const Eigen::Vector3d centre = {0.0, 0.0, 0.8};
+  const double radius = 0.1;
+  double least_m = 1.0;
 };
 
 namespace configuration_edge_fit_h {
@@ -195,6 +209,38 @@ struct Context : in_plugins::Context {
   Context() { add_wheels({4, 5, 7}); }
 };
 }  // namespace static_balance_vertex_wrenches_h
+namespace surface_distance_edge_surface_distance_h {
+struct Context : RollingContext {
+  const std::shared_ptr<const RobotParameter>& robot = parameter;
+  const VertexId<VertexConfiguration> q = here;
+  const World world = small_room();
+};
+}  // namespace surface_distance_edge_surface_distance_h
+namespace surface_distance_place_relations_h {
+struct Context : PlacesContext {
+  const Stance stance = PlacesContext::stance->stance;
+};
+}  // namespace surface_distance_place_relations_h
+namespace surface_distance_place_rows_h {
+struct Context : PlacesContext {
+  PlaceRelations relations{places};
+  const int link = parameter->bounds[bound].link;
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(parameter->robot->tangent_size());
+  Context() { relations.set_contacts(stance->stance.contacts); }
+};
+}  // namespace surface_distance_place_rows_h
+namespace surface_distance_places_parameter_h {
+struct Context : in_plugins::Context {
+  const std::shared_ptr<const RobotParameter>& robot = parameter;
+  const World world = small_room();
+};
+}  // namespace surface_distance_places_parameter_h
+namespace surface_distance_touchable_places_h {
+struct Context : PlacesContext {
+  const std::shared_ptr<const RobotParameter>& robot = parameter;
+  const World world = small_room();
+};
+}  // namespace surface_distance_touchable_places_h
 namespace time_step_edge_duration_h {
 struct Context : in_plugins::Context {
   const std::vector<VertexId<VertexTimeStep>> steps = {graph.add_vertex(100, VertexTimeStep(0.1)),

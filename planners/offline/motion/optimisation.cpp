@@ -33,6 +33,7 @@ constexpr Eigen::Index kMostShort = 96;
 constexpr double kFineStep = 0.05;
 
 /// How far each row is to be from being violated: as at the ends there, growing to kRoom from each.
+/// The space must outlive it.
 class WantedRoom {
  public:
   explicit WantedRoom(SegmentSpace& of)
@@ -84,12 +85,13 @@ struct EdgeSegmentRoom : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
     Eigen::VectorXd q, error;
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian;
   };
-  const WantedRoom* wanted = nullptr;
+  std::shared_ptr<const WantedRoom> wanted;
   double t = 0.0;  ///< in [0, 1] along the segment
   std::shared_ptr<Seen> seen = std::make_shared<Seen>();
 
   EdgeSegmentRoom() = default;
-  EdgeSegmentRoom(const WantedRoom& room, double along) : wanted(&room), t(along) {
+  EdgeSegmentRoom(std::shared_ptr<const WantedRoom> room, double along)
+      : wanted(std::move(room)), t(along) {
     weights.setConstant(kMostShort, kRoomWeight);
   }
 
@@ -135,8 +137,9 @@ constexpr std::array<Attempt, 6> kAttempts = {
 /// The graph of one attempt.
 class SegmentGraph {
  public:
-  SegmentGraph(SegmentSpace& space, const WantedRoom& wanted, const std::vector<Swing>& swings,
-               const Attempt& attempt, std::vector<Eigen::VectorXd> way)
+  SegmentGraph(SegmentSpace& space, const std::shared_ptr<const WantedRoom>& wanted,
+               const std::vector<Swing>& swings, const Attempt& attempt,
+               std::vector<Eigen::VectorXd> way)
       : robot_(space.rows_at(way.front(), true).state().robot) {
     graph_.parameters().set(number_++, robot_);
     std::vector<int> held;
@@ -208,7 +211,7 @@ class Optimisation : public SegmentPlanner {
 
   SegmentPath plan(SegmentSpace& space, const SegmentOptions& options) const override {
     const std::vector<Swing> swings = swings_of(space);
-    const WantedRoom wanted(space);
+    const auto wanted = std::make_shared<const WantedRoom>(space);
     SegmentPath path;
     for (const Attempt& attempt : kAttempts) {
       if (options.deadline.passed()) {

@@ -1,5 +1,6 @@
 #include <locograph/planners/offline/stance/transition_rows.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
+#include <locograph/plugins/surface_distance/place_rows.h>
 #include <locograph/robots/kinematic_tree.h>
 #include <locograph/world/distance_view.h>
 #include <locograph/world/link_solid.h>
@@ -24,7 +25,7 @@ constexpr double kTorqueUnit_m = 0.1;
 
 TransitionRows::TransitionRows(std::shared_ptr<const RobotParameter> robot, World world)
     : robot_(std::move(robot)),
-      places_(robot_, world),
+      relations_(std::make_shared<const TouchablePlaces>(robot_, world)),
       size_(robot_->robot->tangent_size()),
       state_(robot_) {
   const Robot& model = *robot_->robot;
@@ -111,7 +112,7 @@ void TransitionRows::set_problem(const TransitionProblem& problem,
   contact_of_row_.clear();
   contact_links_.clear();
   const std::size_t bounds = robot_->bounds.size();
-  places_.set_contacts(problem.closed, problem.held, problem.near, problem.near_m);
+  relations_.set_contacts(problem.closed, problem.held, problem.near, problem.near_m);
   exempt_.assign(bounds, false);
   const auto exempt = [&](const Contact& contact) {
     const std::vector<bool> links = touching_links(robot(), {&contact, 1});
@@ -235,19 +236,16 @@ void TransitionRows::add_self() {
 }
 
 void TransitionRows::add_places() {
-  const std::vector<RobotParameter::LinkBound>& bounds = robot_->bounds;
-  const double limit = options_.surface_margin_m + kBandSurface_m;
-  Eigen::AlignedBox3d around;
-  for (std::size_t b = 0; b < bounds.size(); ++b) {
-    around.extend(box_around(state_.bound_centres[b], bounds[b].radius + limit));
-  }
-  const std::vector<int>& near = places_.near(around);
+  const PlaceBands bands{options_.surface_margin_m, kBandSurface_m, kBand_m};
+  const std::vector<int>& near =
+      relations_.near(reach_of(state_, options_.surface_margin_m + kBandSurface_m));
   for (std::size_t i = 0; i < near.size(); ++i) {
-    for (std::size_t b = 0; b < bounds.size(); ++b) {
-      const TransitionPlaces::Relation relation = places_.relation(i, b);
-      if (relation == TransitionPlaces::Relation::kApart) keep_apart(near[i], b);
-      if (relation == TransitionPlaces::Relation::kTouches)
-        keep_shallow(near[i], b, places_.deepest_m(i, b));
+    for (std::size_t b = 0; b < robot_->bounds.size(); ++b) {
+      const std::optional<PlaceRow> found = place_row(state_, relations_, near[i], i, b, bands);
+      if (!found) continue;
+      double* row = add(TransitionFailure::kSurface, static_cast<int>(b), near[i], found->value);
+      state_.kinematics.add_point_gradient(robot_->bounds[b].link, found->point, found->gradient,
+                                           1.0, row);
     }
   }
 }
@@ -255,7 +253,9 @@ void TransitionRows::add_places() {
 double TransitionRows::link_room(int link, const Eigen::Isometry3d& world_from_link) {
   constexpr double kAround_m = 0.5;
   const std::vector<int>& body_of = robot().tree().body_of_link;
-  const std::vector<int>& near = places_.near(box_around(world_from_link.translation(), kAround_m));
+  const TouchablePlaces& places = relations_.places();
+  const std::vector<int>& near =
+      relations_.near(box_around(world_from_link.translation(), kAround_m));
   const Eigen::Isometry3d own = state_.kinematics.world_from_link(link).inverse();
   double room = kBandSurface_m;
   for (std::size_t b = 0; b < robot_->bounds.size(); ++b) {
@@ -267,54 +267,21 @@ double TransitionRows::link_room(int link, const Eigen::Isometry3d& world_from_l
         world_from_link * (own * state_.kinematics.world_from_link(bound.link));
     const Eigen::Vector3d centre = pose * bound.center;
     for (std::size_t i = 0; i < near.size(); ++i) {
-      const TransitionPlaces::Relation relation = places_.relation(i, b);
-      if (relation == TransitionPlaces::Relation::kNone) continue;
-      if (relation == TransitionPlaces::Relation::kTouches) {
-        const auto depth = places_.depth(near[i], static_cast<int>(b), pose, room);
-        if (depth) room = std::min(room, depth->value + places_.deepest_m(i, b));
+      const PlaceRelations::Relation relation = relations_.relation(i, b);
+      if (relation == PlaceRelations::Relation::kNone) continue;
+      if (relation == PlaceRelations::Relation::kTouches) {
+        const auto depth = places.depth(near[i], static_cast<int>(b), pose, room);
+        if (depth) room = std::min(room, depth->value + relations_.deepest_m(i, b));
         continue;
       }
-      if (places_.is_far(near[i], centre, bound.radius, room)) continue;
+      if (places.is_far(near[i], centre, bound.radius, room)) continue;
       for (int k = bound.begin; k < bound.end; ++k) {
         const CollisionSphere& sphere = robot_->spheres[static_cast<std::size_t>(k)];
-        room = std::min(room, places_.distance(near[i], pose * sphere.center, sphere.radius).value);
+        room = std::min(room, places.distance(near[i], pose * sphere.center, sphere.radius).value);
       }
     }
   }
   return room;
-}
-
-void TransitionRows::keep_apart(int place, std::size_t b) {
-  const RobotParameter::LinkBound& bound = robot_->bounds[b];
-  const double limit = options_.surface_margin_m + kBandSurface_m;
-  if (places_.is_far(place, state_.bound_centres[b], bound.radius, limit)) return;
-  TransitionPlaces::Distance worst{limit, Eigen::Vector3d::Zero()};
-  int nearest = -1;
-  for (int i = bound.begin; i < bound.end; ++i) {
-    const std::size_t k = static_cast<std::size_t>(i);
-    const TransitionPlaces::Distance found =
-        places_.distance(place, state_.sphere_centres[k], robot_->spheres[k].radius);
-    if (found.value >= worst.value) continue;
-    worst = found;
-    nearest = i;
-  }
-  if (nearest < 0) return;
-  double* row = add(TransitionFailure::kSurface, static_cast<int>(b), place,
-                    worst.value - options_.surface_margin_m);
-  state_.kinematics.add_point_gradient(bound.link,
-                                       state_.sphere_centres[static_cast<std::size_t>(nearest)],
-                                       worst.gradient, 1.0, row);
-}
-
-void TransitionRows::keep_shallow(int place, std::size_t b, double deepest_m) {
-  const RobotParameter::LinkBound& bound = robot_->bounds[b];
-  const double limit = kBand_m - deepest_m;
-  const std::optional<TransitionPlaces::Depth> depth = places_.depth(
-      place, static_cast<int>(b), state_.kinematics.world_from_link(bound.link), limit);
-  if (!depth) return;
-  double* row =
-      add(TransitionFailure::kSurface, static_cast<int>(b), place, depth->value + deepest_m);
-  state_.kinematics.add_point_gradient(bound.link, depth->point, depth->out, 1.0, row);
 }
 
 void TransitionRows::add_obstacles() {
@@ -375,7 +342,7 @@ std::string TransitionRows::text(const Row& row) const {
     case TransitionFailure::kSelf:
       return name(first) + " in " + name(second);
     case TransitionFailure::kSurface:
-      return name(first) + " in " + places_.name(row.second);
+      return name(first) + " in " + relations_.places().name(row.second);
     case TransitionFailure::kObstacle:
       return name(first) + " in an obstacle";
     case TransitionFailure::kBalance:

@@ -10,9 +10,9 @@
 /// kept from reaching deeper into what they touch than the judge allows, by their exact shapes; the
 /// others are kept away by the spheres that cover them.
 
-#include <locograph/planners/offline/stance/transition_places.h>
 #include <locograph/planners/offline/stance/transition_problem.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
+#include <locograph/plugins/surface_distance/place_relations.h>
 #include <locograph/robots/contact_closure.h>
 #include <locograph/world/convex_shape.h>
 #include <locograph/world/distance_field.h>
@@ -76,12 +76,10 @@ class TransitionRows {
   void add_torques();
   void add_self();
   void add_places();
-  void keep_apart(int place, std::size_t bound);
-  void keep_shallow(int place, std::size_t bound, double deepest_m);
   void add_obstacles();
 
   std::shared_ptr<const RobotParameter> robot_;
-  TransitionPlaces places_;
+  PlaceRelations relations_;
   WorldDistance in_the_way_;
   bool anything_in_the_way_ = false;
   Eigen::VectorXd pair_weights_;

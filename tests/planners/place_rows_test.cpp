@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 #include <locograph/check/judge.h>
 #include <locograph/common/uniform.h>
-#include <locograph/planners/offline/stance/transition_places.h>
 #include <locograph/planners/offline/stance/transition_rows.h>
 
 #include <algorithm>
@@ -11,7 +10,7 @@
 
 #include "planners/stance_tasks.h"
 
-namespace locograph::transition_places_test {
+namespace locograph::place_rows_test {
 namespace {
 
 using test::stance_task;
@@ -89,7 +88,7 @@ Agreement compare(const Stance& closed, const Stance& held, int draws, std::uint
   return agreement;
 }
 
-TEST(TransitionPlaces, WhatIsFreeBesideBoxesTheJudgeAccepts) {
+TEST(PlaceRows, WhatIsFreeBesideBoxesTheJudgeAccepts) {
   const Stance& start = on_stones().start;
   const Agreement held = compare(start, start, 400, 1);
   EXPECT_GT(held.free, 20);
@@ -103,7 +102,7 @@ TEST(TransitionPlaces, WhatIsFreeBesideBoxesTheJudgeAccepts) {
 }
 
 /// A calf in the stone that its own foot stands on: what rows did not see.
-TEST(TransitionPlaces, ACalfInTheStoneOfItsFootIsSeen) {
+TEST(PlaceRows, ACalfInTheStoneOfItsFootIsSeen) {
   const StanceProblem& task = on_stones();
   TransitionRows rows(task.robot, task.world);
   TransitionProblem problem;
@@ -123,7 +122,7 @@ TEST(TransitionPlaces, ACalfInTheStoneOfItsFootIsSeen) {
   EXPECT_TRUE(calf);
 }
 
-TEST(TransitionPlaces, GradientsBesideBoxesAreThoseOfCentralDifferences) {
+TEST(PlaceRows, GradientsBesideBoxesAreThoseOfCentralDifferences) {
   constexpr double kStep = 1e-6, kKink = 1e-3;
   const StanceProblem& task = on_stones();
   const Robot& robot = *task.robot->robot;
@@ -169,25 +168,5 @@ TEST(TransitionPlaces, GradientsBesideBoxesAreThoseOfCentralDifferences) {
   EXPECT_LT(off, compared / 40) << "distances of cylinders are certified to 1e-5 m only";
 }
 
-TEST(TransitionPlaces, TheDistanceToABoxIsThatOfItsShape) {
-  const StanceProblem& task = on_stones();
-  TransitionPlaces places(task.robot, task.world);
-  const ConvexShape ball = ConvexShape::sphere(0.03);
-  std::mt19937_64 random(6);
-  const int first = static_cast<int>(task.world.surfaces.size() + task.world.bars.size());
-  for (int i = 0; i < 500; ++i) {
-    const SolidBox& solid = task.world.solids[static_cast<std::size_t>(i % 10)];
-    Eigen::Isometry3d pose = solid.world_from_box;
-    for (int axis = 0; axis < 3; ++axis) pose.translation()[axis] += uniform(random, -0.3, 0.3);
-    const TransitionPlaces::Distance found =
-        places.distance(first + i % 10, pose.translation(), 0.03);
-    const double exact =
-        shape_distance(ball, pose, ConvexShape::box(solid.size_m), solid.world_from_box).distance;
-    EXPECT_NEAR(found.value, exact, 1e-9);
-    EXPECT_NEAR(found.gradient.norm(), 1.0, 1e-9);
-    EXPECT_EQ(places.name(first + i % 10), solid.name);
-  }
-}
-
 }  // namespace
-}  // namespace locograph::transition_places_test
+}  // namespace locograph::place_rows_test
