@@ -22,7 +22,7 @@
 #include <locograph/planners/offline/stance/transition_rows.h>
 #include <locograph/planners/offline/timing/path_timing.h>
 #include <locograph/planners/offline/timing/reach_programme.h>
-#include <locograph/planners/online/refine.h>
+#include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
 #include <locograph/planners/posture/contacts_file.h>
@@ -399,14 +399,14 @@ struct Context : DriveContext {
   const WorldDistance world = distance_view(DriveContext::world);
 };
 }  // namespace online_local_planner_h
-namespace online_refine_h {
+namespace online_walk_plan_h {
 /// Nothing new is seen.
 struct Context : DriveContext {
   const Judge judge{parameter->robot, world};
   const CheckOptions limits;
   const WorldAt world_seen_at = [](int) { return nullptr; };
 };
-}  // namespace online_refine_h
+}  // namespace online_walk_plan_h
 namespace online_window_cause_h {
 struct Context : DriveContext {
   Context() : DriveContext(2.56, 33) {}

@@ -1,6 +1,6 @@
 #include <locograph/check/limits.h>
 #include <locograph/check/motion_curve.h>
-#include <locograph/planners/online/refine.h>
+#include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/online/window_cause.h>
 #include <locograph/planners/plan/slope_limits.h>
 
@@ -54,7 +54,7 @@ double ratio(const Eigen::VectorXd& slope, const Eigen::VectorXd& along) {
 /// Walks along the plan and keeps the report.
 class Walk {
  public:
-  Walk(Graph& graph, const RefineOptions& options)
+  Walk(Graph& graph, const WalkOptions& options)
       : graph_(graph),
         options_(options),
         planner_(graph, options.planner),
@@ -72,7 +72,7 @@ class Walk {
     report_.configurations = planner_.plan_size();
   }
 
-  RefineReport run(const WorldAt& world_at) {
+  WalkReport run(const WorldAt& world_at) {
     for (int executed = 0; executed + 1 < planner_.plan_size(); ++executed) {
       if (options_.stop != nullptr && *options_.stop) {
         end_at(executed, "interrupted");
@@ -239,12 +239,12 @@ class Walk {
   }
 
   Graph& graph_;
-  const RefineOptions& options_;
+  const WalkOptions& options_;
   LocalPlanner planner_;
   const Robot& model_;
   const Motion planned_;
   std::vector<double> faster_;  // than careful, of slopes of the plan
-  RefineReport report_;
+  WalkReport report_;
 };
 
 void require_tolerance(double tolerance) {
@@ -253,7 +253,7 @@ void require_tolerance(double tolerance) {
 
 }  // namespace
 
-RefineReport refine(Graph& graph, const WorldAt& world_at, const RefineOptions& options) {
+WalkReport walk_plan(Graph& graph, const WorldAt& world_at, const WalkOptions& options) {
   require_tolerance(options.goal_tolerance_m);
   require_tolerance(options.goal_tolerance_rad);
   return Walk(graph, options).run(world_at);

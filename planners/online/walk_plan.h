@@ -1,9 +1,9 @@
 #pragma once
 /// Walks along a plan, one cycle of the local planner at each step, as if a robot executed it.
 ///
-///     RefineOptions options;
+///     WalkOptions options;
 ///     options.verify = [&](const Motion& step) { return judge.check(step, limits); };
-///     RefineReport report = refine(graph, world_seen_at, options);
+///     WalkReport report = walk_plan(graph, world_seen_at, options);
 ///
 /// Stops before a configuration that cannot be made feasible: the rest of the plan is removed from
 /// the graph, which is marked as incomplete (plan_parameters.h), and the report says what stood in
@@ -20,7 +20,7 @@
 
 namespace locograph {
 
-struct RefineOptions {
+struct WalkOptions {
   LocalPlannerOptions planner;
   /// How far from where it was planned the last configuration's base may end, in any direction.
   /// A plan that ends further away than the judge takes for a goal (limits.h) is marked incomplete.
@@ -37,7 +37,7 @@ struct RefineOptions {
   std::function<CheckReport(const Motion&)> verify;
 };
 
-struct RefineReport {
+struct WalkReport {
   std::vector<CycleReport> cycles;
   std::vector<double> map_update_s;  ///< time that showing the world took, for each cycle
   std::vector<double> verify_s;      ///< time that the verdict on each step took
@@ -55,6 +55,6 @@ struct RefineReport {
 /// world_at: what the world shows when the robot is at configuration `executed`; null: nothing new.
 using WorldAt = std::function<const WorldDistance*(int executed)>;
 
-RefineReport refine(Graph& graph, const WorldAt& world_at, const RefineOptions& options);
+WalkReport walk_plan(Graph& graph, const WorldAt& world_at, const WalkOptions& options);
 
 }  // namespace locograph
