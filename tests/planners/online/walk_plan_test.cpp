@@ -1,11 +1,10 @@
 #include <locograph/common/error.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/planners/online/walk_plan.h>
-#include <locograph/world/distance_view.h>
 #include <locograph/world/octree.h>
 
 #include "common/sanitized.h"
-#include "planners/planned_drive.h"
+#include "planners/online/drive_past_box.h"
 
 namespace locograph {
 namespace {
@@ -31,9 +30,6 @@ WalkReport walk_in(Graph& graph, const Surroundings& surroundings, int horizon =
       graph, [&world](int executed) { return executed == 0 ? &world : nullptr; }, options);
 }
 
-Graph drive() { return plan_wheeled_drive(centauro_drive()); }
-
-Obstacle box_ahead() { return box("box", {2.0, 0.0, 0.25}, {0.5, 0.5, 0.5}); }
 Obstacle wall_ahead() { return box("wall", {2.5, 0.0, 0.5}, {0.2, 8.0, 1.0}); }
 
 std::shared_ptr<const octomap::OcTree> map_of(const Obstacle& obstacle) {
