@@ -2,7 +2,7 @@
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_file.h>
 #include <locograph/apps/scene.h>
-#include <locograph/planners/online/refine.h>
+#include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/online/window_cause.h>
 #include <locograph/planners/plan/seen_world.h>
 
@@ -59,7 +59,7 @@ void run(const LiveJob& job, LiveChannel& channel) {
                  {"count", file.plan.slots.size()},
                  {"dof", file.plan.robot->robot->tangent_size()},
                  {"speed", job.speed}});
-  RefineOptions options;
+  WalkOptions options;
   options.planner.horizon = job.horizon;
   options.verify = step_check(judging);
   options.on_cycle = [&](const CycleReport& cycle) {
@@ -67,7 +67,7 @@ void run(const LiveJob& job, LiveChannel& channel) {
     const double step_s = time_of(file, cycle.executed + 1) - time_of(file, cycle.executed);
     if (!channel.wait(std::max(0.0, step_s / job.speed - cycle.time_total))) throw ChannelClosed();
   };
-  const RefineReport report = refine(
+  const WalkReport report = walk_plan(
       file.graph, [&seen](int executed) { return executed == 0 ? &seen : nullptr; }, options);
   send(channel, {{"type", "end"},
                  {"success", report.success},

@@ -46,7 +46,7 @@ Judging judging_of(const PlanFile& file, const WorldOptions& options);
 
 CheckReport check_plan(const PlanFile& file, const Judging& judging);
 
-/// The check of single steps of a plan, as refine() wants it.
+/// The check of single steps of a plan, as walk_plan() wants it.
 std::function<CheckReport(const Motion&)> step_check(const Judging& judging);
 
 }  // namespace locograph

@@ -7,7 +7,7 @@
 #include <locograph/apps/statistics.h>
 #include <locograph/common/data_folder.h>
 #include <locograph/common/stop_signals.h>
-#include <locograph/planners/online/refine.h>
+#include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/seen_world.h>
 
 #include <memory>
@@ -23,21 +23,21 @@ struct CommandOptions {
   WorldOptions world;
   int horizon = 20;
   double deadline_ms = 0.0;
-  double goal_tolerance_m = RefineOptions().goal_tolerance_m;
-  double goal_tolerance_rad = RefineOptions().goal_tolerance_rad;
+  double goal_tolerance_m = WalkOptions().goal_tolerance_m;
+  double goal_tolerance_rad = WalkOptions().goal_tolerance_rad;
   std::vector<std::string> plugins;
   int threads = 1;
   bool json = false;
 };
 
 template <class F>
-Json over_cycles(const RefineReport& report, F&& figure) {
+Json over_cycles(const WalkReport& report, F&& figure) {
   std::vector<double> values;
   for (const CycleReport& cycle : report.cycles) values.push_back(figure(cycle));
   return statistics_json(std::move(values));
 }
 
-Json phases_json(const RefineReport& report) {
+Json phases_json(const WalkReport& report) {
   return {
       {"compile", over_cycles(report, [](const CycleReport& c) { return c.time_compile; })},
       {"linearise", over_cycles(report, [](const CycleReport& c) { return c.time_linearise; })},
@@ -48,7 +48,7 @@ Json phases_json(const RefineReport& report) {
   };
 }
 
-Json report_json(const RefineReport& report, const CommandOptions& options, double field_s,
+Json report_json(const WalkReport& report, const CommandOptions& options, double field_s,
                  double judge_s) {
   int iterations = 0, detours = 0;
   Json cycle_times = Json::array();
@@ -87,7 +87,7 @@ Json report_json(const RefineReport& report, const CommandOptions& options, doub
 
 /// A refined plan is a success if it is one for whoever checks the file that is written. Returns
 /// the seconds that took.
-double require_feasible(const PlanFile& file, RefineReport& report) {
+double require_feasible(const PlanFile& file, WalkReport& report) {
   const Stopwatch watch;
   if (!report.success) return 0.0;
   const Plan plan = plan_of(file.graph);
@@ -103,13 +103,13 @@ double require_feasible(const PlanFile& file, RefineReport& report) {
 ExitCode refine_plan(const CommandOptions& options) {
   check_output(options.output, {options.input, options.world.map, options.world.obstacles},
                options.json);
-  RefineOptions refine_options;
-  refine_options.planner.horizon = options.horizon;
-  refine_options.planner.deadline_s = 1e-3 * options.deadline_ms;
-  refine_options.goal_tolerance_m = options.goal_tolerance_m;
-  refine_options.goal_tolerance_rad = options.goal_tolerance_rad;
-  refine_options.planner.validate();
-  refine_options.stop = &stop_flag();
+  WalkOptions walk_options;
+  walk_options.planner.horizon = options.horizon;
+  walk_options.planner.deadline_s = 1e-3 * options.deadline_ms;
+  walk_options.goal_tolerance_m = options.goal_tolerance_m;
+  walk_options.goal_tolerance_rad = options.goal_tolerance_rad;
+  walk_options.planner.validate();
+  walk_options.stop = &stop_flag();
   std::optional<Progress> progress("reading " + options.input);
   PlanFile file = load_plan(options.input, options.plugins);
   if (!file.plan.world) throw Error(file.name, 0, "the plan has no world", "a PARAMS_WORLD line");
@@ -121,16 +121,15 @@ ExitCode refine_plan(const CommandOptions& options) {
   // From now on this is the plan's world: the file that is written needs nothing else.
   if (options.world.given()) file.plan.world->set_files(options.world.map, options.world.obstacles);
 
-  refine_options.verify = step_check(judging);
+  walk_options.verify = step_check(judging);
   const double configurations = static_cast<double>(file.plan.slots.size());
   progress.emplace("refining " + options.input);
-  refine_options.on_cycle = [&](const CycleReport& cycle) {
+  walk_options.on_cycle = [&](const CycleReport& cycle) {
     progress->show((cycle.executed + 1) / configurations);
   };
   const FinishOnSignal finish;
-  RefineReport report = refine(
-      file.graph, [&seen](int executed) { return executed == 0 ? &seen : nullptr; },
-      refine_options);
+  WalkReport report = walk_plan(
+      file.graph, [&seen](int executed) { return executed == 0 ? &seen : nullptr; }, walk_options);
   progress.emplace("judging " + options.input);
   const double judge_s = require_feasible(file, report);
   progress.emplace("writing " + options.output);

@@ -9,7 +9,7 @@
 #include <locograph/check/judge.h>
 #include <locograph/common/uniform.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
-#include <locograph/planners/online/refine.h>
+#include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/plan.h>
 #include <locograph/world/distance_view.h>
 #include <locograph/world/octree.h>
@@ -97,8 +97,8 @@ class Campaign {
 
     Graph graph = plan_wheeled_drive(scenario_);
     const WorldDistance seen = distance_view(world);
-    const RefineReport report =
-        refine(graph, [&seen](int executed) { return executed == 0 ? &seen : nullptr; }, {});
+    const WalkReport report =
+        walk_plan(graph, [&seen](int executed) { return executed == 0 ? &seen : nullptr; }, {});
     const Motion refined = motion_of(graph, plan_of(graph));
     const CheckReport after = judge.check(refined, check_);
 

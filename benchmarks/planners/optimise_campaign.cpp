@@ -56,7 +56,8 @@ class Campaign {
   }
 
   Json run(const std::string& file) {
-    const Graph graph = read_graph(file, types_);
+    Graph graph = read_graph(file, types_);
+    const std::vector<Eigen::VectorXd> states = states_of(graph);
     plan_ = plan_of(graph);
     motion_ = motion_of(graph, plan_);
     judging_ = judging_of(graph, plan_, {.data_folder = data_folder()});
@@ -64,11 +65,12 @@ class Campaign {
     Json result = {{"plan", std::filesystem::path(file).filename().string()},
                    {"configurations", plan_.slots.size()}};
     result["as_it_is"] = optimised(graph);
+    restore(graph, states);
     Json disturbed = Json::array(), boxes = Json::array();
     for (int k = 0; k < draws_; ++k) {
-      Graph moved = graph;
-      disturb(moved);
-      disturbed.push_back(optimised(moved));
+      disturb(graph);
+      disturbed.push_back(optimised(graph));
+      restore(graph, states);
       std::cerr << file << ", disturbed " << k << ": " << disturbed.back().dump() << '\n';
     }
     result["disturbed_feasible"] = feasible(disturbed);
@@ -78,6 +80,7 @@ class Campaign {
       const std::optional<Obstacle> box = box_in_the_way(graph, all);
       if (!box) continue;
       boxes.push_back(past(graph, *box));
+      restore(graph, states);
       std::cerr << file << ", box " << k << ": " << boxes.back().dump() << '\n';
     }
     result["boxes"] = boxes.size();
@@ -91,8 +94,29 @@ class Campaign {
     return std::ranges::count_if(rows, [](const Json& row) { return row["feasible"].get<bool>(); });
   }
 
+  /// By slot; empty where there is no vertex.
+  static std::vector<Eigen::VectorXd> states_of(const Graph& graph) {
+    std::vector<Eigen::VectorXd> states(static_cast<std::size_t>(graph.vertex_slots()));
+    for (int slot = 0; slot < graph.vertex_slots(); ++slot) {
+      if (!graph.vertex_alive(slot)) continue;
+      states[static_cast<std::size_t>(slot)] =
+          Eigen::Map<const Eigen::VectorXd>(graph.state(slot), graph.state_size(slot));
+    }
+    return states;
+  }
+
+  void restore(Graph& graph, const std::vector<Eigen::VectorXd>& states) const {
+    for (int slot = 0; slot < graph.vertex_slots(); ++slot) {
+      if (!graph.vertex_alive(slot)) continue;
+      std::ranges::copy(states[static_cast<std::size_t>(slot)], graph.state(slot));
+    }
+    for (std::size_t i = 0; i < plan_.slots.size(); ++i) {
+      graph.vertex(VertexId<VertexConfiguration>{plan_.slots[i]}).slopes = motion_.slopes[i];
+    }
+  }
+
   /// As `locograph optimize` does it.
-  Json optimised(Graph graph) const {
+  Json optimised(Graph& graph) const {
     OptimiserOptions options = OptimiserOptions::for_any_start();
     options.max_iterations = kMostIterations;
     const auto solver = make_linear_solver("auto");
@@ -222,7 +246,7 @@ class Campaign {
     });
   }
 
-  Json past(const Graph& graph, const Obstacle& box) {
+  Json past(Graph& graph, const Obstacle& box) {
     plan_.world->now.obstacles.push_back(box);
     judging_.world.obstacles.push_back(box);
     Json row = optimised(graph);

@@ -1,4 +1,5 @@
 #include <locograph/planners/online/detour_search.h>
+#include <locograph/planners/online/heading.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,13 +21,6 @@ DetourSearch::DetourSearch(std::shared_ptr<const RobotParameter> robot,
   slopes_ = 2 * options.steepest + 1;
   centres_.resize(robot_->spheres.size());
   bound_centres_.resize(robot_->bounds.size());
-}
-
-Eigen::Vector3d DetourSearch::left(const double* configuration) {
-  const Eigen::Quaterniond rotation(configuration + 3);
-  Eigen::Vector3d side = rotation * Eigen::Vector3d::UnitY();
-  side.z() = 0.0;
-  return side.normalized();
 }
 
 double DetourSearch::obstacle_cost(const WorldDistance& world, double time_s,
@@ -61,7 +55,7 @@ void DetourSearch::fill_obstacle_costs(const double* configuration, const WorldD
     const RobotParameter::LinkBound& bound = robot_->bounds[b];
     bound_centres_[b] = state_.world_from_link(bound.link) * bound.center;
   }
-  const Eigen::Vector3d side = left(configuration);
+  const Eigen::Vector3d side = left_of(configuration);
   for (int o = -half_; o <= half_; o += kCoarse) {
     costs[o + half_] = obstacle_cost(world, time_s, o * options_.grid_m * side);
   }

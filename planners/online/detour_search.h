@@ -1,6 +1,6 @@
 #pragma once
-/// Finds on which side, and how far, to pass what stands in the way: the first guess from which the
-/// graph optimiser can slide into a detour.
+/// Finds on which side to pass an obstacle on the way, and how far to the side: the first guess
+/// from which the graph optimiser reaches a detour.
 ///
 ///     DetourSearch search(robot, options);
 ///     std::vector<double> offsets = search.find(first, window, times, world, offset, slope);
@@ -14,7 +14,7 @@
 /// and right alike.
 
 #include <locograph/common/deadline.h>
-#include <locograph/planners/plan/plan.h>
+#include <locograph/plugins/configuration/robot_parameters.h>
 #include <locograph/robots/robot_state.h>
 
 #include <cstdint>
@@ -40,18 +40,15 @@ class DetourSearch {
   /// plan: the configurations of the window as planned. start_offset and start_slope: how far the
   /// executed configuration is to the left of its place in the plan, and how much that changed in
   /// the last step [m]. first: index in the plan of the window's first configuration. Returns an
-  /// offset for each configuration; none when the deadline passes. What has been found out about
-  /// the obstacles until then is kept for the next call, by index in the plan: at least for one
-  /// configuration more with every call.
+  /// offset for each configuration; none when the deadline passes. The costs of obstacles that have
+  /// been worked out by then are kept for the next call, by index in the plan: every call works out
+  /// those of at least one more configuration.
   std::vector<double> find(int first, const std::vector<const double*>& plan,
                            const std::vector<double>& time_s, const WorldDistance& world,
                            double start_offset, double start_slope, const Deadline& deadline = {});
 
-  /// The world or the plan has changed: what was kept does not count any more.
+  /// The world or the plan has changed: the costs that were kept do not hold any more.
   void forget();
-
-  /// Unit vector to the left of a configuration's heading.
-  static Eigen::Vector3d left(const double* configuration);
 
  private:
   double obstacle_cost(const WorldDistance& world, double time_s,

@@ -10,7 +10,7 @@
 namespace locograph {
 namespace {
 
-/// Puts configurations where they were planned, and back when it goes.
+/// Puts configurations where they were planned until it is destroyed.
 class AsPlanned {
  public:
   AsPlanned(Graph& graph, const Plan& plan, const std::vector<Eigen::VectorXd>& planned, int first,
@@ -39,7 +39,7 @@ class AsPlanned {
   std::vector<Eigen::VectorXd> kept_;
 };
 
-/// What of the world is nearest to a point.
+/// The name of the obstacle that is nearest to a point, or the map.
 std::string nearest_thing(const WorldDistance& world, const Eigen::Vector3d& point, double time_s) {
   std::string name = "the map";
   double nearest =
@@ -82,7 +82,8 @@ std::optional<WindowCause> find_cause(Graph& graph, const Plan& plan,
   const AsPlanned as_planned(graph, plan, planned, executed + 1, last);
   const std::vector<int> window(plan.slots.begin() + executed + 1, plan.slots.begin() + last + 1);
   Problem problem;
-  // Without what ties the window to where the robot is: it may be beside the plan by now.
+  // Without the edges that tie the window to the executed configuration, which may be beside the
+  // plan by now.
   problem.compile(graph, window, {});
   Workspace workspace;
   workspace.allocate(problem);

@@ -1,12 +1,13 @@
 #pragma once
-/// How good the window of an online planner is, of two the better one.
+/// How good a window of the online planner is, and which of two is better.
 ///
 ///     const WindowQuality had = window_quality(reader, step_of, steps, cost);
 ///     cost = optimise();
 ///     if (window_quality(reader, step_of, steps, cost).better_than(had)) keep();
 ///
-/// What comes next counts more than what comes later: of two windows that violate a constraint the
-/// better one holds for more steps, then violates less; of two that do not, it costs less.
+/// Near steps count more than later ones. A feasible window is better than one that violates a
+/// constraint. Of two that do, the better one is feasible for more steps, then violates less; of
+/// two that do not, it costs less.
 
 #include <locograph/core/violations.h>
 

@@ -25,7 +25,8 @@
 #include <locograph/planners/offline/stance/standing_wheels.h>
 #include <locograph/planners/offline/stance/transition_rows.h>
 #include <locograph/planners/offline/timing/path_timing.h>
-#include <locograph/planners/online/refine.h>
+#include <locograph/planners/online/sideways_detour.h>
+#include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
 #include <locograph/planners/posture/contacts_file.h>
@@ -110,6 +111,14 @@ struct DriveContext : Context {
       : graph(drive(distance_m, configurations)) {
     world.surfaces = {ground()};
   }
+};
+
+/// The window after the first configuration of the drive.
+struct WindowContext : DriveContext {
+  OnlinePlan online{graph};
+  Window window{online, {.steps = 3}};
+  const int executed = 0;
+  WindowContext() { window.move_to(executed); }
 };
 
 /// The step that COMAN+ makes.
@@ -385,6 +394,23 @@ struct Context : DriveContext {
   }
 };
 }  // namespace online_detour_search_h
+namespace online_heading_h {
+struct Context : DriveContext {
+  const Eigen::Vector3d moved = Eigen::Vector3d(0.0, 0.1, 0.0);
+};
+}  // namespace online_heading_h
+namespace online_incumbent_h {
+/// One more window, which costs less.
+struct Context : in_planners::Context {
+  WindowQuality quality;
+  std::vector<double> state = {1.0};
+  bool search(WindowQuality& found, std::vector<double>&) {
+    found.cost -= 1.0;
+    return found.cost > -2.0;
+  }
+  void hand_out(const std::vector<double>&) {}
+};
+}  // namespace online_incumbent_h
 namespace online_local_planner_h {
 struct Context : DriveContext {
   Graph& plan_graph = graph;
@@ -392,14 +418,53 @@ struct Context : DriveContext {
   const WorldDistance world = distance_view(DriveContext::world);
 };
 }  // namespace online_local_planner_h
-namespace online_refine_h {
+namespace online_online_plan_h {
+struct Context : DriveContext {
+  Graph& plan_graph = graph;
+};
+}  // namespace online_online_plan_h
+namespace online_proposal_h {
+struct Context {
+  LocalPlannerOptions options;
+};
+}  // namespace online_proposal_h
+namespace online_proposal_schedule_h {
+struct Context : WindowContext {
+  const Deadline deadline;
+  Proposal::Answer answer = Proposal::Answer::kNone;
+  std::vector<Eigen::VectorXd> candidate;
+};
+}  // namespace online_proposal_schedule_h
+namespace online_sideways_detour_h {
+struct Context {
+  LocalPlannerOptions options;
+};
+}  // namespace online_sideways_detour_h
+namespace online_walk_plan_h {
 /// Nothing new is seen.
 struct Context : DriveContext {
   const Judge judge{parameter->robot, world};
   const CheckOptions limits;
   const WorldAt world_seen_at = [](int) { return nullptr; };
 };
-}  // namespace online_refine_h
+}  // namespace online_walk_plan_h
+namespace online_warm_start_h {
+using Context = WindowContext;
+}
+namespace online_window_h {
+struct Context : DriveContext {
+  const OnlinePlan online{graph};
+  const int executed = 0;
+  Problem problem;
+};
+}  // namespace online_window_h
+namespace online_window_solver_h {
+struct Context : WindowContext {
+  Incumbent incumbent;
+  const Deadline deadline;
+  CycleReport report;
+};
+}  // namespace online_window_solver_h
 namespace online_window_cause_h {
 struct Context : DriveContext {
   Context() : DriveContext(2.56, 33) {}

@@ -1,6 +1,6 @@
 #include <locograph/check/limits.h>
 #include <locograph/check/motion_curve.h>
-#include <locograph/planners/online/refine.h>
+#include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/online/window_cause.h>
 #include <locograph/planners/plan/slope_limits.h>
 
@@ -10,7 +10,7 @@
 namespace locograph {
 namespace {
 
-/// What the local planner could not mend.
+/// A violation that the local planner could not mend.
 std::string describe(const ConstraintViolation& violation, int vertex) {
   std::ostringstream text;
   text << constraint_name(violation.tag);
@@ -20,7 +20,7 @@ std::string describe(const ConstraintViolation& violation, int vertex) {
   return text.str();
 }
 
-/// What the judge refused.
+/// The first violation for which the judge refused.
 std::string describe(const CheckReport& check) {
   std::ostringstream text;
   for (const Violation& violation : check.violations) {
@@ -46,7 +46,7 @@ double ratio(const Eigen::VectorXd& slope, const Eigen::VectorXd& along) {
 /// Walks along the plan and keeps the report.
 class Walk {
  public:
-  Walk(Graph& graph, const RefineOptions& options)
+  Walk(Graph& graph, const WalkOptions& options)
       : graph_(graph),
         options_(options),
         planner_(graph, options.planner),
@@ -58,13 +58,13 @@ class Walk {
       const bool inside = i > 0 && i + 1 < planner_.plan_size();
       faster_.push_back(inside ? ratio(curve.slope(i), careful_slope(model_, planned_, i)) : 0.0);
     }
-    report_.dof = planner_.dimension_of_configuration();
+    report_.dof = model_.tangent_size();
     report_.success = true;
     report_.reason = "every configuration is feasible";
     report_.configurations = planner_.plan_size();
   }
 
-  RefineReport run(const WorldAt& world_at) {
+  WalkReport run(const WorldAt& world_at) {
     for (int executed = 0; executed + 1 < planner_.plan_size(); ++executed) {
       if (options_.stop != nullptr && *options_.stop) {
         end_at(executed, "interrupted");
@@ -77,10 +77,6 @@ class Walk {
   }
 
  private:
-  int last_of_window(int executed) const {
-    return std::min(executed + options_.planner.horizon, planner_.plan_size() - 1);
-  }
-
   bool step(int executed, const WorldAt& world_at) {
     const Stopwatch watch;
     if (const WorldDistance* world = world_at ? world_at(executed) : nullptr) planner_.show(*world);
@@ -122,8 +118,8 @@ class Walk {
     return graph_.vertex(VertexId<VertexConfiguration>{slot});
   }
 
-  /// Decides how fast the robot passes a configuration: as the window says it goes on from there,
-  /// and as the plan did where nothing has moved. That stays so, whatever the next cycles change.
+  /// Decides how fast the robot passes a configuration: as fast as fits the window after it, and as
+  /// fast as the plan did where nothing has moved. Later cycles change the window, but not this.
   void pass_through(int i) {
     if (i + 1 >= planner_.plan_size()) return;  // at rest
     const Motion around = motion_of(graph_, planner_.plan(), i - 1, i + 1);
@@ -172,7 +168,7 @@ class Walk {
   void measure_goal(int at) {
     const int slot = planner_.plan().slots[static_cast<std::size_t>(at)];
     const Eigen::Map<const Eigen::VectorXd> is(graph_.state(slot), graph_.state_size(slot));
-    const Eigen::VectorXd& goal = planner_.planned().back();
+    const Eigen::VectorXd& goal = planner_.online_plan().planned().back();
     report_.goal_distance_m = (is.head<3>() - goal.head<3>()).norm();
     report_.goal_angle_rad =
         Eigen::Quaterniond(is.data() + 3).angularDistance(Eigen::Quaterniond(goal.data() + 3));
@@ -184,14 +180,21 @@ class Walk {
     return text.str();
   }
 
-  std::string cause_behind(int executed) {
-    const auto cause =
-        find_cause(graph_, planner_.plan(), planner_.planned(), executed, last_of_window(executed));
+  std::string cause_after(int executed) {
+    const auto cause = find_cause(graph_, planner_.plan(), planner_.online_plan().planned(),
+                                  executed, planner_.last_of_window(executed));
     return cause ? cause->text : "";
   }
 
+  /// The first executed configuration whose window reaches the end of the plan.
+  int first_to_see_the_end() const {
+    int executed = 0;
+    while (planner_.last_of_window(executed) + 1 < planner_.plan_size()) ++executed;
+    return executed;
+  }
+
   void stop(int executed, const std::string& symptom) {
-    const std::string cause = cause_behind(executed);
+    const std::string cause = cause_after(executed);
     end_at(executed, (cause.empty() ? "" : cause + "; what gave way is ") + symptom);
   }
 
@@ -212,7 +215,7 @@ class Walk {
 
   void arrive() {
     const int last = planner_.plan_size() - 1;
-    report_.short_of_goal_m = planner_.behind_m(last);
+    report_.short_of_goal_m = planner_.online_plan().behind_m(last);
     measure_goal(last);
     if (report_.goal_distance_m <= options_.goal_tolerance_m &&
         report_.goal_angle_rad <= options_.goal_tolerance_rad) {
@@ -226,17 +229,17 @@ class Walk {
     const bool blocked = report_.short_of_goal_m > options_.goal_tolerance_m;
     report_.reason = std::string(blocked ? "blocked" : "beside the goal") +
                      ": feasible, but it ends " + goal_text() + " from the goal of the plan";
-    const std::string cause = cause_behind(std::max(0, last - options_.planner.horizon));
+    const std::string cause = cause_after(first_to_see_the_end());
     if (!cause.empty()) report_.reason += ", which meets " + cause;
   }
 
   Graph& graph_;
-  const RefineOptions& options_;
+  const WalkOptions& options_;
   LocalPlanner planner_;
   const Robot& model_;
   const Motion planned_;
   std::vector<double> faster_;  // than careful, of slopes of the plan
-  RefineReport report_;
+  WalkReport report_;
 };
 
 void require_tolerance(double tolerance) {
@@ -245,7 +248,7 @@ void require_tolerance(double tolerance) {
 
 }  // namespace
 
-RefineReport refine(Graph& graph, const WorldAt& world_at, const RefineOptions& options) {
+WalkReport walk_plan(Graph& graph, const WorldAt& world_at, const WalkOptions& options) {
   require_tolerance(options.goal_tolerance_m);
   require_tolerance(options.goal_tolerance_rad);
   return Walk(graph, options).run(world_at);

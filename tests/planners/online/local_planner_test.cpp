@@ -6,20 +6,10 @@
 
 #include "benchmarks/planners/crossing_cases.h"
 #include "common/sanitized.h"
-#include "planners/planned_drive.h"
+#include "planners/online/drive_past_box.h"
 
 namespace locograph {
 namespace local_planner_test {
-
-Graph drive() { return plan_wheeled_drive(centauro_drive()); }
-
-Obstacle box_ahead() { return box("box", {2.0, 0.0, 0.25}, {0.5, 0.5, 0.5}); }
-
-WorldDistance seeing(const std::vector<Obstacle>& obstacles) {
-  WorldDistance world;
-  world.obstacles = obstacles;
-  return world;
-}
 
 /// Of what was executed of a plan.
 void expect_feasible_until(const Graph& graph, int last, const std::vector<Obstacle>& obstacles) {
@@ -44,7 +34,7 @@ TEST(LocalPlanner, NeverChangesWhatIsExecutedNorTheStart) {
   EXPECT_EQ(executed.front(), configurations(drive()).front());
 }
 
-TEST(LocalPlanner, ChangesNothingBehindTheWindow) {
+TEST(LocalPlanner, ChangesNothingAfterTheWindow) {
   Graph graph = drive();
   LocalPlannerOptions options;
   options.horizon = 30;
@@ -54,6 +44,19 @@ TEST(LocalPlanner, ChangesNothingBehindTheWindow) {
   const std::vector<Eigen::VectorXd> now = configurations(graph), before = configurations(drive());
   EXPECT_NE(now[25], before[25]);
   for (int i = 31; i < 50; ++i) EXPECT_EQ(now[i], before[i]) << i;
+}
+
+TEST(LocalPlanner, TakesItsHorizonInSecondsToo) {
+  Graph graph = drive();
+  LocalPlannerOptions options;
+  const Plan plan = plan_of(graph);
+  options.horizon_s = 1e-3 + graph.vertex(VertexId<VertexConfiguration>{plan.slots[4]}).time_s -
+                      graph.vertex(VertexId<VertexConfiguration>{plan.slots[0]}).time_s;
+  LocalPlanner planner(graph, options);
+  EXPECT_EQ(planner.last_of_window(0), 4);
+  EXPECT_EQ(planner.cycle(0).window, 4);
+  options.horizon_s = -1.0;
+  EXPECT_THROW(LocalPlanner(graph, options), Error);
 }
 
 TEST(LocalPlanner, RefusesAnExecutedConfigurationThatHasNoNext) {

@@ -1,14 +1,15 @@
 #pragma once
-/// Walks along a plan, one cycle of the local planner at each step, as if a robot executed it.
+/// A simulation that uses the local planner: walks along a plan as if a robot executed it, with one
+/// cycle of the planner at each step. The command `refine`.
 ///
-///     RefineOptions options;
+///     WalkOptions options;
 ///     options.verify = [&](const Motion& step) { return judge.check(step, limits); };
-///     RefineReport report = refine(graph, world_seen_at, options);
+///     WalkReport report = walk_plan(graph, world_seen_at, options);
 ///
 /// Stops before a configuration that cannot be made feasible: the rest of the plan is removed from
-/// the graph, which is marked as incomplete (plan_parameters.h), and the report says what stood in
-/// the way (window_cause.h) and how far it got. A plan
-/// that is feasible but does not end at its goal, whether short of it or beside it, is no success.
+/// the graph, which is marked as incomplete (plan_parameters.h), and the report tells the obstacle
+/// (window_cause.h) and how far the robot got. A plan that is feasible but does not end at its
+/// goal, whether short of it or beside it, is no success.
 
 #include <locograph/check/check_report.h>
 #include <locograph/check/limits.h>
@@ -20,7 +21,7 @@
 
 namespace locograph {
 
-struct RefineOptions {
+struct WalkOptions {
   LocalPlannerOptions planner;
   /// How far from where it was planned the last configuration's base may end, in any direction.
   /// A plan that ends further away than the judge takes for a goal (limits.h) is marked incomplete.
@@ -31,13 +32,13 @@ struct RefineOptions {
   /// Called after each cycle, e.g. to show progress; may be empty.
   std::function<void(const CycleReport&)> on_cycle;
   /// The independent verdict on the motion from the executed configuration to the next, before it
-  /// is executed: Judge::check() with what is known of the world. The motion begins one step
-  /// earlier: only now is it known how the robot accelerates between the two. May be empty: then
-  /// the local planner's own view is all there is.
+  /// is executed: Judge::check() in the world as it is known. The motion begins some steps earlier:
+  /// only now is it known how the robot accelerates between them, and slip of wheels counts over a
+  /// stretch. May be empty: then the local planner alone decides.
   std::function<CheckReport(const Motion&)> verify;
 };
 
-struct RefineReport {
+struct WalkReport {
   std::vector<CycleReport> cycles;
   std::vector<double> map_update_s;  ///< time that showing the world took, for each cycle
   std::vector<double> verify_s;      ///< time that the verdict on each step took
@@ -52,9 +53,9 @@ struct RefineReport {
   std::string reason;
 };
 
-/// world_at: what the world shows when the robot is at configuration `executed`; null: nothing new.
+/// The world as it is seen when the robot is at configuration `executed`; null: nothing new.
 using WorldAt = std::function<const WorldDistance*(int executed)>;
 
-RefineReport refine(Graph& graph, const WorldAt& world_at, const RefineOptions& options);
+WalkReport walk_plan(Graph& graph, const WorldAt& world_at, const WalkOptions& options);
 
 }  // namespace locograph

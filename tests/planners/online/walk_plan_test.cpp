@@ -1,11 +1,10 @@
 #include <locograph/common/error.h>
 #include <locograph/core/graph_file.h>
-#include <locograph/planners/online/refine.h>
-#include <locograph/world/distance_view.h>
+#include <locograph/planners/online/walk_plan.h>
 #include <locograph/world/octree.h>
 
 #include "common/sanitized.h"
-#include "planners/planned_drive.h"
+#include "planners/online/drive_past_box.h"
 
 namespace locograph {
 namespace {
@@ -19,21 +18,18 @@ struct Surroundings {
   CheckReport check(const Graph& graph) const { return check_plan(graph, obstacles, map); }
 };
 
-RefineReport refine_in(Graph& graph, const Surroundings& surroundings, int horizon = 20) {
+WalkReport walk_in(Graph& graph, const Surroundings& surroundings, int horizon = 20) {
   const WorldDistance world = surroundings.seen();
-  RefineOptions options;
+  WalkOptions options;
   options.planner.horizon = horizon;
   const std::shared_ptr<const Robot> robot = plan_of(graph).robot->robot;
   options.verify = [&surroundings, robot](const Motion& step) {
     return check_step(robot, step, world_of(surroundings.obstacles, surroundings.map));
   };
-  return refine(
+  return walk_plan(
       graph, [&world](int executed) { return executed == 0 ? &world : nullptr; }, options);
 }
 
-Graph drive() { return plan_wheeled_drive(centauro_drive()); }
-
-Obstacle box_ahead() { return box("box", {2.0, 0.0, 0.25}, {0.5, 0.5, 0.5}); }
 Obstacle wall_ahead() { return box("wall", {2.5, 0.0, 0.5}, {0.2, 8.0, 1.0}); }
 
 std::shared_ptr<const octomap::OcTree> map_of(const Obstacle& obstacle) {
@@ -51,13 +47,13 @@ void expect_same(const Graph& a, const Graph& b, double tolerance) {
   }
 }
 
-TEST(Refine, LeavesAPlanInAnEmptyWorldAsItIs) {
+TEST(WalkPlan, LeavesAPlanInAnEmptyWorldAsItIs) {
   if (test::kSanitized) GTEST_SKIP() << "takes long there";
   const Surroundings nothing, empty_map{{}, std::make_shared<octomap::OcTree>(0.05)};
   for (const Surroundings& surroundings : {nothing, empty_map}) {
     for (const double curvature : {0.0, 0.3}) {
       Graph graph = plan_wheeled_drive(centauro_drive(4.0, curvature));
-      const RefineReport report = refine_in(graph, surroundings);
+      const WalkReport report = walk_in(graph, surroundings);
       EXPECT_TRUE(report.success) << report.reason;
       EXPECT_EQ(report.cycles.size(), 49u);
       EXPECT_EQ(report.feasible_cycles, 49);
@@ -70,7 +66,7 @@ TEST(Refine, LeavesAPlanInAnEmptyWorldAsItIs) {
 void expect_gets_past(const Surroundings& surroundings) {
   Graph graph = drive();
   EXPECT_TRUE(violated(surroundings.check(graph)).contains("obstacle_distance"));
-  const RefineReport report = refine_in(graph, surroundings);
+  const WalkReport report = walk_in(graph, surroundings);
   EXPECT_TRUE(report.success) << report.reason;
   EXPECT_EQ(report.configurations, 50);
   const CheckReport check = surroundings.check(graph);
@@ -86,21 +82,21 @@ void expect_gets_past(const Surroundings& surroundings) {
       (configurations(graph).back() - configurations(drive()).back()).head<3>().norm());
 }
 
-TEST(Refine, DrivesAroundABoxGivenAsAnObstacle) { expect_gets_past({{box_ahead()}, nullptr}); }
+TEST(WalkPlan, DrivesAroundABoxGivenAsAnObstacle) { expect_gets_past({{box_ahead()}, nullptr}); }
 
-TEST(Refine, DrivesAroundABoxGivenAsAMap) { expect_gets_past({{}, map_of(box_ahead())}); }
+TEST(WalkPlan, DrivesAroundABoxGivenAsAMap) { expect_gets_past({{}, map_of(box_ahead())}); }
 
-TEST(Refine, DrivesAroundABoxThatShowsUpOnTheWay) {
+TEST(WalkPlan, DrivesAroundABoxThatShowsUpOnTheWay) {
   const Surroundings surroundings{{box_ahead()}, nullptr};
   const WorldDistance world = surroundings.seen();
   Graph graph = drive();
-  const RefineReport report =
-      refine(graph, [&world](int executed) { return executed == 3 ? &world : nullptr; }, {});
+  const WalkReport report =
+      walk_plan(graph, [&world](int executed) { return executed == 3 ? &world : nullptr; }, {});
   EXPECT_TRUE(report.success) << report.reason;
   expect_feasible(surroundings.check(graph));
 }
 
-TEST(Refine, NeverCallsAStepFeasibleThatMeetsACartOnItsWay) {
+TEST(WalkPlan, NeverCallsAStepFeasibleThatMeetsACartOnItsWay) {
   if (test::kSanitized) GTEST_SKIP() << "takes long there";
   Obstacle cart = box("cart", {2.0, -3.0, 0.4}, {0.4, 0.4, 0.8});
   KeyFrame start{8.0, cart.world_from_obstacle}, end{32.0, cart.world_from_obstacle};
@@ -109,7 +105,7 @@ TEST(Refine, NeverCallsAStepFeasibleThatMeetsACartOnItsWay) {
   const Surroundings surroundings{{cart}, nullptr};
   Graph graph = drive();
   EXPECT_TRUE(violated(surroundings.check(graph)).contains("obstacle_distance"));
-  const RefineReport report = refine_in(graph, surroundings);
+  const WalkReport report = walk_in(graph, surroundings);
   expect_feasible(surroundings.check(graph));
   EXPECT_EQ(configurations(graph).size(), static_cast<std::size_t>(report.configurations));
   EXPECT_EQ(report.success, report.configurations == 50) << report.reason;
@@ -117,7 +113,7 @@ TEST(Refine, NeverCallsAStepFeasibleThatMeetsACartOnItsWay) {
 
 void expect_stops(const Surroundings& surroundings) {
   Graph graph = drive();
-  const RefineReport report = refine_in(graph, surroundings);
+  const WalkReport report = walk_in(graph, surroundings);
   EXPECT_FALSE(report.success);
   EXPECT_TRUE(report.reason.find("obstacle_distance") != std::string::npos ||
               report.reason.find("blocked") != std::string::npos)
@@ -132,23 +128,23 @@ void expect_stops(const Surroundings& surroundings) {
   EXPECT_GT(configurations(graph).back()[0], 1.0) << "stopped early";
 }
 
-TEST(Refine, StopsInFrontOfAWallAndSaysSo) {
+TEST(WalkPlan, StopsInFrontOfAWallAndSaysSo) {
   if (test::kSanitized) GTEST_SKIP() << "takes long there";
   expect_stops({{wall_ahead()}, nullptr});
 }
 
-TEST(Refine, StopsInFrontOfAWallInAMapAndSaysSo) {
+TEST(WalkPlan, StopsInFrontOfAWallInAMapAndSaysSo) {
   if (test::kSanitized) GTEST_SKIP() << "takes long there";
   expect_stops({{}, map_of(wall_ahead())});
 }
 
-TEST(Refine, RemovesWhatCannotBeExecutedWhenThereIsNowhereToGo) {
+TEST(WalkPlan, RemovesWhatCannotBeExecutedWhenThereIsNowhereToGo) {
   // Appears around the robot, which cannot get out of the way in one step.
   const Surroundings surroundings{{box("rock", {1.0, 0.0, 0.5}, {1.0, 0.5, 1.0})}, nullptr};
   const WorldDistance world = surroundings.seen();
   Graph graph = drive();
-  const RefineReport report =
-      refine(graph, [&world](int executed) { return executed == 12 ? &world : nullptr; }, {});
+  const WalkReport report =
+      walk_plan(graph, [&world](int executed) { return executed == 12 ? &world : nullptr; }, {});
   EXPECT_FALSE(report.success);
   EXPECT_EQ(report.reason.find("stopped at configuration 12: "), 0u) << report.reason;
   EXPECT_NE(report.reason.find("(rock)"), std::string::npos) << report.reason;
@@ -166,7 +162,7 @@ TEST_P(Horizon, NeverHandsOutAnInfeasiblePlan) {
   if (test::kSanitized && GetParam() < 20) GTEST_SKIP() << "takes long there";
   const Surroundings surroundings{{box_ahead()}, nullptr};
   Graph graph = drive();
-  const RefineReport report = refine_in(graph, surroundings, GetParam());
+  const WalkReport report = walk_in(graph, surroundings, GetParam());
   expect_feasible(surroundings.check(graph));
   EXPECT_EQ(configurations(graph).size(), static_cast<std::size_t>(report.configurations));
   for (const CycleReport& cycle : report.cycles) {
@@ -179,28 +175,28 @@ TEST_P(Horizon, NeverHandsOutAnInfeasiblePlan) {
   EXPECT_TRUE(report.success || GetParam() < 20) << report.reason;
 }
 
-INSTANTIATE_TEST_SUITE_P(Refine, Horizon, testing::Values(1, 5, 20, 200));
+INSTANTIATE_TEST_SUITE_P(WalkPlan, Horizon, testing::Values(1, 5, 20, 200));
 
-TEST(Refine, RefusesAHorizonOfNothingAndANegativeDeadline) {
+TEST(WalkPlan, RefusesAHorizonOfNothingAndANegativeDeadline) {
   Graph graph = drive();
-  EXPECT_THROW(refine_in(graph, {}, 0), Error);
-  EXPECT_THROW(refine_in(graph, {}, -5), Error);
-  RefineOptions options;
+  EXPECT_THROW(walk_in(graph, {}, 0), Error);
+  EXPECT_THROW(walk_in(graph, {}, -5), Error);
+  WalkOptions options;
   options.planner.deadline_s = -0.001;
-  EXPECT_THROW(refine(graph, {}, options), Error);
+  EXPECT_THROW(walk_plan(graph, {}, options), Error);
   options.planner.deadline_s = kNaN;
-  EXPECT_THROW(refine(graph, {}, options), Error);
+  EXPECT_THROW(walk_plan(graph, {}, options), Error);
   expect_same(graph, drive(), 0.0);
 }
 
-TEST(Refine, EndsWithWhatItHasWhenItIsInterrupted) {
+TEST(WalkPlan, EndsWithWhatItHasWhenItIsInterrupted) {
   std::atomic<bool> stop{false};
-  RefineOptions options;
+  WalkOptions options;
   options.stop = &stop;
   options.on_cycle = [&stop](const CycleReport& cycle) { stop = cycle.executed == 4; };
   Graph graph = drive();
   EXPECT_FALSE(plan_of(graph).incomplete);
-  const RefineReport report = refine(graph, {}, options);
+  const WalkReport report = walk_plan(graph, {}, options);
   EXPECT_FALSE(report.success);
   EXPECT_EQ(report.reason.find("stopped at configuration 5: interrupted; after 5 of 49 steps"), 0u)
       << report.reason;
@@ -210,36 +206,36 @@ TEST(Refine, EndsWithWhatItHasWhenItIsInterrupted) {
   expect_feasible(check_plan(graph));
 }
 
-TEST(Refine, IsNoSuccessWhereItEndsTooFarFromTheGoal) {
+TEST(WalkPlan, IsNoSuccessWhereItEndsTooFarFromTheGoal) {
   const Surroundings surroundings{{box_ahead()}, nullptr};
   const WorldDistance world = surroundings.seen();
-  RefineOptions options;
+  WalkOptions options;
   options.goal_tolerance_m = 1e-6;
   Graph graph = drive();
-  const RefineReport report = refine(
+  const WalkReport report = walk_plan(
       graph, [&world](int executed) { return executed == 0 ? &world : nullptr; }, options);
   EXPECT_FALSE(report.success);
   EXPECT_EQ(report.configurations, 50);
   EXPECT_NE(report.reason.find("from the goal"), std::string::npos) << report.reason;
   options.goal_tolerance_m = -1.0;
-  EXPECT_THROW(refine(graph, {}, options), Error);
+  EXPECT_THROW(walk_plan(graph, {}, options), Error);
 }
 
-TEST(Refine, GivesTheSameBitsAgain) {
+TEST(WalkPlan, GivesTheSameBitsAgain) {
   if (test::kSanitized) GTEST_SKIP() << "takes long there";
   const Surroundings surroundings{{}, map_of(box_ahead())};
   Graph first = drive(), second = drive();
-  refine_in(first, surroundings);
-  refine_in(second, surroundings);
+  walk_in(first, surroundings);
+  walk_in(second, surroundings);
   EXPECT_EQ(write_graph_text(first), write_graph_text(second));
 }
 
-TEST(Refine, TellsAfterEveryCycleAndOnlyThen) {
+TEST(WalkPlan, TellsAfterEveryCycleAndOnlyThen) {
   Graph graph = drive();
-  RefineOptions options;
+  WalkOptions options;
   std::vector<int> executed;
   options.on_cycle = [&executed](const CycleReport& cycle) { executed.push_back(cycle.executed); };
-  const RefineReport report = refine(graph, {}, options);
+  const WalkReport report = walk_plan(graph, {}, options);
   ASSERT_EQ(executed.size(), 49u);
   for (int i = 0; i < 49; ++i) EXPECT_EQ(executed[i], i);
   EXPECT_EQ(report.map_update_s.size(), 49u);

@@ -1,0 +1,67 @@
+#pragma once
+/// A plan that is changed while it is executed: its configurations as they came, and as they are
+/// now.
+///
+///     OnlinePlan online(plan_graph);
+///     online.configuration(1).head<3>() += Eigen::Vector3d(0.0, 0.1, 0.0);
+///     for (int i = 0; i < online.size(); ++i) std::cout << online.behind_m(i) << " m behind\n";
+///
+/// Configurations are known by their index in the plan.
+
+#include <locograph/planners/plan/plan.h>
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+namespace locograph {
+
+class OnlinePlan {
+ public:
+  /// The graph must outlive it, and keep its vertices. Throws Error for a graph without a plan, and
+  /// for a plan without a world or with a configuration that stands on no wheels.
+  explicit OnlinePlan(Graph& graph);
+
+  int size() const { return static_cast<int>(plan_.slots.size()); }
+  int last() const { return size() - 1; }
+  const Plan& plan() const { return plan_; }
+  const Robot& robot() const { return *plan_.robot->robot; }
+  Graph& graph() const { return graph_; }
+
+  /// Configurations as the plan came.
+  const std::vector<Eigen::VectorXd>& planned() const { return planned_; }
+  /// One of them as the graph has it now.
+  Eigen::Map<Eigen::VectorXd> configuration(int index);
+  Eigen::Map<const Eigen::VectorXd> configuration(int index) const;
+  /// Overwrites the configurations from `first` on, but for those that the graph holds fixed.
+  void overwrite(int first, std::span<const Eigen::VectorXd> configurations);
+  bool is_fixed(int index) const { return graph_.vertex_record(slot(index)).fixed; }
+  double time_s(int index) const;
+
+  /// Slopes are those of the plan as it came. Takes them away from the configurations first … last
+  /// that are elsewhere now, whose slopes follow from the rule of the curve (motion_curve.h).
+  void drop_slopes_of_moved(int first, int last);
+
+  /// How far a configuration is behind its place in the plan as it came, along its heading [m].
+  double behind_m(int index) const;
+
+  int slot(int index) const { return plan_.slots[static_cast<std::size_t>(index)]; }
+  /// Of the configuration in a slot of the graph; -1 for vertices of other types.
+  int index_of(int slot) const {
+    return plan_.index.configuration[static_cast<std::size_t>(slot)];
+  }
+  /// The same; for a vertex of another type the first configuration that it shares an edge with, -1
+  /// when there is none.
+  int first_index_on(int slot) const;
+
+  /// What the distance edges see.
+  const WorldDistance& world() const { return plan_.world->now; }
+  void show(const WorldDistance& world) { plan_.world->now = world; }
+
+ private:
+  Graph& graph_;
+  Plan plan_;
+  std::vector<Eigen::VectorXd> planned_;
+};
+
+}  // namespace locograph

@@ -1,0 +1,50 @@
+#pragma once
+/// Where the optimisation of a window begins: at the window of the last cycle, extended by the
+/// configurations that enter.
+///
+///     WarmStart warm_start(online);
+///     window.move_to(executed);
+///     warm_start.enter(window);            // initialises new configurations, in the graph
+///     // … the deadline passes before the result is better than the last one:
+///     warm_start.keep_unfinished(window);  // the next cycle continues from there
+///
+/// A configuration that enters makes the step that the plan makes there from the configuration
+/// before it, plus the drift from the plan that the step before had: steered wheels cannot return
+/// to the plan within one step.
+///
+/// An unfinished window is one beside that of the graph: not better yet, but worth another cycle.
+/// It is extended in the same way until a cycle loads it or drops it.
+
+#include <locograph/planners/online/window.h>
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace locograph {
+
+class WarmStart {
+ public:
+  /// The plan must outlive it.
+  explicit WarmStart(OnlinePlan& plan) : plan_(plan), unfinished_(plan.planned().size()) {}
+
+  /// Initialises the configurations that have entered the window, but for fixed ones: those of the
+  /// graph, and those of an unfinished window.
+  void enter(const Window& window);
+
+  bool has_unfinished() const { return unfinished_end_ > 0; }
+  /// Writes the unfinished window, which there must be, into the graph.
+  void load_unfinished(const Window& window);
+  /// Keeps the configurations that the graph has now.
+  void keep_unfinished(const Window& window);
+  void drop_unfinished() { unfinished_end_ = 0; }
+
+ private:
+  Eigen::VectorXd planned_step_with_drift(int index, const Eigen::VectorXd& before,
+                                          const Eigen::VectorXd* before_that) const;
+
+  OnlinePlan& plan_;
+  std::vector<Eigen::VectorXd> unfinished_;  ///< by index in the plan
+  int unfinished_end_ = 0;                   ///< index after its last configuration; 0: none
+};
+
+}  // namespace locograph

@@ -1,0 +1,26 @@
+#pragma once
+/// What the tests of the online planner share: the shipped drive, and a box on its way.
+///
+///     Graph graph = drive();
+///     LocalPlanner planner(graph, {});
+///     planner.show(seeing({box_ahead()}));
+
+#include <locograph/world/distance_view.h>
+
+#include <vector>
+
+#include "planners/planned_drive.h"
+
+namespace locograph {
+
+inline Graph drive() { return plan_wheeled_drive(centauro_drive()); }
+
+inline Obstacle box_ahead() { return box("box", {2.0, 0.0, 0.25}, {0.5, 0.5, 0.5}); }
+
+inline WorldDistance seeing(const std::vector<Obstacle>& obstacles) {
+  WorldDistance world;
+  world.obstacles = obstacles;
+  return world;
+}
+
+}  // namespace locograph
