@@ -156,9 +156,9 @@ TEST(WalkPlan, RemovesWhatCannotBeExecutedWhenThereIsNowhereToGo) {
   expect_feasible(check_plan(graph));
 }
 
-class Horizon : public testing::TestWithParam<int> {};
+class WalkWithHorizon : public testing::TestWithParam<int> {};
 
-TEST_P(Horizon, NeverHandsOutAnInfeasiblePlan) {
+TEST_P(WalkWithHorizon, NeverHandsOutAnInfeasiblePlan) {
   if (test::kSanitized && GetParam() < 20) GTEST_SKIP() << "takes long there";
   const Surroundings surroundings{{box_ahead()}, nullptr};
   Graph graph = drive();
@@ -175,7 +175,7 @@ TEST_P(Horizon, NeverHandsOutAnInfeasiblePlan) {
   EXPECT_TRUE(report.success || GetParam() < 20) << report.reason;
 }
 
-INSTANTIATE_TEST_SUITE_P(WalkPlan, Horizon, testing::Values(1, 5, 20, 200));
+INSTANTIATE_TEST_SUITE_P(WalkPlan, WalkWithHorizon, testing::Values(1, 5, 20, 200));
 
 TEST(WalkPlan, RefusesAHorizonOfNothingAndANegativeDeadline) {
   Graph graph = drive();
