@@ -8,6 +8,7 @@
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
 #include <locograph/robots/contact_kinds/contact_kind_entry.h>
 #include <locograph/robots/robot_state.h>
+#include <locograph/world/convex_hull.h>
 
 #include <algorithm>
 #include <map>
@@ -96,42 +97,22 @@ class TouchedWorld {
   std::map<const StanceParameter*, JudgedStance> judged_;
 };
 
-/// Corners as they go round, counterclockwise (Andrew's monotone chain).
-std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
-  std::sort(points.begin(), points.end(), [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
-  });
-  if (points.size() < 3) return points;
-  std::vector<Eigen::Vector2d> hull;
-  const auto add = [&hull](const Eigen::Vector2d& point, std::size_t kept) {
-    const auto turns_left = [&] {
-      const Eigen::Vector2d a = hull.back() - hull[hull.size() - 2], b = point - hull.back();
-      return a.x() * b.y() - a.y() * b.x() > 0.0;
-    };
-    while (hull.size() > kept && !turns_left()) hull.pop_back();
-    hull.push_back(point);
-  };
-  for (const Eigen::Vector2d& point : points) add(point, 1);
-  const std::size_t lower = hull.size();
-  for (std::size_t i = points.size() - 1; i-- > 0;) add(points[i], lower);
-  hull.pop_back();
-  return hull;
-}
-
 /// In the world; all of the sole where it is not known what it lies on.
 Json area_json(const Support& support, const ContactParameter& parameter, const RobotState& state) {
   const EndEffector& sole = parameter.contact.effector;
-  std::vector<Eigen::Vector2d> corners = support.area;
+  std::vector<PlanePoint> corners;
+  for (const Eigen::Vector2d& corner : support.area) corners.push_back({corner.x(), corner.y()});
   if (!support.known) {
     for (const auto& [x, y] :
          {std::pair(1, 1), std::pair(-1, 1), std::pair(-1, -1), std::pair(1, -1)})
-      corners.emplace_back(x * sole.half_x_m, y * sole.half_y_m);
+      corners.push_back({x * sole.half_x_m, y * sole.half_y_m});
   }
   const Eigen::Isometry3d& pose = state.world_from_link(parameter.link);
   const Eigen::Matrix3d axes = pose.linear() * axes_in_link(sole);
   Json area = Json::array();
-  for (const Eigen::Vector2d& corner : convex_hull(std::move(corners))) {
-    area.push_back(vector_json(pose * sole.point + axes.leftCols<2>() * corner));
+  for (const PlanePoint& corner : convex_hull(std::move(corners))) {
+    const Eigen::Vector2d along(corner.x, corner.y);
+    area.push_back(vector_json(pose * sole.point + axes.leftCols<2>() * along));
   }
   return area;
 }

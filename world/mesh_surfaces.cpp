@@ -170,7 +170,7 @@ std::vector<Surface> rectangles_on(const std::vector<Triangle>& triangles,
       const Eigen::Vector3d p = face_from_world * corner;
       corners.push_back({p.x(), p.y()});
     }
-  const PlaneFrame frame = smallest_frame(std::move(corners));
+  const PlaneFrame frame = smallest_frame(corners);
   world_from_face.rotate(Eigen::AngleAxisd(frame.angle_rad, Eigen::Vector3d::UnitZ()));
   world_from_face.translate(Eigen::Vector3d(frame.lower_x, frame.lower_y, 0.0));
   const double width = frame.upper_x - frame.lower_x, height = frame.upper_y - frame.lower_y;

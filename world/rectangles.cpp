@@ -1,3 +1,4 @@
+#include <locograph/world/convex_hull.h>
 #include <locograph/world/rectangles.h>
 
 #include <algorithm>
@@ -208,26 +209,8 @@ std::vector<CellRectangle> cell_rectangles(std::vector<Cell> cells, const CellSi
   return rectangles;
 }
 
-PlaneFrame smallest_frame(std::vector<PlanePoint> points) {
-  const auto cross = [](const PlanePoint& o, const PlanePoint& a, const PlanePoint& b) {
-    return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
-  };
-  std::sort(points.begin(), points.end(), [](const PlanePoint& a, const PlanePoint& b) {
-    return std::tie(a.x, a.y) < std::tie(b.x, b.y);
-  });
-  // Andrew's monotone chain: the lower side of the hull, then the upper one back.
-  std::vector<PlanePoint> hull;
-  for (int side = 0; side < 2; ++side) {
-    const std::size_t start = hull.size();
-    for (const PlanePoint& point : points) {
-      while (hull.size() >= start + 2 && cross(hull[hull.size() - 2], hull.back(), point) <= 0.0) {
-        hull.pop_back();
-      }
-      hull.push_back(point);
-    }
-    hull.pop_back();
-    std::reverse(points.begin(), points.end());
-  }
+PlaneFrame smallest_frame(const std::vector<PlanePoint>& points) {
+  const std::vector<PlanePoint> hull = convex_hull(points);
   const auto bounds = [&](double angle) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     PlaneFrame frame{angle, kInfinity, kInfinity, -kInfinity, -kInfinity};

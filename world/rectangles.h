@@ -10,6 +10,7 @@
 /// out. None is longer than 2048 cells: larger sets are cut there.
 
 #include <locograph/common/deadline.h>
+#include <locograph/world/convex_hull.h>
 
 #include <vector>
 
@@ -39,10 +40,7 @@ struct PlaneFrame {
   double angle_rad = 0.0;                                             ///< of its x axis
   double lower_x = 0.0, lower_y = 0.0, upper_x = 0.0, upper_y = 0.0;  ///< bounds along its axes
 };
-struct PlanePoint {
-  double x = 0.0, y = 0.0;
-};
 /// The smallest rectangle around points of a plane, one of whose sides is on their convex hull.
-PlaneFrame smallest_frame(std::vector<PlanePoint> points);
+PlaneFrame smallest_frame(const std::vector<PlanePoint>& points);
 
 }  // namespace locograph
