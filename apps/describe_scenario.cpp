@@ -1,6 +1,6 @@
 #include <locograph/apps/describe.h>
 #include <locograph/common/data_folder.h>
-#include <locograph/planners/posture/contacts_file.h>
+#include <locograph/planners/scenario/contacts_file.h>
 #include <locograph/planners/scenario/scenario.h>
 #include <locograph/robots/contact_kinds/contact_kind_entry.h>
 

@@ -7,8 +7,8 @@
 #include <locograph/common/deadline.h>
 #include <locograph/common/stop_signals.h>
 #include <locograph/core/graph_file.h>
-#include <locograph/planners/posture/contacts_file.h>
 #include <locograph/planners/posture/posture_solver.h>
+#include <locograph/planners/scenario/contacts_file.h>
 
 #include <algorithm>
 #include <memory>

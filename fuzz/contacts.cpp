@@ -1,6 +1,6 @@
 // Contacts files, for a robot whose links the seeds name.
 
-#include <locograph/planners/posture/contacts_file.h>
+#include <locograph/planners/scenario/contacts_file.h>
 
 #include "fuzz_target.h"
 #include "plugins/small_robot.h"

@@ -47,9 +47,7 @@ class OnlinePlan {
 
   int slot(int index) const { return plan_.slots[static_cast<std::size_t>(index)]; }
   /// Of the configuration in a slot of the graph; -1 for vertices of other types.
-  int index_of(int slot) const {
-    return plan_.index.configuration[static_cast<std::size_t>(slot)];
-  }
+  int index_of(int slot) const { return plan_.index.configuration[static_cast<std::size_t>(slot)]; }
   /// The same; for a vertex of another type the first configuration that it shares an edge with, -1
   /// when there is none.
   int first_index_on(int slot) const;

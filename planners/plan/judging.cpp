@@ -1,7 +1,7 @@
 #include <locograph/check/judge.h>
 #include <locograph/common/input_file.h>
 #include <locograph/planners/plan/judging.h>
-#include <locograph/planners/posture/contacts_file.h>
+#include <locograph/planners/scenario/contacts_file.h>
 #include <locograph/planners/scenario/scenario.h>
 #include <locograph/planners/scenario/task_stances.h>
 #include <locograph/plugins/configuration/plan_parameters.h>

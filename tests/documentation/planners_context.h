@@ -29,11 +29,11 @@
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
-#include <locograph/planners/posture/contacts_file.h>
 #include <locograph/planners/posture/posture_graph.h>
 #include <locograph/planners/posture/posture_solver.h>
 #include <locograph/planners/scenario/bar_place.h>
 #include <locograph/planners/scenario/contact_place.h>
+#include <locograph/planners/scenario/contacts_file.h>
 #include <locograph/planners/scenario/move_contacts.h>
 #include <locograph/planners/scenario/scenario.h>
 #include <locograph/planners/scenario/snap_to_places.h>
@@ -540,12 +540,12 @@ inline constexpr std::string_view kStanding = R"(<contacts version="1" name="sta
 </contacts>
 )";
 
-namespace posture_contacts_file_h {
+namespace scenario_contacts_file_h {
 struct Context {
   const Robot& robot = *coman_plus();
   Context() { write_example_file("standing.xml", kStanding); }
 };
-}  // namespace posture_contacts_file_h
+}  // namespace scenario_contacts_file_h
 namespace posture_posture_graph_h {
 struct Context : StepContext {
   const std::shared_ptr<const RobotParameter>& robot = StepContext::problem.robot;
@@ -566,7 +566,7 @@ namespace posture_posture_problem_h {
 using Context = StepContext;
 }
 namespace posture_posture_solver_h {
-struct Context : posture_contacts_file_h::Context {
+struct Context : scenario_contacts_file_h::Context {
   const RobotFiles files = shipped_robot("coman_plus").value();
   const std::filesystem::path &urdf = files.urdf, &srdf = files.srdf;
   const RobotOptions options;

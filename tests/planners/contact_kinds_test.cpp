@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <locograph/check/balance_certificate.h>
 #include <locograph/planners/offline/stance/balance_region.h>
-#include <locograph/planners/posture/contacts_file.h>
 #include <locograph/planners/scenario/contact_place.h>
+#include <locograph/planners/scenario/contacts_file.h>
 
 #include "common/temporary_folder.h"
 #include "planners/mistakes.h"

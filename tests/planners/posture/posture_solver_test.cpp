@@ -3,7 +3,7 @@
 #include <locograph/core/graph_file.h>
 #include <locograph/core/optimiser.h>
 #include <locograph/planners/plan/judging.h>
-#include <locograph/planners/posture/contacts_file.h>
+#include <locograph/planners/scenario/contacts_file.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
 #include <locograph/plugins/robot_types.h>
 #include <locograph/solvers/linear_solvers.h>

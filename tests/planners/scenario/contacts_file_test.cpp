@@ -1,4 +1,4 @@
-#include <locograph/planners/posture/contacts_file.h>
+#include <locograph/planners/scenario/contacts_file.h>
 
 #include "common/temporary_folder.h"
 #include "planners/mistakes.h"

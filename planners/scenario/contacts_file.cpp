@@ -1,4 +1,4 @@
-#include <locograph/planners/posture/contacts_file.h>
+#include <locograph/planners/scenario/contacts_file.h>
 #include <locograph/planners/scenario/effector_element.h>
 #include <locograph/robots/contact_kinds/contact_kind_entry.h>
 
