@@ -2,7 +2,7 @@
 #include <locograph/common/data_folder.h>
 #include <locograph/planners/scenario/contacts_file.h>
 #include <locograph/planners/scenario/scenario.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds.h>
 
 namespace locograph {
 namespace {

@@ -6,7 +6,7 @@
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/plugins/static_balance/static_rows.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds.h>
 #include <locograph/robots/robot_state.h>
 #include <locograph/world/convex_hull.h>
 

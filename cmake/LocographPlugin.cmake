@@ -28,7 +28,7 @@ macro(locograph_hash_plugin_headers root planning)
     core/type_registry core/typed_edge_pool core/vertex core/vertex_difference core/vertex_pool)
   if(${planning})
     list(APPEND locograph_hashed
-      robots/collision_model robots/contact robots/contact_closure robots/contact_kinds/table
+      robots/collision_model robots/contact robots/contact_closure robots/contact_kind_table
       robots/robot robots/robot_state robots/wheel robots/wrench_cone
       world/distance_field world/distance_sample world/obstacles
       plugins/configuration/frame_parameter plugins/configuration/robot_parameters

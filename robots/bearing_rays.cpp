@@ -1,5 +1,5 @@
 #include <locograph/robots/bearing_rays.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds.h>
 
 namespace locograph {
 

@@ -1,6 +1,6 @@
 #include <locograph/common/error.h>
 #include <locograph/robots/contact.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds.h>
 #include <locograph/robots/kinematic_tree.h>
 #include <locograph/robots/robot_state.h>
 

@@ -32,7 +32,7 @@
 /// still on the ground: its touching point stays, and its joint turns back what its carrier
 /// pitches.
 
-#include <locograph/robots/contact_kinds/table.h>
+#include <locograph/robots/contact_kind_table.h>
 #include <locograph/robots/robot.h>
 
 #include <Eigen/Core>
@@ -43,7 +43,7 @@
 
 namespace locograph {
 
-/// kSurface, kPoint, kGrasp, kWheel: the kinds of contact_kinds/table.h, in its order.
+/// kSurface, kPoint, kGrasp, kWheel: the kinds of contact_kind_table.h, in its order.
 enum class ContactKind {
 #define LOCOGRAPH_CONTACT_ENUMERATOR(enumerator, entry) enumerator,
   LOCOGRAPH_CONTACT_KINDS(LOCOGRAPH_CONTACT_ENUMERATOR)

@@ -22,7 +22,7 @@
 ///                            those of a wheel
 ///
 /// For the tilt see orientation_error.h. The kind of the contact makes the rows
-/// (contact_kinds/contact_kind_entry.h); what is fixed is worked out by the constructor; error()
+/// (contact_kinds.h); what is fixed is worked out by the constructor; error()
 /// and add_jacobian() do not allocate. Const functions may be shared between threads.
 
 #include <locograph/robots/contact.h>

@@ -22,6 +22,7 @@
 /// Time and memory of a cycle depend on H, not on the length of the plan.
 
 #include <locograph/planners/online/proposal_schedule.h>
+#include <locograph/planners/online/standard_proposals.h>
 #include <locograph/planners/online/warm_start.h>
 #include <locograph/planners/online/window_solver.h>
 

@@ -55,7 +55,4 @@ class Proposal {
 
 using ProposalFactory = std::function<std::unique_ptr<Proposal>(const OnlinePlan& plan)>;
 
-/// Those that come with locograph, in the order in which they are asked.
-std::vector<ProposalFactory> standard_proposals();
-
 }  // namespace locograph

@@ -5,7 +5,7 @@
 #include <locograph/planners/posture/posture_solver.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds.h>
 #include <locograph/solvers/linear_solvers.h>
 #include <locograph/world/distance_view.h>
 

@@ -1,6 +1,6 @@
 #include <locograph/check/limits.h>
 #include <locograph/planners/scenario/bar_place.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>

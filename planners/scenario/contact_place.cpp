@@ -1,7 +1,7 @@
 #include <locograph/check/limits.h>
 #include <locograph/planners/scenario/bar_place.h>
 #include <locograph/planners/scenario/contact_place.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds.h>
 
 #include <algorithm>
 #include <cmath>

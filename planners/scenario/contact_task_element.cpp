@@ -1,7 +1,7 @@
 #include <locograph/common/suggestion.h>
 #include <locograph/planners/scenario/contact_task_element.h>
 #include <locograph/planners/scenario/effector_element.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds.h>
 
 #include <algorithm>
 #include <cmath>

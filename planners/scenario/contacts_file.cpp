@@ -1,6 +1,6 @@
 #include <locograph/planners/scenario/contacts_file.h>
 #include <locograph/planners/scenario/effector_element.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds.h>
 
 #include <map>
 #include <set>

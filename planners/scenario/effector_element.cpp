@@ -1,5 +1,5 @@
 #include <locograph/planners/scenario/effector_element.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds.h>
 
 #include <cmath>
 #include <cstdio>

@@ -1,7 +1,7 @@
 #include <locograph/common/uniform.h>
 #include <locograph/planners/scenario/contact_place.h>
 #include <locograph/planners/scenario/move_contacts.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <locograph/planners/scenario/effector_element.h>
 #include <locograph/planners/scenario/environment_element.h>
 #include <locograph/planners/scenario/scenario.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds.h>
 #include <locograph/robots/shipped_robot.h>
 #include <locograph/robots/xml_file.h>
 #include <locograph/world/octree.h>

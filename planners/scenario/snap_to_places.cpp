@@ -1,6 +1,6 @@
 #include <locograph/planners/scenario/contact_place.h>
 #include <locograph/planners/scenario/snap_to_places.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds.h>
 
 #include <algorithm>
 #include <cmath>

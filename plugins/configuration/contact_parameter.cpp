@@ -1,7 +1,7 @@
 #include <locograph/common/ranges.h>
 #include <locograph/plugins/configuration/contact_parameter.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds.h>
 
 #include <cmath>
 #include <cstdio>

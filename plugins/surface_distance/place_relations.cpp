@@ -1,5 +1,5 @@
 #include <locograph/plugins/surface_distance/place_relations.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds.h>
 #include <locograph/robots/kinematic_tree.h>
 
 #include <algorithm>

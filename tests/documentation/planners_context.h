@@ -428,6 +428,11 @@ struct Context {
   LocalPlannerOptions options;
 };
 }  // namespace online_proposal_h
+namespace online_standard_proposals_h {
+struct Context {
+  LocalPlannerOptions options;
+};
+}  // namespace online_standard_proposals_h
 namespace online_proposal_schedule_h {
 struct Context : WindowContext {
   const Deadline deadline;

@@ -8,7 +8,7 @@
 /// Rows: across the blade and above the surface [m], the sine of its tilt to the surface. Wrench:
 /// fx fz mx.
 
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds.h>
 
 #include <limits>
 

@@ -1,6 +1,6 @@
 #include <locograph/planners/offline/motion/interpolation.h>
 #include <locograph/planners/offline/motion/swing.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds.h>
 
 #include <algorithm>
 #include <array>

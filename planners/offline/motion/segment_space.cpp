@@ -1,5 +1,5 @@
 #include <locograph/planners/offline/motion/segment_space.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds.h>
 #include <locograph/robots/wheel.h>
 
 #include <Eigen/Cholesky>

@@ -1,6 +1,6 @@
 #include <locograph/common/error.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
-#include <locograph/robots/contact_kinds/frame_closure.h>
+#include <locograph/robots/contact_kinds.h>
+#include <locograph/robots/frame_closure.h>
 
 namespace locograph {
 namespace {

@@ -1,5 +1,5 @@
-#include <locograph/planners/online/proposal.h>
 #include <locograph/planners/online/sideways_detour.h>
+#include <locograph/planners/online/standard_proposals.h>
 
 namespace locograph {
 

@@ -5,14 +5,15 @@
 ///     const bool stays = !kind.rolls || contact.locked;
 ///     const std::unique_ptr<const ClosureRows> rows = kind.closure(robot, contact);
 ///
-/// The entry of a kind of table.h is a constant object in a file of its own, NAME.cpp beside this
-/// one. What is generic asks it and does not name kinds: ContactClosure, PARAMS_CONTACT and its
-/// edges, scenarios and contacts files, linear programmes of balance, places, scenes. What turns
-/// wheels names them, and so does the judge (check/), which shares no rule with this table.
+/// The entry of a kind of contact_kind_table.h is a constant object in a file of its own,
+/// NAME_contact.cpp. What is generic asks it and does not name kinds: ContactClosure,
+/// PARAMS_CONTACT and its edges, scenarios and contacts files, linear programmes of balance,
+/// places, scenes. What turns wheels names them, and so does the judge (check/), which shares no
+/// rule with this table.
 
 #include <locograph/robots/bearing_rays.h>
 #include <locograph/robots/contact_closure.h>
-#include <locograph/robots/contact_kinds/effector_field.h>
+#include <locograph/robots/effector_field.h>
 #include <locograph/robots/wrench_cone.h>
 
 #include <memory>
@@ -84,9 +85,9 @@ const ContactKindEntry& contact_kind_entry(ContactKind kind);
 /// From its point to a corner of its area; 0 of a kind that has none.
 double area_reach_m(const EndEffector& effector);
 
-/// Adds a kind that is not in table.h, for a program of its own; the judge refuses it. The entry
-/// must outlive all contacts. Not while other threads use contacts. Throws Error for a name that
-/// another kind has, and when there are too many.
+/// Adds a kind that is not in contact_kind_table.h, for a program of its own; the judge refuses it.
+/// The entry must outlive all contacts. Not while other threads use contacts. Throws Error for a
+/// name that another kind has, and when there are too many.
 ContactKind add_contact_kind(const ContactKindEntry& entry);
 
 #define LOCOGRAPH_CONTACT_ENTRY(enumerator, entry) const ContactKindEntry& entry();

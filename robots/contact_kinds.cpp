@@ -1,5 +1,5 @@
 #include <locograph/common/error.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
+#include <locograph/robots/contact_kinds.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include <locograph/common/error.h>
-#include <locograph/robots/contact_kinds/contact_kind_entry.h>
-#include <locograph/robots/contact_kinds/pressed_cone.h>
+#include <locograph/robots/contact_kinds.h>
+#include <locograph/robots/pressed_cone.h>
 #include <locograph/robots/wheel.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include <locograph/robots/contact_kinds/frame_closure.h>
+#include <locograph/robots/frame_closure.h>
 #include <locograph/robots/orientation_error.h>
 
 namespace locograph {

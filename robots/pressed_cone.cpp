@@ -1,5 +1,5 @@
 #include <locograph/common/error.h>
-#include <locograph/robots/contact_kinds/pressed_cone.h>
+#include <locograph/robots/pressed_cone.h>
 
 #include <cmath>
 #include <limits>
