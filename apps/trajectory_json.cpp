@@ -291,7 +291,6 @@ std::string trajectory_json(const PlanFile& file, const std::filesystem::path& f
   const Robot& robot = *file.plan.robot->robot;
   const Motion motion = motion_of(file.graph, file.plan);
   const MotionCurve curve(robot, motion);
-  CurvePoint point;
   const int joints = robot.active_joint_count();
   Json names = Json::array(), points = Json::array(), bases = Json::array(),
        wrenches = Json::array();
@@ -300,13 +299,7 @@ std::string trajectory_json(const PlanFile& file, const std::filesystem::path& f
     const Eigen::VectorXd& q = motion.configurations[i];
     const int step = static_cast<int>(i);
     const Eigen::VectorXd& velocity = curve.slope(step);
-    // As the step from there begins; at the end, as the last one ends.
-    Eigen::VectorXd acceleration = Eigen::VectorXd::Zero(robot.tangent_size());
-    if (motion.configurations.size() > 1) {
-      const bool last = i + 1 == motion.configurations.size();
-      curve.step(last ? step - 1 : step).at(last ? 1.0 : 0.0, point);
-      acceleration = point.acceleration;
-    }
+    const Eigen::VectorXd acceleration = curve.at_vertex(step).acceleration;
     points.push_back({{"positions", numbers_json(q.tail(joints))},
                       {"velocities", numbers_json(velocity.tail(joints))},
                       {"accelerations", numbers_json(acceleration.tail(joints))},

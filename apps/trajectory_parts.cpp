@@ -35,9 +35,9 @@ void require_motion(const PlanFile& file) {
 }
 
 std::vector<std::string> parameter_lines(const Graph& graph, const std::filesystem::path& folder) {
-  constexpr std::array<std::string_view, 8> kTags = {
-      "PARAMS_ROBOT",    "PARAMS_PLAN",    "PARAMS_WORLD",  "PARAMS_SCENARIO",
-      "PARAMS_CONTACTS", "PARAMS_CONTACT", "PARAMS_STANCE", "PARAMS_SEGMENT"};
+  constexpr std::array<std::string_view, 9> kTags = {
+      "PARAMS_ROBOT",   "PARAMS_PLAN",   "PARAMS_WORLD",   "PARAMS_SCENARIO", "PARAMS_CONTACTS",
+      "PARAMS_CONTACT", "PARAMS_STANCE", "PARAMS_SEGMENT", "PARAMS_PLACES"};
   std::vector<std::string> lines;
   for (const auto& [number, parameter] : graph.parameters().all()) {
     if (std::ranges::find(kTags, parameter->tag()) == kTags.end()) continue;

@@ -267,6 +267,19 @@ CurveStep MotionCurve::step(int vertex) const {
           slopes_[i], slopes_[i + 1],           std::max(0.0, duration_s)};
 }
 
+CurvePoint MotionCurve::at_vertex(int vertex) const {
+  const auto count = static_cast<int>(motion_->configurations.size());
+  CurvePoint point;
+  if (count > 1) {
+    const bool last = vertex + 1 == count;
+    step(last ? vertex - 1 : vertex).at(last ? 1.0 : 0.0, point);
+    return point;
+  }
+  point.configuration = motion_->configurations.front();
+  point.velocity = point.acceleration = Eigen::VectorXd::Zero(robot_->tangent_size());
+  return point;
+}
+
 double MotionCurve::time_s(int vertex, double fraction) const {
   const std::vector<double>& times = motion_->time_s;
   const std::size_t i = static_cast<std::size_t>(vertex);

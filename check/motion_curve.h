@@ -91,6 +91,9 @@ class MotionCurve {
     return slopes_[static_cast<std::size_t>(vertex)];
   }
   double time_s(int vertex, double fraction) const;
+  /// How it moves at a vertex: as the step from there begins, at the last one as the last step
+  /// ends; a single vertex is at rest.
+  CurvePoint at_vertex(int vertex) const;
 
  private:
   Eigen::VectorXd three_point_slope(int vertex) const;

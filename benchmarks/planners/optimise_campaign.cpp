@@ -7,8 +7,9 @@
 // at most 50 iterations, and then judged in the world of its scenario:
 //   as_it_is    how far a coordinate moves at most [m, rad]
 //   disturbed   each coordinate of each inner configuration by up to 5 mm or 5 mrad, N times
-//   box         a cube of 6 cm reaches 2 cm into the way of a link that swings, and is clear of the
-//               configurations at both ends of the segment, N times; the optimiser alone sees it.
+//   box         a cube of 6 cm reaches 2 cm into the way of a link that swings, N times. No sphere
+//   of
+//               the robot's is within 15 mm of it at both ends of the swing and in other segments.
 //               Drives and plans whose links all stay in contact have none
 // Prints one JSON object.
 #include <locograph/check/judge.h>
@@ -40,7 +41,7 @@ using Json = nlohmann::ordered_json;
 using Eigen::Vector3d;
 
 constexpr double kDisturbed = 5e-3;  // m, rad
-constexpr double kBoxSide_m = 0.06, kIntoTheWay_m = 0.02, kClearOfEnds_m = 0.02;
+constexpr double kBoxSide_m = 0.06, kIntoTheWay_m = 0.02, kClear_m = 0.015;
 constexpr int kMostIterations = 50, kMostDraws = 200;
 
 /// A link that swings during a segment.
@@ -62,6 +63,15 @@ class Campaign {
     motion_ = motion_of(graph, plan_);
     judging_ = judging_of(graph, plan_, {.data_folder = data_folder()});
     judging_.options.threads = 2;
+    centres_.clear();
+    ConfigurationState state(plan_.robot);
+    for (const Eigen::VectorXd& q : motion_.configurations) {
+      state.update(q.data());
+      std::vector<Vector3d>& centres = centres_.emplace_back();
+      for (const CollisionSphere& sphere : plan_.robot->spheres) {
+        centres.push_back(state.kinematics.world_from_link(sphere.link) * sphere.center);
+      }
+    }
     Json result = {{"plan", std::filesystem::path(file).filename().string()},
                    {"configurations", plan_.slots.size()}};
     result["as_it_is"] = optimised(graph);
@@ -190,19 +200,25 @@ class Campaign {
 
   /// How near a part of the plan comes to a box, negative in it [m].
   double clearance(const Graph& graph, const Obstacle& box, int first, int last) const {
-    World world = judging_.world;
-    world.map = nullptr;
+    World world;
     world.obstacles = {box};
-    const Judge judge(judging_.robot, world);
-    if (first != last) {
-      return judge.check(motion_of(graph, plan_, first, last), judging_.options)
-          .constraint("obstacle_distance")
-          .worst;
-    }
-    const auto k = static_cast<std::size_t>(first);
-    return judge.check(motion_.configurations[k], plan_.stance_from[k]->stance, judging_.options)
+    return Judge(judging_.robot, world)
+        .check(motion_of(graph, plan_, first, last), judging_.options)
         .constraint("obstacle_distance")
         .worst;
+  }
+
+  /// Of all configurations but those of a swing, as the edges see them.
+  bool others_are_clear(const Obstacle& box, const Swing& swing) const {
+    const std::vector<CollisionSphere>& spheres = plan_.robot->spheres;
+    for (std::size_t i = 0; i < centres_.size(); ++i) {
+      const int at = static_cast<int>(i);
+      if (at > swing.first && at < swing.last) continue;
+      for (std::size_t k = 0; k < spheres.size(); ++k) {
+        if (box.distance(centres_[i][k], 0.0) - spheres[k].radius < kClear_m) return false;
+      }
+    }
+    return true;
   }
 
   std::optional<Obstacle> box_in_the_way(const Graph& graph, const std::vector<Swing>& all) {
@@ -231,19 +247,9 @@ class Campaign {
         (clear_at(middle_m) < -kIntoTheWay_m ? near_m : far_m) = middle_m;
       }
       if (std::abs(clear_at(near_m) + kIntoTheWay_m) > 2e-3) continue;
-      const bool ends_clear = clearance(graph, box, swing.first, swing.first) > kClearOfEnds_m &&
-                              clearance(graph, box, swing.last, swing.last) > kClearOfEnds_m;
-      // Others must not be in the box: neither in other segments nor on the way to it.
-      if (ends_clear && others_clear(graph, box, swing)) return box;
+      if (others_are_clear(box, swing)) return box;
     }
     return {};
-  }
-
-  bool others_clear(const Graph& graph, const Obstacle& box, const Swing& swing) const {
-    return std::ranges::all_of(plan_.segments, [&](const PlanSegment& segment) {
-      return segment.first == swing.first ||
-             clearance(graph, box, segment.first, segment.last) > kClearOfEnds_m;
-    });
   }
 
   Json past(Graph& graph, const Obstacle& box) {
@@ -261,6 +267,7 @@ class Campaign {
   Plan plan_;
   Motion motion_;
   Judging judging_;
+  std::vector<std::vector<Vector3d>> centres_;  // of spheres, by configuration
 };
 
 }  // namespace

@@ -66,7 +66,7 @@ void mark_incomplete(Graph& graph);
 
 /// Numbers of the parameters in a plan file. Contacts begin at kFirstContact; stances follow them.
 inline constexpr int kRobotNumber = 0, kPlanNumber = 1, kWorldNumber = 2, kScenarioNumber = 3,
-                     kContactsNumber = 4, kFirstContact = 10;
+                     kContactsNumber = 4, kPlacesNumber = 5, kFirstContact = 10;
 
 /// Adds PARAMS_PLAN, and the stances with their contacts as parameters; contacts that are equal are
 /// one. Returns the number of each stance.

@@ -11,9 +11,11 @@
 #include <locograph/plugins/static_balance/edge_contact_wrench.h>
 #include <locograph/plugins/static_balance/edge_torque_limits.h>
 #include <locograph/plugins/static_balance/edge_wrench_norm.h>
+#include <locograph/plugins/surface_distance/edge_surface_distance.h>
 #include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
+#include <locograph/robots/contact_kinds.h>
 #include <locograph/robots/statics.h>
 
 #include <algorithm>
@@ -76,6 +78,14 @@ int world_number(Graph& graph, const Plan& plan) {
   return number;
 }
 
+/// The number of the plan's PARAMS_PLACES; -1: it has none.
+int places_number(const Graph& graph) {
+  for (const auto& [number, parameter] : graph.parameters().all()) {
+    if (std::dynamic_pointer_cast<const PlacesParameter>(parameter)) return number;
+  }
+  return -1;
+}
+
 /// The stance whose contacts balance a configuration.
 const StanceParameter* bearing_stance(const Plan& plan, std::size_t i) {
   const StanceParameter* left_in = plan.stance_from[i].get();
@@ -94,8 +104,10 @@ class PlanEdges {
         plan_(plan_of(graph)),
         robot_(*plan_.robot->robot),
         world_number_(world_number(graph, plan_)),
+        places_number_(places_number(graph)),
         track_(robot_.tangent_size()),
-        steps_(robot_.tangent_size()) {
+        steps_(robot_.tangent_size()),
+        state_(plan_.robot) {
     for (const int slot : plan_.slots) {
       ids_.push_back({slot});
       configurations_.push_back(graph.vertex(ids_.back()).state);
@@ -116,6 +128,7 @@ class PlanEdges {
       if (!job_.go_on("adding constraints", i, ids_.size())) return false;
       add_to_configuration(i);
       if (any_apart) graph_.add_edge(apart, ids_[i]);
+      add_surface_distance(i);
       if (!wrenches.empty() && !wrenches[i].empty()) add_balance(i, wrenches[i]);
       if (i == 0 || plan_.stances_only) continue;
       add_to_step(i);
@@ -201,6 +214,69 @@ class PlanEdges {
     }
   }
 
+  int stance_number(std::size_t i) const { return graph_.vertex(ids_[i]).stance_number; }
+
+  /// Nothing where no stance is known, or where two without a common contact meet.
+  void add_surface_distance(std::size_t i) {
+    const std::size_t before = i == 0 ? i : i - 1;
+    if (places_number_ < 0 || !plan_.stance_from[before] || !plan_.stance_from[i]) return;
+    const auto holds = [&](std::size_t step, int number) {
+      return std::ranges::count(plan_.stance_from[step]->contact_numbers, number) > 0;
+    };
+    if (std::ranges::none_of(plan_.stance_from[i]->contact_numbers,
+                             [&](int number) { return holds(before, number); })) {
+      return;
+    }
+    state_.update(configurations_[i].data());
+    std::vector<int> near = near_contacts(i);
+    if (!surfaces_ || surfaces_->before_number != stance_number(before) ||
+        surfaces_->after_number != stance_number(i) || surfaces_->near_numbers.all != near) {
+      surfaces_.emplace(*plan_.robot, places_number_, stance_number(before), stance_number(i),
+                        options_.surface_margin_m, options_.limit_weight, std::move(near));
+      surfaces_->bind(graph_.parameters());
+    }
+    EdgeSurfaceDistance edge = *surfaces_;
+    Eigen::VectorXd lack(edge.weights.size());
+    edge.error(state_, lack);
+    edge.weights = (lack.array() > 0.0).select(0.0, edge.weights);
+    graph_.add_edge(std::move(edge), ids_[i]);
+  }
+
+  /// Of the stances before and after that of a configuration, contacts that it has just left or is
+  /// about to make: nearer than 0.1 m, and not below them.
+  std::vector<int> near_contacts(std::size_t i) const {
+    constexpr double kNear_m = 0.1, kBelow_m = 2e-3;
+    if (plan_.stances_only) return {};
+    std::size_t first = i, end = i;
+    while (first > 0 && stance_number(first) == stance_number(i)) --first;
+    while (end + 1 < ids_.size() && stance_number(end) == stance_number(i)) ++end;
+    const std::vector<int> closed = contacts_at(plan_.stance_from, i);
+    const auto is_closed = [&](const ContactParameter& contact) {
+      return std::ranges::any_of(closed, [&](int number) {
+        return graph_.parameters().get<ContactParameter>(number)->contact.name() ==
+               contact.contact.name();
+      });
+    };
+    std::vector<int> near;
+    for (const std::size_t other : {first, end}) {
+      if (!plan_.stance_from[other]) continue;
+      for (std::size_t c = 0; c < plan_.stance_from[other]->contacts.size(); ++c) {
+        const ContactParameter& contact = *plan_.stance_from[other]->contacts[c];
+        const int number = plan_.stance_from[other]->contact_numbers[c];
+        if (is_closed(contact) || std::ranges::find(near, number) != near.end()) continue;
+        const EndEffector& effector = contact.contact.effector;
+        const Eigen::Vector3d normal = contact.contact.normal.stableNormalized();
+        const double radius_m =
+            contact_kind_entry(effector.kind).is_round() ? effector.radius_m : 0.0;
+        const Eigen::Vector3d off =
+            state_.kinematics.world_from_link(contact.link) * effector.point -
+            contact.contact.position - radius_m * normal;
+        if (off.norm() < kNear_m && off.dot(normal) > -kBelow_m) near.push_back(number);
+      }
+    }
+    return near;
+  }
+
   void add_balance(std::size_t i, const StanceWrenches& wrenches) {
     const StanceParameter* bearing = bearing_stance(plan_, i);
     const std::size_t expected = bearing == nullptr ? 0 : bearing->contacts.size();
@@ -260,7 +336,7 @@ class PlanEdges {
           step_limit(robot_, step, dt_s, options_.leg_step_rad, options_, bending)}) {
       if (limit) graph_.add_edge(*limit, a, b);
     }
-    const int number = graph_.vertex(a).stance_number;
+    const int number = stance_number(i - 1);
     graph_.add_edge(EdgeRolling(*stance, number, options_.constraint_weight), a, b);
     if (!(options_.steering_slip_m > 0.0)) return;
     const EdgeSteeringSlip slip(*stance, number, options_.steering_slip_m,
@@ -273,11 +349,13 @@ class PlanEdges {
   const JobControl& job_;
   const Plan plan_;
   const Robot& robot_;
-  int world_number_;
+  int world_number_, places_number_;
   Eigen::VectorXd track_, goal_, steps_;  // weights
   std::vector<Configuration> ids_;
   std::vector<Eigen::VectorXd> configurations_;
   int free_id_ = 0;
+  ConfigurationState state_;
+  std::optional<EdgeSurfaceDistance> surfaces_;  // of the configuration before
 };
 
 }  // namespace
@@ -292,6 +370,8 @@ PlanEdgeOptions drive_edges() {
 
 PlanEdgeOptions motion_edges(const CheckOptions& check) {
   PlanEdgeOptions options;
+  // Configurations lie a fiftieth of a second apart: as stiff as the others nevertheless.
+  options.acceleration_weight = 1e-4;
   options.obstacle_margin_m = 0.01;
   options.swept_samples = 2;
   options.excuse_near_world = true;
@@ -300,7 +380,9 @@ PlanEdgeOptions motion_edges(const CheckOptions& check) {
   options.base_linear_m_s = is_limited(check.base_linear_m_s) ? check.base_linear_m_s : 0.0;
   options.base_angular_rad_s =
       is_limited(check.base_angular_rad_s) ? check.base_angular_rad_s : 0.0;
-  options.joint_acceleration_rad_s2 = check.joint_acceleration_rad_s2;
+  if (is_limited(check.joint_acceleration_rad_s2)) {
+    options.joint_acceleration_rad_s2 = check.joint_acceleration_rad_s2;
+  }
   options.torque_limits = check.enforce_torque_limits;
   options.effort_scale = check.effort_scale;
   options.track_lateral = options.track_forward;

@@ -7,7 +7,8 @@
 ///     add_plan_edges(graph, drive_edges());
 ///
 /// Each configuration gets tracking of the plan as it is, joint limits, the contacts of the stances
-/// on both sides and distances of its links to each other; each step tracking of its length,
+/// on both sides and distances of its links to each other and, where the plan has a PARAMS_PLACES,
+/// to what they do not touch; each step tracking of its length,
 /// velocity limits, rolling where it has wheels and distances to the world on the way; each two
 /// steps acceleration limits; each configuration whose wrenches are known balance, friction, the
 /// least wrenches and, where they are enforced, torque limits. Nothing moves between the
@@ -36,18 +37,19 @@ struct PlanEdgeOptions {
   double balance_weight = 1e4;       ///< forces and moments (N, N m over the robot's weight)
   double friction_weight = 1e3;      ///< what contacts can bear, likewise
   double torque_weight = 1e2;        ///< per share of a joint's effort limit
-  double wrench_norm_weight = 1e-2;  ///< the least of all wrenches that balance
+  double wrench_norm_weight = 1e-4;  ///< the least of all wrenches that balance
 
   double obstacle_margin_m = 0.05;
   int swept_samples = 4;  ///< between two configurations, see edge_swept_obstacle_distance.h
   /// Spheres that are nearer to the world than the margin in the plan itself have no weight: links
   /// that touch it. A drive touches with its wheels only, which the world's ground exempts.
   bool excuse_near_world = false;
+  double surface_margin_m = 2e-3;  ///< to surfaces, bars and boxes that a link does not touch
   double self_margin_m = 0.01;
   double joint_margin_rad = 0.01;
   double velocity_fraction = 0.95;
   double base_linear_m_s = 0.5, base_angular_rad_s = 0.5;  ///< 0: no limit
-  double joint_acceleration_rad_s2 = 10.0;                 ///< 0: no limit
+  double joint_acceleration_rad_s2 = 10.0;                 ///< as MotionOptions has it; 0: no limit
   bool torque_limits = false;
   double effort_scale = 1.0;
   /// How far joints turn in one step [rad], or as far as the plan turns them: what closes contacts
@@ -77,7 +79,8 @@ bool add_configurations(Graph& graph, const Motion& motion, const std::vector<in
                         const JobControl& job = {});
 
 /// Adds the edges to a plan that has parameters and configurations. Pairs of links that the shapes
-/// of EDGE_SELF_COLLISION see too near to each other in the plan already have no weight there.
+/// of EDGE_SELF_COLLISION see too near to each other in the plan already have no weight there, nor
+/// have links that a configuration has too near to a surface, bar or box.
 /// Joints that steer rolling wheels, and those wheels, are not tracked: rolling decides them.
 /// wrenches: as Motion::wrenches; of a plan of stances those at the contacts of the smaller of the
 /// two stances of a configuration. Throws Error for another number of them than there are

@@ -101,6 +101,22 @@ TEST(MotionCurve, VelocitiesAndAccelerationsAreThoseOfItsConfigurations) {
   }
 }
 
+TEST(MotionCurve, AtAVertexItIsWhereTheNextStepBeginsAndAtTheLastWhereItEnds) {
+  const RandomStep random(3, 0.5);
+  const MotionCurve curve(centauro().robot, random.motion);
+  for (const int end : {0, 1}) {
+    CurvePoint expected;
+    curve.step(0).at(end, expected);
+    const CurvePoint here = curve.at_vertex(end);
+    EXPECT_EQ(here.configuration, expected.configuration);
+    EXPECT_EQ(here.velocity, expected.velocity);
+    EXPECT_EQ(here.acceleration, expected.acceleration);
+  }
+  const Motion still{
+      .time_s = {0.0}, .configurations = {centauro().home}, .stances = {}, .stance_from = {-1}};
+  EXPECT_TRUE(MotionCurve(centauro().robot, still).at_vertex(0).velocity.isZero());
+}
+
 TEST(MotionCurve, NothingIsFasterThanItsBoundsAndSomethingAsFast) {
   for (int seed = 0; seed < 20; ++seed) {
     const RandomStep random(100 + seed, 0.5);

@@ -2,7 +2,7 @@
 // and what it bears; and that the judge does not let it pass.
 #include <gtest/gtest.h>
 #include <locograph/check/balance_certificate.h>
-#include <locograph/planners/offline/stance/balance_region.h>
+#include <locograph/planners/balance/balance_region.h>
 #include <locograph/planners/scenario/contact_place.h>
 #include <locograph/planners/scenario/contacts_file.h>
 

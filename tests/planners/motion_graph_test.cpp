@@ -16,6 +16,7 @@
 #include <locograph/plugins/static_balance/edge_contact_wrench.h>
 #include <locograph/plugins/static_balance/edge_wrench_norm.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
+#include <locograph/plugins/surface_distance/edge_surface_distance.h>
 #include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
@@ -141,6 +142,7 @@ TEST_F(MotionGraph, HasEveryConstraintAndEveryCost) {
   const auto count = static_cast<std::size_t>(kCount);
   EXPECT_EQ(graph.edges_of<EdgePlanTracking>().size(), count);
   EXPECT_EQ(graph.edges_of<EdgeJointLimits>().size(), count);
+  EXPECT_EQ(graph.edges_of<EdgeSurfaceDistance>().size(), count);
   EXPECT_EQ(graph.edges_of<EdgeBalance>().size(), count);
   EXPECT_EQ(graph.edges_of<EdgeContactWrench>().size(), count);
   EXPECT_EQ(graph.edges_of<EdgeWrenchNorm>().size(), count);

@@ -3,6 +3,8 @@
 #include <locograph/planners/plan/plan.h>
 #include <locograph/planners/plan/plan_edges.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
+#include <locograph/plugins/surface_distance/places_parameter.h>
+#include <locograph/world/distance_view.h>
 
 #include <utility>
 
@@ -32,7 +34,10 @@ std::vector<int> add_task(Graph& graph, const Scenario& scenario, const StancePr
   graph.parameters().set(kRobotNumber, problem.robot);
   const auto world = std::make_shared<WorldParameter>();
   world->set_files(scenario.map, scenario.obstacles);
+  world->now = distance_view(problem.world);
   graph.parameters().set(kWorldNumber, world);
+  graph.parameters().set(kPlacesNumber, std::make_shared<const PlacesParameter>(
+                                            problem.robot, kRobotNumber, problem.world));
   const auto origin = std::make_shared<ScenarioParameter>();
   origin->scenario = scenario.source;
   graph.parameters().set(kScenarioNumber, origin);
