@@ -320,13 +320,15 @@ class PlanEdges {
     const Configuration a = ids_[i - 1], b = ids_[i];
     Eigen::VectorXd step(robot_.tangent_size());
     robot_.difference(configurations_[i - 1].data(), configurations_[i].data(), step.data());
-    graph_.add_edge(EdgeVelocityTracking(step, steps_), a, b);
+    const double dt_s = graph_.vertex(b).time_s - graph_.vertex(a).time_s;
+    const double share = options_.smooth_over_s / dt_s;
+    graph_.add_edge(EdgeVelocityTracking(step, share > 0.0 ? share * share * track_ : steps_), a,
+                    b);
     graph_.add_edge(EdgeVelocityLimits(robot_, options_.velocity_fraction, options_.base_linear_m_s,
                                        options_.base_angular_rad_s, options_.limit_weight),
                     a, b);
     const StanceParameter* stance = plan_.stance_from[i - 1].get();
     if (stance == nullptr || stance->wheels.empty()) return;
-    const double dt_s = graph_.vertex(b).time_s - graph_.vertex(a).time_s;
     const auto steering = [&](int joint) { return steers(robot_, *stance, joint); };
     const auto bending = [&](int joint) {
       return !steering(joint) && !turns_wheel(*stance, joint);
@@ -370,12 +372,16 @@ PlanEdgeOptions drive_edges() {
 
 PlanEdgeOptions motion_edges(const CheckOptions& check) {
   PlanEdgeOptions options;
-  // Configurations lie a fiftieth of a second apart: as stiff as the others nevertheless.
-  options.acceleration_weight = 1e-4;
-  options.obstacle_margin_m = 0.01;
+  options.acceleration_weight = 1e-2;
+  options.smooth_over_s = 0.5;
+  options.constraint_weight = 1e6;
+  options.balance_weight = 1e5;
+  options.friction_weight = 1e4;
+  options.torque_weight = 1e3;
+  options.obstacle_margin_m = 2e-3;
   options.swept_samples = 2;
   options.excuse_near_world = true;
-  options.joint_margin_rad = 0.0;
+  options.joint_margin_rad = 1e-3;
   options.velocity_fraction = 1.0;
   options.base_linear_m_s = is_limited(check.base_linear_m_s) ? check.base_linear_m_s : 0.0;
   options.base_angular_rad_s =
@@ -384,7 +390,7 @@ PlanEdgeOptions motion_edges(const CheckOptions& check) {
     options.joint_acceleration_rad_s2 = check.joint_acceleration_rad_s2;
   }
   options.torque_limits = check.enforce_torque_limits;
-  options.effort_scale = check.effort_scale;
+  options.effort_scale = 0.95 * check.effort_scale;
   options.track_lateral = options.track_forward;
   options.track_yaw = options.track_tilt;
   return options;
