@@ -183,14 +183,14 @@ class Check {
 
 struct Judge::Parts {
   std::shared_ptr<const Robot> robot;
-  World world;
+  std::shared_ptr<const WorldSnapshot> snapshot;
   CollisionWorld exact;
   MovingShapes shapes;
 
-  Parts(std::shared_ptr<const Robot> given_robot, World given_world)
+  Parts(std::shared_ptr<const Robot> given_robot, std::shared_ptr<const WorldSnapshot> world)
       : robot(std::move(given_robot)),
-        world(std::move(given_world)),
-        exact(*robot, world),
+        snapshot(std::move(world)),
+        exact(*robot, snapshot->solids()),
         shapes(*robot) {}
 
   std::optional<CheckReport> check(const Motion& motion, const CheckOptions& options, bool single,
@@ -202,7 +202,7 @@ struct Judge::Parts {
     const MotionCurve curve(*robot, motion);
     const double cutoff = single ? kPostureCutoff_m : kMotionCutoff_m;
     CheckContext context{.robot = *robot,
-                         .world = world,
+                         .world = snapshot->world(),
                          .exact = exact,
                          .motion = motion,
                          .options = options,
@@ -220,8 +220,10 @@ struct Judge::Parts {
   }
 };
 
-Judge::Judge(std::shared_ptr<const Robot> robot, World world)
+Judge::Judge(std::shared_ptr<const Robot> robot, std::shared_ptr<const WorldSnapshot> world)
     : parts_(std::make_unique<const Parts>(std::move(robot), std::move(world))) {}
+Judge::Judge(std::shared_ptr<const Robot> robot, World world)
+    : Judge(std::move(robot), std::make_shared<const WorldSnapshot>(std::move(world))) {}
 Judge::~Judge() = default;
 Judge::Judge(Judge&&) noexcept = default;
 Judge& Judge::operator=(Judge&&) noexcept = default;
@@ -252,7 +254,7 @@ double Judge::self_distance_m(const RobotState& state) const {
   return parts_->exact.self_distance(poses, kPostureCutoff_m).distance_m;
 }
 
-const World& Judge::world() const { return parts_->world; }
+const World& Judge::world() const { return parts_->snapshot->world(); }
 const Robot& Judge::robot() const { return *parts_->robot; }
 
 }  // namespace locograph

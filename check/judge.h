@@ -64,7 +64,7 @@
 #include <locograph/common/job_control.h>
 #include <locograph/robots/robot.h>
 #include <locograph/robots/robot_state.h>
-#include <locograph/world/world.h>
+#include <locograph/world/world_snapshot.h>
 
 #include <Eigen/Core>
 #include <memory>
@@ -75,6 +75,7 @@ namespace locograph {
 class Judge {
  public:
   /// Throws Error for collision shapes, surfaces and bars that cannot be used.
+  Judge(std::shared_ptr<const Robot> robot, std::shared_ptr<const WorldSnapshot> world);
   Judge(std::shared_ptr<const Robot> robot, World world);
   ~Judge();
   Judge(Judge&&) noexcept;

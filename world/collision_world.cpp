@@ -1,17 +1,13 @@
 #include <locograph/common/error.h>
-#include <locograph/world/box_tree.h>
 #include <locograph/world/collision_world.h>
 #include <locograph/world/convex_shape.h>
-#include <locograph/world/distance_view.h>
 #include <locograph/world/link_solid.h>
-#include <locograph/world/touchable_solids.h>
-#include <locograph/world/voxel_tree.h>
+#include <locograph/world/world_solids.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <utility>
 
 namespace locograph {
@@ -26,18 +22,6 @@ struct Body {
   ConvexShape shape;
   Eigen::Isometry3d link_from_shape;
 };
-
-ConvexShape obstacle_solid(const Obstacle& obstacle) {
-  switch (obstacle.shape) {
-    case Obstacle::Shape::kSphere:
-      return ConvexShape::sphere(obstacle.size[0]);
-    case Obstacle::Shape::kCylinder:
-      return ConvexShape::cylinder(obstacle.size[0], obstacle.size[1]);
-    case Obstacle::Shape::kBox:
-      break;
-  }
-  return ConvexShape::box(obstacle.size);
-}
 
 // Distance of the bounding spheres: a lower bound of the signed distance.
 double sphere_bound(const ConvexShape& first, const Eigen::Isometry3d& world_from_first,
@@ -56,13 +40,7 @@ struct CollisionWorld::Parts {
   std::vector<Body> bodies;             // sorted by link
   std::vector<std::size_t> link_begin;  // links + 1 offsets into bodies
   std::vector<std::pair<int, int>> self_pairs;
-  std::optional<VoxelTree> voxels;
-  std::vector<Obstacle> obstacles;
-  std::vector<ConvexShape> obstacle_shapes;
-  std::vector<PlateSolid> plates;
-  std::vector<BarSolid> rods;
-  std::vector<BoxSolid> blocks;
-  double ground_z = -std::numeric_limits<double>::infinity();  // voxels up to here do not count
+  std::shared_ptr<const WorldSolids> solids;
 
   struct Search;
 
@@ -92,8 +70,7 @@ void CollisionWorld::Parts::take_robot(const Robot& robot) {
   self_pairs = robot.self_collision_pairs();
 }
 
-CollisionWorld::CollisionWorld(const Robot& robot, std::shared_ptr<const octomap::OcTree> tree,
-                               std::vector<Obstacle> obstacles,
+CollisionWorld::CollisionWorld(const Robot& robot, std::shared_ptr<const WorldSolids> solids,
                                const CollisionWorldOptions& options)
     : parts_(std::make_unique<Parts>()) {
   if (!std::isfinite(options.cutoff_m) || options.cutoff_m <= 0.0)
@@ -108,24 +85,18 @@ CollisionWorld::CollisionWorld(const Robot& robot, std::shared_ptr<const octomap
                   "an index below " + std::to_string(robot.links().size()));
     parts_->ignores_floor[link] = true;
   }
-  if (tree) parts_->voxels.emplace(*tree);
-  for (const Obstacle& obstacle : obstacles) {
-    obstacle.validate();
-    parts_->obstacle_shapes.push_back(obstacle_solid(obstacle));
-  }
-  parts_->obstacles = std::move(obstacles);
+  parts_->solids = std::move(solids);
 }
 
 CollisionWorld::CollisionWorld(const Robot& robot, const World& world,
                                const CollisionWorldOptions& options)
-    : CollisionWorld(robot, world.map, world.obstacles, options) {
-  for (const SolidBox& box : world.solids) parts_->blocks.emplace_back(box);
-  for (const Surface& surface : world.surfaces) parts_->plates.emplace_back(surface);
-  const std::vector<int> solids = solids_of_surfaces(world);
-  for (std::size_t p = 0; p < solids.size(); ++p) parts_->plates[p].block = solids[p];
-  for (const Bar& bar : world.bars) parts_->rods.emplace_back(bar);
-  parts_->ground_z = ground_height(world);
-}
+    : CollisionWorld(robot, std::make_shared<const WorldSolids>(world), options) {}
+
+CollisionWorld::CollisionWorld(const Robot& robot, std::shared_ptr<const octomap::OcTree> tree,
+                               std::vector<Obstacle> obstacles,
+                               const CollisionWorldOptions& options)
+    : CollisionWorld(robot, World{.map = std::move(tree), .obstacles = std::move(obstacles)},
+                     options) {}
 
 CollisionWorld::~CollisionWorld() = default;
 CollisionWorld::CollisionWorld(CollisionWorld&&) noexcept = default;
@@ -139,9 +110,9 @@ CollisionWorld::Closest CollisionWorld::environment_distance(
   int link = -1, obstacle = -1;
   const auto done = [&] { return best.distance < stop_below; };
 
-  for (std::size_t o = 0; o < parts.obstacles.size() && !done(); ++o) {
-    const Eigen::Isometry3d world_from_obstacle = parts.obstacles[o].pose_at(time_s);
-    const ConvexShape& shape = parts.obstacle_shapes[o];
+  for (std::size_t o = 0; o < parts.solids->obstacles.size() && !done(); ++o) {
+    const Eigen::Isometry3d world_from_obstacle = parts.solids->obstacles[o].pose_at(time_s);
+    const ConvexShape& shape = parts.solids->obstacle_shapes[o];
     for (std::size_t b = 0; b < parts.bodies.size() && !done(); ++b) {
       const Body& body = parts.bodies[b];
       if (sphere_bound(body.shape, world_from_body[b], shape, world_from_obstacle) >= best.distance)
@@ -154,13 +125,13 @@ CollisionWorld::Closest CollisionWorld::environment_distance(
       obstacle = static_cast<int>(o);
     }
   }
-  for (std::size_t b = 0; parts.voxels && b < parts.bodies.size() && !done(); ++b) {
+  for (std::size_t b = 0; parts.solids->voxels && b < parts.bodies.size() && !done(); ++b) {
     const Body& body = parts.bodies[b];
     VoxelTree::Query query{body.shape, world_from_body[b]};
     if (parts.ignores_floor[body.link]) query.floor_z = parts.options.floor_z_m;
     query.stop_below = stop_below;
     query.best = best;
-    if (!parts.voxels->nearest(query)) continue;
+    if (!parts.solids->voxels->nearest(query)) continue;
     best = query.best;
     link = body.link;
     obstacle = -1;
@@ -171,7 +142,7 @@ CollisionWorld::Closest CollisionWorld::environment_distance(
   closest.link = link;
   if (link < 0) return closest;
   closest.point = best.on_first;
-  closest.what = obstacle < 0 ? "voxel" : parts.obstacles[obstacle].name;
+  closest.what = obstacle < 0 ? "voxel" : parts.solids->obstacles[obstacle].name;
   return closest;
 }
 
@@ -214,10 +185,10 @@ struct CollisionWorld::Parts::Search {
     if (query.touches.size() > 64)
       throw Error(std::to_string(query.touches.size()) + " places to touch", "64 at most");
     touching.of_link.assign(parts.link_names.size(), 0);
-    touching.of_obstacle.assign(parts.obstacles.size(), 0);
-    touching.of_plate.assign(parts.plates.size(), 0);
-    touching.of_rod.assign(parts.rods.size(), 0);
-    touching.of_block.assign(parts.blocks.size(), 0);
+    touching.of_obstacle.assign(parts.solids->obstacles.size(), 0);
+    touching.of_plate.assign(parts.solids->plates.size(), 0);
+    touching.of_rod.assign(parts.solids->rods.size(), 0);
+    touching.of_block.assign(parts.solids->blocks.size(), 0);
     for (std::size_t t = 0; t < query.touches.size(); ++t) add(query.touches[t], Touching::bit(t));
     Eigen::AlignedBox3d box;
     for (std::size_t b = 0; b < parts.bodies.size(); ++b) box.extend(body_centre(b));
@@ -238,22 +209,22 @@ struct CollisionWorld::Parts::Search {
       Eigen::Vector3d where;
       return -least_along(shape, pose, -touch.normal, where) - plane;
     };
-    for (std::size_t o = 0; o < parts.obstacles.size(); ++o) {
-      const Obstacle& obstacle = parts.obstacles[o];
+    for (std::size_t o = 0; o < parts.solids->obstacles.size(); ++o) {
+      const Obstacle& obstacle = parts.solids->obstacles[o];
       if (!obstacle.motion.empty()) continue;
       if (obstacle.distance(touch.position, query.time_s) > touch.reach_m) continue;
-      if (out_of_plane(parts.obstacle_shapes[o], obstacle.world_from_obstacle) <= kFlush_m)
+      if (out_of_plane(parts.solids->obstacle_shapes[o], obstacle.world_from_obstacle) <= kFlush_m)
         touching.of_obstacle[o] |= bit;
     }
     for (const int surface : touch.surfaces) {
       touching.of_plate[static_cast<std::size_t>(surface)] |= bit;
-      const int block = parts.plates[static_cast<std::size_t>(surface)].block;
+      const int block = parts.solids->plates[static_cast<std::size_t>(surface)].block;
       if (block >= 0) touching.of_block[static_cast<std::size_t>(block)] |= bit;
     }
     for (const int bar : touch.bars) touching.of_rod[static_cast<std::size_t>(bar)] |= bit;
     // The faces of a touched box that lie behind the plane within reach, as its sides.
-    for (std::size_t p = 0; p < parts.plates.size(); ++p) {
-      const PlateSolid& plate = parts.plates[p];
+    for (std::size_t p = 0; p < parts.solids->plates.size(); ++p) {
+      const PlateSolid& plate = parts.solids->plates[p];
       if (plate.block < 0 || (touching.of_block[static_cast<std::size_t>(plate.block)] & bit) == 0)
         continue;
       double away = std::abs(plate.normal.dot(touch.position - plate.point));
@@ -294,9 +265,10 @@ struct CollisionWorld::Parts::Search {
   }
 
   void obstacles() {
-    for (std::size_t o = 0; o < parts.obstacles.size(); ++o) {
-      const Eigen::Isometry3d world_from_obstacle = parts.obstacles[o].pose_at(query.time_s);
-      const ConvexShape& shape = parts.obstacle_shapes[o];
+    for (std::size_t o = 0; o < parts.solids->obstacles.size(); ++o) {
+      const Eigen::Isometry3d world_from_obstacle =
+          parts.solids->obstacles[o].pose_at(query.time_s);
+      const ConvexShape& shape = parts.solids->obstacle_shapes[o];
       for (std::size_t b = 0; b < parts.bodies.size(); ++b) {
         const Body& body = parts.bodies[b];
         const Touching::Bits all =
@@ -309,20 +281,20 @@ struct CollisionWorld::Parts::Search {
             shape_distance(body.shape, world_from_body[b], shape, world_from_obstacle);
         if (distance.distance >= nearest) continue;
         if (touches != 0) {
-          touch(b, touches, distance, shape, world_from_obstacle, parts.obstacles[o].name);
+          touch(b, touches, distance, shape, world_from_obstacle, parts.solids->obstacles[o].name);
           continue;
         }
         distance.distance += allowance(all);
-        found.obstacle = closest_to(distance, body.link, parts.obstacles[o].name);
+        found.obstacle = closest_to(distance, body.link, parts.solids->obstacles[o].name);
       }
     }
   }
 
   void voxels() {
-    for (std::size_t b = 0; parts.voxels && b < parts.bodies.size(); ++b) {
+    for (std::size_t b = 0; parts.solids->voxels && b < parts.bodies.size(); ++b) {
       const Body& body = parts.bodies[b];
       VoxelTree::Query voxel{body.shape, world_from_body[b]};
-      voxel.floor_z = parts.ground_z;
+      voxel.floor_z = parts.solids->ground_z;
       if (parts.ignores_floor[static_cast<std::size_t>(body.link)])
         voxel.floor_z = std::max(voxel.floor_z, parts.options.floor_z_m);
       std::vector<VoxelTree::Query::Behind> held, barely;
@@ -336,15 +308,16 @@ struct CollisionWorld::Parts::Search {
       voxel.behind = held;
       voxel.behind.insert(voxel.behind.end(), barely.begin(), barely.end());
       voxel.best.distance = found.obstacle.distance_m;
-      if (parts.voxels->nearest(voxel)) found.obstacle = closest_to(voxel.best, body.link, "voxel");
+      if (parts.solids->voxels->nearest(voxel))
+        found.obstacle = closest_to(voxel.best, body.link, "voxel");
       voxel.only_behind = true;
       voxel.behind = std::move(held);
       voxel.best.distance = found.touched.distance_m;
-      if (!voxel.behind.empty() && parts.voxels->nearest(voxel))
+      if (!voxel.behind.empty() && parts.solids->voxels->nearest(voxel))
         found.touched = closest_to(voxel.best, body.link, "voxel");
       voxel.behind = std::move(barely);
       voxel.best.distance = found.obstacle.distance_m - kFlush_m;
-      if (!voxel.behind.empty() && parts.voxels->nearest(voxel)) {
+      if (!voxel.behind.empty() && parts.solids->voxels->nearest(voxel)) {
         voxel.best.distance += kFlush_m;
         found.obstacle = closest_to(voxel.best, body.link, "voxel");
       }
@@ -352,8 +325,8 @@ struct CollisionWorld::Parts::Search {
   }
 
   void surfaces() {
-    for (std::size_t p = 0; p < parts.plates.size(); ++p) {
-      const PlateSolid& plate = parts.plates[p];
+    for (std::size_t p = 0; p < parts.solids->plates.size(); ++p) {
+      const PlateSolid& plate = parts.solids->plates[p];
       if (touching.of_plate[p] == 0 && !plate.endless &&
           (centre - plate.point).norm() - radius - plate.shape->bounding_radius() >=
               found.surface.distance_m)
@@ -374,8 +347,8 @@ struct CollisionWorld::Parts::Search {
   }
 
   void bars() {
-    for (std::size_t r = 0; r < parts.rods.size(); ++r) {
-      const BarSolid& rod = parts.rods[r];
+    for (std::size_t r = 0; r < parts.solids->rods.size(); ++r) {
+      const BarSolid& rod = parts.solids->rods[r];
       for (std::size_t b = 0; b < parts.bodies.size(); ++b) {
         const Body& body = parts.bodies[b];
         const Touching::Bits all =
@@ -400,8 +373,8 @@ struct CollisionWorld::Parts::Search {
   }
 
   void blocks() {
-    for (std::size_t s = 0; s < parts.blocks.size(); ++s) {
-      const BoxSolid& block = parts.blocks[s];
+    for (std::size_t s = 0; s < parts.solids->blocks.size(); ++s) {
+      const BoxSolid& block = parts.solids->blocks[s];
       if (block.at_least(centre) - radius >= std::max(0.0, found.surface.distance_m)) continue;
       for (std::size_t b = 0; b < parts.bodies.size(); ++b) {
         const Body& body = parts.bodies[b];

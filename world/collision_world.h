@@ -37,6 +37,7 @@
 namespace locograph {
 
 class Robot;
+struct WorldSolids;
 
 struct CollisionWorldOptions {
   /// Distances are computed up to here; a Closest with nothing nearer has this distance, link -1.
@@ -92,12 +93,14 @@ class CollisionWorld {
     Closest touched;
   };
 
+  /// All of the world. Voxels whose top is at or below the highest level surface without an end are
+  /// that surface, for all links. The solids may be shared with other robots in the same world.
+  CollisionWorld(const Robot& robot, std::shared_ptr<const WorldSolids> solids,
+                 const CollisionWorldOptions& options = {});
+  CollisionWorld(const Robot& robot, const World& world, const CollisionWorldOptions& options = {});
   /// tree may be null: obstacles only.
   CollisionWorld(const Robot& robot, std::shared_ptr<const octomap::OcTree> tree,
                  std::vector<Obstacle> obstacles, const CollisionWorldOptions& options = {});
-  /// All of the world. Voxels whose top is at or below the highest level surface without an end are
-  /// that surface, for all links.
-  CollisionWorld(const Robot& robot, const World& world, const CollisionWorldOptions& options = {});
   ~CollisionWorld();
   CollisionWorld(CollisionWorld&&) noexcept;
   CollisionWorld& operator=(CollisionWorld&&) noexcept;

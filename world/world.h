@@ -6,10 +6,10 @@
 ///     CollisionWorld exact(robot, world);                      // what a judge sees
 ///     WorldDistance field = distance_view(world, options);     // what edges see
 ///
-/// A snapshot: a world does not change; a newer one replaces it. Map and obstacles are only in the
-/// way. Surfaces are in the way, too, and may be touched from the side of their normal; so are
-/// bars, from all sides. Solids are in the way through and through, and are touched where surfaces
-/// are their faces.
+/// A world that is kept or shared is kept as a snapshot (world_snapshot.h), which does not change.
+/// Map and obstacles are only in the way. Surfaces are in the way, too, and may be touched from the
+/// side of their normal; so are bars, from all sides. Solids are in the way through and through,
+/// and are touched where surfaces are their faces.
 
 #include <locograph/world/obstacles.h>
 #include <octomap/OcTree.h>
@@ -49,10 +49,10 @@ struct SolidBox {
 };
 
 struct World {
-  std::shared_ptr<const octomap::OcTree> map;  ///< null: none
-  std::vector<Obstacle> obstacles;
-  std::vector<Surface> surfaces;
-  std::vector<Bar> bars;
+  std::shared_ptr<const octomap::OcTree> map = {};  ///< null: none
+  std::vector<Obstacle> obstacles = {};
+  std::vector<Surface> surfaces = {};
+  std::vector<Bar> bars = {};
   std::vector<SolidBox> solids = {};
 };
 

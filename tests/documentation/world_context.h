@@ -11,7 +11,8 @@
 #include <locograph/world/octree.h>
 #include <locograph/world/point_cloud.h>
 #include <locograph/world/surfaces_of.h>
-#include <locograph/world/world.h>
+#include <locograph/world/world_snapshot.h>
+#include <locograph/world/world_solids.h>
 
 namespace locograph::documentation::in_world {
 
