@@ -156,7 +156,8 @@ std::vector<Diagnosis::WrongJacobian> wrong_jacobians(Workspace& workspace) {
   }
   Scratch scratch;
   scratch.reserve(problem.scratch_bytes());
-  const Evaluation x{workspace.state().data(), derived, &scratch};
+  Evaluation x{workspace.state().data(), derived, &scratch};
+  x.bindings = &workspace.bindings();
   std::vector<Diagnosis::WrongJacobian> found;
   for (std::size_t p = 0; p < problem.edges().size(); ++p) {
     const EdgePool& pool = *graph.edge_pools()[p];
@@ -254,7 +255,7 @@ std::string Diagnosis::text(const Graph& graph) const {
   return out.str();
 }
 
-Diagnosis diagnose(Graph& graph) {
+Diagnosis diagnose(Graph& graph, const Bindings& bindings) {
   Diagnosis diagnosis;
   const std::vector<Component> parts = components(graph);
   for (const Component& part : parts) diagnosis.parts.push_back({part, 0, {}});
@@ -263,6 +264,7 @@ Diagnosis diagnose(Graph& graph) {
   problem.compile(graph);
   Workspace workspace;
   workspace.allocate(problem);
+  workspace.bind(bindings);
   workspace.load_state();
   if (!std::isfinite(workspace.evaluate(workspace.state()).robust)) {
     diagnosis.not_finite = edges_without_numbers(workspace);

@@ -54,7 +54,7 @@ struct Diagnosis {
 };
 
 /// Does not change the graph.
-Diagnosis diagnose(Graph& graph);
+Diagnosis diagnose(Graph& graph, const Bindings& bindings = {});
 
 /// "EDGE_SE2 3 4 (line 17)", for messages.
 std::string edge_text(const Graph& graph, EdgeId edge);

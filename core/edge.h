@@ -43,6 +43,25 @@
 /// error has so many rows for each of the many vertices, and files count the vertices, not the
 /// rows. Every edge carries its vertices, information and robust kernel by value.
 ///
+/// An edge that reads a parameter which a workspace may stand another one in for (bindings.h) takes
+/// const Bindings& as the last argument of error() and of jacobians(), and asks it:
+///
+///     /// Range whose offset may be bound. Error (1): measured + offset − predicted [m].
+///     struct EdgeOffsetRange : Edge<1, VertexSE2, VertexXY> {
+///       int offset_number = 0;
+///       double range_m = 0.0;
+///       std::shared_ptr<const RangeOffset> offset;              // the graph's own
+///       auto fields() { return std::tie(offset_number, range_m); }
+///       void bind(const Parameters& p) { offset = p.get<RangeOffset>(offset_number); }
+///       template <class T>
+///       void error(const SE2<T>& pose, const Eigen::Matrix<T, 2, 1>& point,
+///                  Eigen::Ref<Eigen::Matrix<T, 1, 1>> e, const Bindings& bindings) const {
+///         const double offset_m = bindings.get(offset_number, *offset).offset_m;
+///         e[0] = range_m + offset_m - (point - pose.translation()).norm();
+///       }
+///     };
+///     LOCOGRAPH_REGISTER_EDGE("OFFSET_RANGE_SE2_XY", EdgeOffsetRange)
+///
 /// Whether it is a constraint (constraint.h), of which kind and how exactly it is meant, stands in
 /// the type: static constexpr ConstraintKind kConstraint, by default kInequality for types with
 /// kOneSided and kNone for the others; and how large a violation counts as none, in the unit of the
@@ -72,6 +91,7 @@
 
 namespace locograph {
 
+class Bindings;
 class Parameters;
 
 namespace detail {

@@ -79,11 +79,16 @@ class EdgeEvaluator {
   EdgeEvaluator(const E& edge, std::span<const Slot> slots, const Evaluation& x)
       : edge_(edge), slots_(slots), x_(x) {}
 
+  /// Whether error() takes the bindings, as its last argument; jacobians() takes them, too, then.
+  static constexpr bool reads_bindings() {
+    return test_error<double, const Bindings&>(FixedSequence());
+  }
+
   int dimension() const { return edge_.dimension(); }
   int many() const { return static_cast<int>(slots_.size()) - kFixed; }
 
   void error(Eigen::Ref<Eigen::Matrix<double, kD, 1>> e) const {
-    call([&](auto&&... views) { edge_.error(std::forward<decltype(views)>(views)..., e); }, slots_,
+    call([&](auto&&... views) { call_error(std::forward<decltype(views)>(views)..., e); }, slots_,
          FixedSequence());
   }
 
@@ -148,6 +153,27 @@ class EdgeEvaluator {
   }
 
  private:
+  template <class... Arguments>
+  void call_error(Arguments&&... arguments) const {
+    if constexpr (reads_bindings()) {
+      edge_.error(std::forward<Arguments>(arguments)..., bindings());
+    } else {
+      edge_.error(std::forward<Arguments>(arguments)...);
+    }
+  }
+  template <class... Arguments>
+  void call_jacobians(Arguments&&... arguments) const {
+    if constexpr (reads_bindings()) {
+      edge_.jacobians(std::forward<Arguments>(arguments)..., bindings());
+    } else {
+      edge_.jacobians(std::forward<Arguments>(arguments)...);
+    }
+  }
+  const Bindings& bindings() const {
+    static const Bindings none;
+    return x_.bindings == nullptr ? none : *x_.bindings;
+  }
+
   template <class F, int... I>
   void each_fixed_slot(F& f, std::integer_sequence<int, I...>) const {
     (f(std::type_identity<FixedVertex<E, I>>(), I), ...);
@@ -179,22 +205,45 @@ class EdgeEvaluator {
   template <int I>
   using FixedJacobian = Eigen::Ref<JacobianMatrix<E, FixedVertex<E, I>::kDimension>>;
 
-  template <int... I>
+  /// Whether error() takes views in T and, after the error, what is given besides.
+  template <class T, class... More, int... I>
+  static constexpr bool test_error(std::integer_sequence<int, I...>) {
+    if constexpr (E::kDynamicArity) {
+      return requires(const E& e, ViewOf<FixedVertex<E, I>, T>... views,
+                      std::span<const ManyView<E, T>> many, Eigen::Ref<Eigen::Matrix<T, kD, 1>> out,
+                      More... more) {
+        e.error(views..., many, out, more...);
+      };
+    } else {
+      return requires(const E& e, ViewOf<FixedVertex<E, I>, T>... views,
+                      Eigen::Ref<Eigen::Matrix<T, kD, 1>> out, More... more) {
+        e.error(views..., out, more...);
+      };
+    }
+  }
+  template <class... More, int... I>
   static constexpr bool test_analytic(std::integer_sequence<int, I...>) {
     if constexpr (E::kDynamicArity) {
       return requires(const E& e, ViewOf<FixedVertex<E, I>>... views,
-                      std::span<const ManyView<E>> many, std::span<JacobianMap> out) {
-        e.jacobians(views..., many, out);
+                      std::span<const ManyView<E>> many, std::span<JacobianMap> out, More... more) {
+        e.jacobians(views..., many, out, more...);
       };
     } else {
-      return requires(const E& e, ViewOf<FixedVertex<E, I>>... views, FixedJacobian<I>... out) {
-        e.jacobians(views..., out...);
+      return requires(const E& e, ViewOf<FixedVertex<E, I>>... views, FixedJacobian<I>... out,
+                      More... more) {
+        e.jacobians(views..., out..., more...);
       };
     }
   }
 
  public:
-  static constexpr bool has_analytic() { return test_analytic(FixedSequence()); }
+  static constexpr bool has_analytic() {
+    constexpr bool with = test_analytic<const Bindings&>(FixedSequence());
+    constexpr bool without = test_analytic(FixedSequence());
+    static_assert(reads_bindings() ? !without : !with,
+                  "error() and jacobians() take the bindings both, or neither does");
+    return with || without;
+  }
 
  private:
   template <int I>
@@ -231,15 +280,15 @@ class EdgeEvaluator {
       });
       call(
           [&](auto&&... views) {
-            edge_.jacobians(std::forward<decltype(views)>(views)...,
-                            std::span<JacobianMap>(maps, slots_.size()));
+            call_jacobians(std::forward<decltype(views)>(views)...,
+                           std::span<JacobianMap>(maps, slots_.size()));
           },
           slots_, sequence);
     } else {
       call(
           [&](auto&&... views) {
-            edge_.jacobians(std::forward<decltype(views)>(views)...,
-                            FixedJacobian<I>(fixed_map<I>(jacobians, active))...);
+            call_jacobians(std::forward<decltype(views)>(views)...,
+                           FixedJacobian<I>(fixed_map<I>(jacobians, active))...);
           },
           slots_, sequence);
     }
@@ -293,9 +342,9 @@ class EdgeEvaluator {
       if constexpr (std::is_same_v<ManyView<E>, const D*>) {
         if (slot >= kFixed) const_cast<ManyView<E>&>(views[slot - kFixed]) = &derived;
       }
-      edge_.error(replaced<I>(slot, derived)..., views, out);
+      call_error(replaced<I>(slot, derived)..., views, out);
     } else {
-      edge_.error(replaced<I>(slot, derived)..., out);
+      call_error(replaced<I>(slot, derived)..., out);
     }
   }
   template <int I, class D>
@@ -319,7 +368,7 @@ class EdgeEvaluator {
     return !HasDerived<V> && V::kDimension != Eigen::Dynamic && V::kStateSize != Eigen::Dynamic;
   }
   template <int... I>
-  static constexpr bool test_dual(std::integer_sequence<int, I...>) {
+  static constexpr bool test_dual([[maybe_unused]] std::integer_sequence<int, I...> sequence) {
     if constexpr (kD == Eigen::Dynamic || !(dual_vertex<FixedVertex<E, I>>() && ...)) {
       return false;
     } else if constexpr (E::kDynamicArity) {
@@ -327,19 +376,18 @@ class EdgeEvaluator {
       if constexpr (!dual_vertex<V>()) {
         return false;
       } else {
-        using T = Dual<V::kDimension>;
-        return requires(const E& e, ViewOf<FixedVertex<E, I>, T>... views,
-                        std::span<const ManyView<E, T>> many,
-                        Eigen::Ref<Eigen::Matrix<T, kD, 1>> out) {
-          e.error(views..., many, out);
-        };
+        return takes_dual<Dual<V::kDimension>>(sequence);
       }
     } else {
-      using T = Dual<FixedVertex<E, 0>::kDimension>;
-      return requires(const E& e, ViewOf<FixedVertex<E, I>, T>... views,
-                      Eigen::Ref<Eigen::Matrix<T, kD, 1>> out) {
-        e.error(views..., out);
-      };
+      return takes_dual<Dual<FixedVertex<E, 0>::kDimension>>(sequence);
+    }
+  }
+  template <class T>
+  static constexpr bool takes_dual(FixedSequence sequence) {
+    if constexpr (reads_bindings()) {
+      return test_error<T, const Bindings&>(sequence);
+    } else {
+      return test_error<T>(sequence);
     }
   }
   static constexpr bool dual_capable() { return test_dual(FixedSequence()); }
@@ -402,10 +450,10 @@ class EdgeEvaluator {
           views[i] = V::view(state.data());
         }
       }
-      edge_.error(fixed_dual_view<I, T>(slot)...,
-                  std::span<const View>(views, static_cast<std::size_t>(many())), error);
+      call_error(fixed_dual_view<I, T>(slot)...,
+                 std::span<const View>(views, static_cast<std::size_t>(many())), error);
     } else {
-      edge_.error(fixed_dual_view<I, T>(slot)..., error);
+      call_error(fixed_dual_view<I, T>(slot)..., error);
     }
   }
 #else

@@ -6,9 +6,9 @@
 /// offsets computed when the problem was compiled. The templates that do it are in
 /// edge_evaluation.h; edge types are instantiated where they are registered, nowhere else.
 
+#include <locograph/core/bindings.h>
 #include <locograph/core/constraint.h>
 #include <locograph/core/edge.h>
-#include <locograph/core/parameters.h>
 #include <locograph/core/row_label.h>
 #include <locograph/core/scratch.h>
 #include <locograph/core/vertex_pool.h>
@@ -66,6 +66,7 @@ struct Evaluation {
   /// By the same rows: errors as the types give them, written by cost(), read by linearise(), which
   /// is called on the same state.
   double* constraint_errors = nullptr;
+  const Bindings* bindings = nullptr;  ///< null: none
 };
 
 /// A sum over edges: with the robust kernels, and without.

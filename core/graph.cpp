@@ -120,6 +120,13 @@ int Graph::state_size(int slot) const {
   return vertex_pools_[record.pool]->state_size(record.index);
 }
 
+void Graph::replace_parameter(int number, std::shared_ptr<const Parameter> parameter) {
+  parameters_.replace(number, std::move(parameter));
+  for (const auto& pool : edge_pools_) {
+    for (int i = 0; i < pool->size(); ++i) pool->bind(i, parameters_);
+  }
+}
+
 const std::string& Graph::vertex_tag(int slot) const {
   const VertexRecord& record = vertex_records_[slot];
   return record.alias >= 0 ? aliases_[record.alias] : vertex_pools_[record.pool]->tag();

@@ -180,6 +180,9 @@ class Graph {
   const std::string& vertex_tag(int slot) const;
 
   Parameters& parameters() { return parameters_; }
+  /// Replaces a parameter, and has all edges look theirs up again (bind() of edge.h). Throws what
+  /// they throw.
+  void replace_parameter(int number, std::shared_ptr<const Parameter> parameter);
   const Parameters& parameters() const { return parameters_; }
 
  private:

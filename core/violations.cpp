@@ -92,7 +92,8 @@ ConstraintViolation ConstraintReader::describe(const Row& row) const {
   return violation;
 }
 
-std::vector<ConstraintViolation> violations(Graph& graph, const ViolationOptions& options) {
+std::vector<ConstraintViolation> violations(Graph& graph, const ViolationOptions& options,
+                                            const Bindings& bindings) {
   options.validate();
   const std::vector<int> slots = constraint_slots(graph);
   std::vector<ConstraintViolation> found;
@@ -101,6 +102,7 @@ std::vector<ConstraintViolation> violations(Graph& graph, const ViolationOptions
   problem.compile_on(graph, slots);
   Workspace workspace;
   workspace.allocate(problem);
+  workspace.bind(bindings);
   workspace.load_state();
   workspace.evaluate(workspace.state());
 

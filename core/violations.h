@@ -108,7 +108,8 @@ class ConstraintReader {
 };
 
 /// At the states in the graph. Worst first, by ratio; equal ones by the order of edges and rows.
-std::vector<ConstraintViolation> violations(Graph& graph, const ViolationOptions& options = {});
+std::vector<ConstraintViolation> violations(Graph& graph, const ViolationOptions& options = {},
+                                            const Bindings& bindings = {});
 
 /// How many edges violations() looks at.
 int constraint_count(const Graph& graph);

@@ -7,6 +7,7 @@ namespace locograph {
 
 void Workspace::allocate(const Problem& problem) {
   problem_ = &problem;
+  bindings_ = {};
   state_.resize(problem.state_size());
   trial_.resize(problem.state_size());
   hessian_.resize(problem.hessian_reductions().size);
@@ -51,6 +52,12 @@ void Workspace::DerivedFor::assign(const VertexPool& other, std::span<const Acti
   type = other.type();
   state_sizes.clear();
   for (const ActiveVertex& v : active) state_sizes.push_back(other.state_size(v.index));
+}
+
+void Workspace::bind(const Bindings& bindings) {
+  bindings.require_fit(problem_->graph().parameters());
+  bindings_ = bindings;
+  evaluated_ = nullptr;
 }
 
 void Workspace::load_state() {

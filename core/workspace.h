@@ -19,6 +19,11 @@ class Workspace {
   void allocate(const Problem& problem);
   /// Null for the caller's thread alone. The pool must outlive the workspace's use.
   void use_threads(ThreadPool* threads) { threads_ = threads; }
+  /// Parameters that stand in for those of the problem's graph from the next evaluate() on, until
+  /// others are bound; none once it is allocated anew. Comes between evaluations: a run that is
+  /// under way would compare costs of different parameters. Throws Error when they do not fit.
+  void bind(const Bindings& bindings);
+  const Bindings& bindings() const { return bindings_; }
   void load_state();         ///< graph → state()
   void store_state() const;  ///< state() → graph
 
@@ -81,8 +86,12 @@ class Workspace {
   };
 
   Evaluation evaluation(const std::vector<double>& state, int chunk) {
-    return {state.data(), derived_, &scratch_[chunk], constraint_rows_.data(),
-            constraint_errors_.data()};
+    return {state.data(),
+            derived_,
+            &scratch_[chunk],
+            constraint_rows_.data(),
+            constraint_errors_.data(),
+            &bindings_};
   }
   template <class Task>
   void for_each(int count, Task&& task);
@@ -91,6 +100,7 @@ class Workspace {
   void reduce(const Problem::Reductions& reductions, std::vector<double>& values);
 
   const Problem* problem_ = nullptr;
+  Bindings bindings_;
   std::vector<ConstraintRow> constraint_rows_;
   std::vector<double> constraint_errors_;
   const double* evaluated_ = nullptr;  ///< the buffer, state or trial, that was evaluated last

@@ -75,6 +75,12 @@ struct Context : in_core::Context {
   const EdgeId e = graph.add_edge(EdgePriorXY(), map.points[0]);
 };
 }  // namespace constraint_h
+namespace bindings_h {
+/// With a parameter in it.
+struct Context : in_core::Context {
+  Context() { graph.parameters().set(0, std::make_shared<RangeOffset>()); }
+};
+}  // namespace bindings_h
 namespace edge_line_h {
 struct Context : in_core::Context {
   const FileLine where{"beacons.g2o", 7, "."};
