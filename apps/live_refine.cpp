@@ -54,7 +54,7 @@ void run(const LiveJob& job, LiveChannel& channel) {
   PlanFile file = load_plan(job.plan, job.plugins);
   const Judging judging =
       judging_of(file, {.scenario = {}, .map = job.map, .obstacles = job.obstacles});
-  const WorldDistance seen = seen_world(file.graph, file.plan, judging.world);
+  const auto seen = seen_world(file.graph, file.plan, judging.world);
   send(channel, {{"type", "start"},
                  {"count", file.plan.slots.size()},
                  {"dof", file.plan.robot->robot->tangent_size()},
@@ -68,7 +68,7 @@ void run(const LiveJob& job, LiveChannel& channel) {
     if (!channel.wait(std::max(0.0, step_s / job.speed - cycle.time_total))) throw ChannelClosed();
   };
   const WalkReport report = walk_plan(
-      file.graph, [&seen](int executed) { return executed == 0 ? &seen : nullptr; }, options);
+      file.graph, [&seen](int executed) { return executed == 0 ? seen : nullptr; }, options);
   send(channel, {{"type", "end"},
                  {"success", report.success},
                  {"reason", report.reason},

@@ -40,7 +40,8 @@ PlanFile load_plan(const std::string& file, const std::vector<std::string>& plug
 std::vector<std::filesystem::path> files_of(const PlanFile& file) {
   std::vector<std::filesystem::path> files = {file.plan.robot->urdf, file.plan.robot->srdf};
   if (file.plan.world) {
-    files.insert(files.end(), {file.plan.world->map, file.plan.world->obstacles});
+    const WorldFiles& named = file.plan.world->snapshot->files();
+    files.insert(files.end(), {named.map, named.obstacles});
   }
   const Parameters& parameters = file.graph.parameters();
   if (const auto origin = parameters.find<ScenarioParameter>();

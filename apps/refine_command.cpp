@@ -100,6 +100,17 @@ double require_feasible(const PlanFile& file, WalkReport& report) {
   return watch.seconds();
 }
 
+/// From now on what the command line names is the plan's world: the file that is written needs
+/// nothing else.
+void replace_world(PlanFile& file, const WorldOptions& given, const World& world) {
+  const WorldFiles files{.map = given.map, .obstacles = given.obstacles};
+  file.plan.world = std::make_shared<const WorldParameter>(
+      std::make_shared<const WorldSnapshot>(World{.map = world.map, .obstacles = world.obstacles},
+                                            0.0, files),
+      file.plan.world->ground_z_m);
+  file.graph.replace_parameter(file.plan.world_number, file.plan.world);
+}
+
 ExitCode refine_plan(const CommandOptions& options) {
   check_output(options.output, {options.input, options.world.map, options.world.obstacles},
                options.json);
@@ -116,10 +127,10 @@ ExitCode refine_plan(const CommandOptions& options) {
   check_not_input(options.output, files_of(file));
   const Judging judging = judging_of(file, options.world);
   const Stopwatch watch;
-  const WorldDistance seen = seen_world(file.graph, file.plan, judging.world);
+  const auto seen = seen_world(file.graph, file.plan, judging.world);
+  seen->distance();
   const double field_s = watch.seconds();
-  // From now on this is the plan's world: the file that is written needs nothing else.
-  if (options.world.given()) file.plan.world->set_files(options.world.map, options.world.obstacles);
+  if (options.world.given()) replace_world(file, options.world, judging.world);
 
   walk_options.verify = step_check(judging);
   const double configurations = static_cast<double>(file.plan.slots.size());
@@ -129,7 +140,7 @@ ExitCode refine_plan(const CommandOptions& options) {
   };
   const FinishOnSignal finish;
   WalkReport report = walk_plan(
-      file.graph, [&seen](int executed) { return executed == 0 ? &seen : nullptr; }, walk_options);
+      file.graph, [&seen](int executed) { return executed == 0 ? seen : nullptr; }, walk_options);
   progress.emplace("judging " + options.input);
   const double judge_s = require_feasible(file, report);
   progress.emplace("writing " + options.output);

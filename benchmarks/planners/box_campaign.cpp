@@ -11,7 +11,6 @@
 #include <locograph/planners/offline/drive/wheeled_drive.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/plan.h>
-#include <locograph/world/distance_view.h>
 #include <locograph/world/octree.h>
 
 #include <algorithm>
@@ -96,9 +95,9 @@ class Campaign {
     const CheckReport before = judge.check(motion_, check_);
 
     Graph graph = plan_wheeled_drive(scenario_);
-    const WorldDistance seen = distance_view(world);
+    const auto seen = std::make_shared<const WorldSnapshot>(world);
     const WalkReport report =
-        walk_plan(graph, [&seen](int executed) { return executed == 0 ? &seen : nullptr; }, {});
+        walk_plan(graph, [&seen](int executed) { return executed == 0 ? seen : nullptr; }, {});
     const Motion refined = motion_of(graph, plan_of(graph));
     const CheckReport after = judge.check(refined, check_);
 

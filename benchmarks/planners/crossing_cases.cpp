@@ -87,9 +87,9 @@ CrossingResult run_crossing(const Scenario& scenario, const Crossing& crossing,
   const Plan& plan = planner.plan();
   const double meets_at_s = crossing.x_m / scenario.drive->speed_m_s + crossing.delay_s;
   const std::vector<Obstacle> obstacles = {person(crossing, meets_at_s)};
-  WorldDistance seen;
+  World seen;
   seen.obstacles = obstacles;
-  planner.show(seen);
+  planner.show(std::make_shared<const WorldSnapshot>(seen));
   World world = world_of(scenario);
   world.obstacles = obstacles;
   const Judge judge(plan.robot->robot, world);

@@ -253,10 +253,19 @@ class Campaign {
   }
 
   Json past(Graph& graph, const Obstacle& box) {
-    plan_.world->now.obstacles.push_back(box);
+    const std::shared_ptr<const WorldParameter> own = plan_.world;
+    World seen = own->snapshot->world();
+    seen.obstacles.push_back(box);
+    DistanceFieldOptions view;
+    if (own->ground_z_m) view.ground_z = *own->ground_z_m;
+    graph.replace_parameter(plan_.world_number,
+                            std::make_shared<const WorldParameter>(
+                                std::make_shared<const WorldSnapshot>(std::move(seen), 0.0,
+                                                                      WorldFiles(), view),
+                                own->ground_z_m));
     judging_.world.obstacles.push_back(box);
     Json row = optimised(graph);
-    plan_.world->now.obstacles.pop_back();
+    graph.replace_parameter(plan_.world_number, own);
     judging_.world.obstacles.pop_back();
     return row;
   }

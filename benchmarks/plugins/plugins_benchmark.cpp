@@ -43,19 +43,18 @@ class Drive {
     robot_ =
         std::make_shared<const RobotParameter>(folder / "centauro.urdf", folder / "centauro.srdf",
                                                RobotOptions{.active_joints = {"lower_body"}});
-    auto world = std::make_shared<WorldParameter>();
+    World world;
     std::vector<Box> boxes(2);
     for (int side : {0, 1}) {
       boxes[side].world_from_box.translation() << 0.8, side == 0 ? 0.8 : -0.8, 0.4;
       boxes[side].size << 2.0, 0.3, 0.8;
     }
     if (with_map) {
-      world->now.map = std::make_shared<const DistanceField>(
-          DistanceField::from_octree(*octree_from_boxes(boxes, 0.05)));
+      world.map = octree_from_boxes(boxes, 0.05);
     } else {
-      world->now.obstacles.resize(4);
+      world.obstacles.resize(4);
       for (std::size_t i = 0; i < 4; ++i) {
-        Obstacle& obstacle = world->now.obstacles[i];
+        Obstacle& obstacle = world.obstacles[i];
         obstacle.shape = i == 0   ? Obstacle::Shape::kBox
                          : i == 1 ? Obstacle::Shape::kSphere
                                   : Obstacle::Shape::kCylinder;
@@ -65,7 +64,8 @@ class Drive {
       }
     }
     graph_.parameters().set(kRobot, robot_);
-    graph_.parameters().set(kWorld, world);
+    graph_.parameters().set(kWorld, std::make_shared<const WorldParameter>(
+                                        std::make_shared<const WorldSnapshot>(world)));
     graph_.parameters().set(
         kFrame, std::make_shared<const FrameParameter>(*robot_->robot, kRobot, "wheel_1"));
     add_wheels();

@@ -1,6 +1,8 @@
 #include <locograph/common/error.h>
 #include <locograph/planners/online/local_planner.h>
 
+#include <utility>
+
 namespace locograph {
 namespace {
 
@@ -34,8 +36,21 @@ LocalPlanner::LocalPlanner(Graph& graph, const LocalPlannerOptions& options)
   solver_.prepare();
 }
 
-void LocalPlanner::show(const WorldDistance& world) {
-  plan_.show(world);
+void LocalPlanner::show(std::shared_ptr<const WorldSnapshot> world) {
+  world->distance();
+  const std::lock_guard lock(showing_);
+  shown_ = std::move(world);
+}
+
+void LocalPlanner::take_shown() {
+  std::shared_ptr<const WorldSnapshot> world;
+  {
+    const std::lock_guard lock(showing_);
+    world = std::move(shown_);
+    shown_ = nullptr;
+  }
+  if (!world) return;
+  plan_.show(std::move(world));
   proposals_.world_changed();
 }
 
@@ -61,6 +76,7 @@ CycleReport LocalPlanner::cycle(int executed) {
 
 void LocalPlanner::begin(CycleReport& report) {
   const Stopwatch watch;
+  take_shown();
   incumbent_.clear();
   window_.move_to(report.executed);
   warm_start_.enter(window_);

@@ -3,7 +3,7 @@
 ///
 ///     LocalPlanner planner(plan_graph, options);
 ///     for (int executed = 0; executed + 1 < planner.plan_size(); ++executed) {
-///       planner.show(world);                            // what the sensors see now; optional
+///       planner.show(snapshot);                         // what the sensors see now; optional
 ///       CycleReport cycle = planner.cycle(executed);    // refines executed + 1 … executed + H
 ///       if (!cycle.next_feasible) break;                // stop: the robot stays where it is
 ///     }
@@ -26,6 +26,8 @@
 #include <locograph/planners/online/warm_start.h>
 #include <locograph/planners/online/window_solver.h>
 
+#include <memory>
+#include <mutex>
 #include <vector>
 
 namespace locograph {
@@ -48,8 +50,10 @@ class LocalPlanner {
   /// leaves its wheels, and for options out of range.
   LocalPlanner(Graph& graph, const LocalPlannerOptions& options);
 
-  /// What the distance edges see from now on.
-  void show(const WorldDistance& world);
+  /// The world that edges and proposals see from the next cycle on; the last one that is shown
+  /// before it counts. Other threads may show while a cycle runs, which keeps the one it began
+  /// with. Not null. The snapshot's distance() is made here, lest a cycle wait for it.
+  void show(std::shared_ptr<const WorldSnapshot> world);
 
   /// executed: index in the plan of the configuration the robot is at.
   CycleReport cycle(int executed);
@@ -63,6 +67,7 @@ class LocalPlanner {
   const Problem& compiled_window() const { return solver_.problem(); }  ///< of the last cycle
 
  private:
+  void take_shown();
   void begin(CycleReport& report);
   bool improve(CycleReport& report, const Deadline& deadline);
   bool load_unfinished();
@@ -80,6 +85,8 @@ class LocalPlanner {
   Incumbent incumbent_;
   ProposalSchedule proposals_;
   std::vector<Eigen::VectorXd> candidate_;  ///< a proposal's
+  std::mutex showing_;
+  std::shared_ptr<const WorldSnapshot> shown_;  ///< since the last cycle began; null: none
 };
 
 }  // namespace locograph

@@ -14,7 +14,18 @@ OnlinePlan::OnlinePlan(Graph& graph) : graph_(graph), plan_(plan_of(graph)) {
     }
   }
   if (!plan_.world) throw Error("the plan has no world", "a PARAMS_WORLD line");
+  world_ = plan_.world;
   for (int i = 0; i < size(); ++i) planned_.emplace_back(configuration(i));
+}
+
+void OnlinePlan::show(std::shared_ptr<const WorldSnapshot> world) {
+  world_ = std::make_shared<const WorldParameter>(std::move(world), plan_.world->ground_z_m);
+}
+
+Bindings OnlinePlan::bindings() const {
+  Bindings bindings;
+  bindings.set(plan_.world_number, world_);
+  return bindings;
 }
 
 Eigen::Map<Eigen::VectorXd> OnlinePlan::configuration(int index) {

@@ -52,13 +52,16 @@ class OnlinePlan {
   /// when there is none.
   int first_index_on(int slot) const;
 
-  /// What the distance edges see.
-  const WorldDistance& world() const { return plan_.world->now; }
-  void show(const WorldDistance& world) { plan_.world->now = world; }
+  /// The world as it is known now: that of the plan until another one is shown.
+  const WorldSnapshot& world() const { return *world_->snapshot; }
+  void show(std::shared_ptr<const WorldSnapshot> world);
+  /// For evaluations of the graph: edges see that world.
+  Bindings bindings() const;
 
  private:
   Graph& graph_;
   Plan plan_;
+  std::shared_ptr<const WorldParameter> world_;
   std::vector<Eigen::VectorXd> planned_;
 };
 

@@ -39,7 +39,8 @@ class SidewaysDetour final : public Proposal {
     const int executed = window.executed();
     const double start = offset_of(executed);
     const double slope = executed > 0 ? start - offset_of(executed - 1) : 0.0;
-    return search_.find(window.first(), planned, times, plan.world(), start, slope, deadline);
+    return search_.find(window.first(), planned, times, plan.world().distance(), start, slope,
+                        deadline);
   }
 
   static void move_sideways(const OnlinePlan& plan, const Window& window,

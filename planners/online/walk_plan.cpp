@@ -79,7 +79,7 @@ class Walk {
  private:
   bool step(int executed, const WorldAt& world_at) {
     const Stopwatch watch;
-    if (const WorldDistance* world = world_at ? world_at(executed) : nullptr) planner_.show(*world);
+    if (auto world = world_at ? world_at(executed) : nullptr) planner_.show(std::move(world));
     report_.map_update_s.push_back(watch.seconds());
     const CycleReport cycle = planner_.cycle(executed);
     report_.cycles.push_back(cycle);
@@ -181,8 +181,8 @@ class Walk {
   }
 
   std::string cause_after(int executed) {
-    const auto cause = find_cause(graph_, planner_.plan(), planner_.online_plan().planned(),
-                                  executed, planner_.last_of_window(executed));
+    const auto cause =
+        find_cause(planner_.online_plan(), executed, planner_.last_of_window(executed));
     return cause ? cause->text : "";
   }
 

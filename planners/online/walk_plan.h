@@ -18,6 +18,7 @@
 
 #include <atomic>
 #include <functional>
+#include <memory>
 
 namespace locograph {
 
@@ -54,7 +55,7 @@ struct WalkReport {
 };
 
 /// The world as it is seen when the robot is at configuration `executed`; null: nothing new.
-using WorldAt = std::function<const WorldDistance*(int executed)>;
+using WorldAt = std::function<std::shared_ptr<const WorldSnapshot>(int executed)>;
 
 WalkReport walk_plan(Graph& graph, const WorldAt& world_at, const WalkOptions& options);
 

@@ -39,6 +39,7 @@ class Window {
   int last_after(int executed) const;
 
   Graph& graph() const { return plan_.graph(); }
+  const OnlinePlan& plan() const { return plan_; }
   int executed() const { return executed_; }
   int first() const { return executed_ + 1; }
   int end() const { return end_; }

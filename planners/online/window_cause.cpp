@@ -13,12 +13,10 @@ namespace {
 /// Puts configurations where they were planned until it is destroyed.
 class AsPlanned {
  public:
-  AsPlanned(Graph& graph, const Plan& plan, const std::vector<Eigen::VectorXd>& planned, int first,
-            int last)
-      : graph_(graph), plan_(plan), first_(first) {
+  AsPlanned(const OnlinePlan& plan, int first, int last) : plan_(plan), first_(first) {
     for (int i = first; i <= last; ++i) {
       kept_.emplace_back(state(i));
-      state(i) = planned[static_cast<std::size_t>(i)];
+      state(i) = plan.planned()[static_cast<std::size_t>(i)];
     }
   }
   ~AsPlanned() {
@@ -29,12 +27,11 @@ class AsPlanned {
 
  private:
   Eigen::Map<Eigen::VectorXd> state(int index) {
-    const int slot = plan_.slots[static_cast<std::size_t>(index)];
-    return {graph_.state(slot), graph_.state_size(slot)};
+    const int slot = plan_.slot(index);
+    return {plan_.graph().state(slot), plan_.graph().state_size(slot)};
   }
 
-  Graph& graph_;
-  const Plan& plan_;
+  const OnlinePlan& plan_;
   int first_;
   std::vector<Eigen::VectorXd> kept_;
 };
@@ -54,17 +51,17 @@ std::string nearest_thing(const WorldDistance& world, const Eigen::Vector3d& poi
 }
 
 /// The obstacle that a violated row is about; empty where it is about something else.
-std::string obstacle_of(const Graph& graph, const Plan& plan, const ConstraintViolation& violation,
-                        int at) {
+std::string obstacle_of(const OnlinePlan& plan, const ConstraintViolation& violation, int at) {
+  const Graph& graph = plan.graph();
   const std::type_index type =
       graph.edge_pools()[graph.edge_record(violation.edge.slot).pool]->type();
   if (type != typeid(EdgeObstacleDistance) && type != typeid(EdgeSweptObstacleDistance)) return "";
-  const int slot = plan.slots[static_cast<std::size_t>(at)];
-  RobotState state(*plan.robot->robot);
-  state.update(graph.state(slot));
-  const CollisionSphere& sphere = plan.robot->spheres[static_cast<std::size_t>(violation.row)];
-  return nearest_thing(plan.world->now, state.world_from_link(sphere.link) * sphere.center,
-                       graph.vertex(VertexId<VertexConfiguration>{slot}).time_s);
+  RobotState state(plan.robot());
+  state.update(graph.state(plan.slot(at)));
+  const CollisionSphere& sphere =
+      plan.plan().robot->spheres[static_cast<std::size_t>(violation.row)];
+  return nearest_thing(plan.world().distance(), state.world_from_link(sphere.link) * sphere.center,
+                       plan.time_s(at));
 }
 
 }  // namespace
@@ -76,17 +73,18 @@ std::string constraint_name(const std::string& tag) {
   return name;
 }
 
-std::optional<WindowCause> find_cause(Graph& graph, const Plan& plan,
-                                      const std::vector<Eigen::VectorXd>& planned, int executed,
-                                      int last) {
-  const AsPlanned as_planned(graph, plan, planned, executed + 1, last);
-  const std::vector<int> window(plan.slots.begin() + executed + 1, plan.slots.begin() + last + 1);
+std::optional<WindowCause> find_cause(const OnlinePlan& plan, int executed, int last) {
+  Graph& graph = plan.graph();
+  const AsPlanned as_planned(plan, executed + 1, last);
+  const std::vector<int>& slots = plan.plan().slots;
+  const std::vector<int> window(slots.begin() + executed + 1, slots.begin() + last + 1);
   Problem problem;
   // Without the edges that tie the window to the executed configuration, which may be beside the
   // plan by now.
   problem.compile(graph, window, {});
   Workspace workspace;
   workspace.allocate(problem);
+  workspace.bind(plan.bindings());
   workspace.load_state();
   workspace.evaluate(workspace.state());
   const auto index_of = [&](const CompiledConstraint& c) {
@@ -113,12 +111,11 @@ std::optional<WindowCause> find_cause(Graph& graph, const Plan& plan,
   const ConstraintViolation& violation = cause.violation;
   std::ostringstream text;
   text << constraint_name(violation.tag) << ": " << violation.label.name;
-  if (const std::string thing = obstacle_of(graph, plan, violation, at); !thing.empty()) {
+  if (const std::string thing = obstacle_of(plan, violation, at); !thing.empty()) {
     text << " (" << thing << ")";
   }
   text << ", by " << violation.amount << (violation.label.unit.empty() ? "" : " ")
-       << violation.label.unit << " at vertex "
-       << graph.vertex_record(plan.slots[static_cast<std::size_t>(at)]).id;
+       << violation.label.unit << " at vertex " << graph.vertex_record(plan.slot(at)).id;
   cause.text = text.str();
   return cause;
 }

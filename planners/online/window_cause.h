@@ -1,7 +1,7 @@
 #pragma once
 /// Why a robot cannot follow its plan any further.
 ///
-///     if (const std::optional<WindowCause> cause = find_cause(graph, plan, planned, 12, 32))
+///     if (const std::optional<WindowCause> cause = find_cause(online, 12, 32))
 ///       std::cerr << cause->text << '\n';
 ///     // obstacle_distance: wheel_2 near an obstacle (box), by 0.21 m at vertex 20
 ///
@@ -11,7 +11,7 @@
 /// plan is the cause.
 
 #include <locograph/core/violations.h>
-#include <locograph/planners/plan/plan.h>
+#include <locograph/planners/online/online_plan.h>
 
 #include <optional>
 #include <string>
@@ -29,9 +29,7 @@ struct WindowCause {
 std::string constraint_name(const std::string& tag);
 
 /// Looks at the configurations after `executed` up to `last` where they were planned. Nothing when
-/// they violate no constraint there. The graph is left as it was.
-std::optional<WindowCause> find_cause(Graph& graph, const Plan& plan,
-                                      const std::vector<Eigen::VectorXd>& planned, int executed,
-                                      int last);
+/// they violate no constraint there, in the world as it is known now. The graph is left as it was.
+std::optional<WindowCause> find_cause(const OnlinePlan& plan, int executed, int last);
 
 }  // namespace locograph

@@ -47,6 +47,7 @@ WindowSolver::~WindowSolver() = default;
 void WindowSolver::compile(const Window& window) {
   problem_.compile(window.graph(), window.free_vertices(), window.held_vertices());
   workspace_.allocate(problem_);
+  workspace_.bind(window.plan().bindings());
   restore_multipliers();
   step_of_.clear();
   for (const CompiledConstraint& c : problem_.constraints()) {

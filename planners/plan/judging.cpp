@@ -127,11 +127,15 @@ void require_same_ground(const Graph& graph, const World& world) {
 
 /// What PARAMS_WORLD names and the scenario does not.
 void add_plan_world(const WorldParameter& seen, const Scenario* scenario, World& world) {
-  const bool same_map = scenario != nullptr && same_file(seen.map, scenario->map);
-  const bool same_obstacles = scenario != nullptr && same_file(seen.obstacles, scenario->obstacles);
-  const World more =
-      load_world(same_map ? fs::path() : seen.map, same_obstacles ? fs::path() : seen.obstacles);
-  if (more.map) world.map = world.map ? joined(*world.map, *more.map) : more.map;
+  const WorldFiles& files = seen.snapshot->files();
+  const World& more = seen.snapshot->world();
+  const bool same_map = scenario != nullptr && same_file(files.map, scenario->map);
+  const bool same_obstacles =
+      scenario != nullptr && same_file(files.obstacles, scenario->obstacles);
+  if (!files.map.empty() && !same_map && more.map) {
+    world.map = world.map ? joined(*world.map, *more.map) : more.map;
+  }
+  if (files.obstacles.empty() || same_obstacles) return;
   world.obstacles.insert(world.obstacles.end(), more.obstacles.begin(), more.obstacles.end());
 }
 

@@ -214,6 +214,9 @@ Plan plan_of(const Graph& graph) {
   plan.incomplete = format->incomplete;
   plan.moves = format->moves;
   plan.world = only<WorldParameter>(parameters);
+  for (const auto& [number, parameter] : parameters.all()) {
+    if (plan.world && parameter == plan.world) plan.world_number = number;
+  }
   only<RobotParameter>(parameters);
   plan.stances_only = format->stances_only && is_stance_sequence(graph, plan.slots);
   if (!plan.stances_only) {

@@ -32,6 +32,7 @@ struct Plan {
   std::vector<int> slots;
   std::shared_ptr<const RobotParameter> robot;
   std::shared_ptr<const WorldParameter> world;  ///< null: nothing in the way
+  int world_number = -1;                        ///< of that parameter
   /// Of each configuration the stance that is held from it to the next one; null: not known.
   std::vector<std::shared_ptr<const StanceParameter>> stance_from;
   /// Its file says so, and its times are 0, 1, 2, …, each step changes one contact, and it has no

@@ -68,11 +68,8 @@ std::optional<EdgeVelocityLimits> step_limit(const Robot& robot, const Eigen::Ve
 
 /// The number of the plan's PARAMS_WORLD; one of an empty world where it has none.
 int world_number(Graph& graph, const Plan& plan) {
+  if (plan.world) return plan.world_number;
   const auto& all = graph.parameters().all();
-  if (plan.world) {
-    return std::ranges::find_if(all, [&](const auto& one) { return one.second == plan.world; })
-        ->first;
-  }
   const int number = all.contains(kWorldNumber) ? all.rbegin()->first + 1 : kWorldNumber;
   graph.parameters().set(number, std::make_shared<const WorldParameter>());
   return number;
@@ -187,8 +184,7 @@ class PlanEdges {
   EdgeSweptObstacleDistance swept_edge() const {
     EdgeSweptObstacleDistance edge(*plan_.robot, world_number_, options_.obstacle_margin_m,
                                    options_.swept_samples, options_.limit_weight);
-    const bool nothing_there =
-        !plan_.world || (plan_.world->map.empty() && plan_.world->obstacles.empty());
+    const bool nothing_there = !plan_.world || plan_.world->snapshot->files().empty();
     if (!options_.excuse_near_world || nothing_there || plan_.stances_only) return edge;
     edge.bind(graph_.parameters());
     Eigen::VectorXd lack(edge.weights.size());
@@ -196,7 +192,7 @@ class PlanEdges {
     graph_.vertex(ids_.front()).derive(graph_.state(ids_.front().slot), before);
     for (std::size_t i = 1; i < ids_.size(); ++i) {
       graph_.vertex(ids_[i]).derive(graph_.state(ids_[i].slot), after);
-      edge.error(before, after, lack);
+      edge.error(before, after, lack, Bindings());
       edge.weights = (lack.array() > 0.0).select(0.0, edge.weights);
       std::swap(before, after);
     }

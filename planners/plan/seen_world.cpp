@@ -1,4 +1,5 @@
 #include <locograph/planners/plan/seen_world.h>
+#include <locograph/world/distance_view.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +13,9 @@ constexpr double kBeside_m = 2.5, kBelow_m = 0.5, kAbove_m = 1.5;
 
 }  // namespace
 
-WorldDistance seen_world(const Graph& graph, const Plan& plan, const World& world) {
-  if (!plan.robot->robot->floating_base()) return distance_view(world);
+std::shared_ptr<const WorldSnapshot> seen_world(const Graph& graph, const Plan& plan,
+                                                const World& world) {
+  if (!plan.robot->robot->floating_base()) return std::make_shared<const WorldSnapshot>(world);
   Eigen::AlignedBox3d box;
   for (const int slot : plan.slots) {
     box.extend(Eigen::Vector3d(Eigen::Map<const Eigen::Vector3d>(graph.state(slot))));
@@ -27,7 +29,7 @@ WorldDistance seen_world(const Graph& graph, const Plan& plan, const World& worl
   }
   options.lower->z() = lowest - kBelow_m;
   options.upper->z() = box.max().z() + kAbove_m;
-  return distance_view(world, options);
+  return std::make_shared<const WorldSnapshot>(world, 0.0, WorldFiles(), options);
 }
 
 }  // namespace locograph

@@ -141,7 +141,8 @@ PostureGraph::PostureGraph(std::shared_ptr<const RobotParameter> robot,
 void PostureGraph::add_parameters(std::shared_ptr<const WorldParameter> seen,
                                   const PostureProblem& problem, const PostureOptions& options) {
   graph.parameters().set(kRobotNumber, robot_);
-  seen_ = seen->now.map || seen->now.leaves || !seen->now.obstacles.empty();
+  const World& world = seen->snapshot->world();
+  seen_ = world.map || !world.obstacles.empty();
   ground_z_m_ = seen->ground_z_m;
   graph.parameters().set(kWorldNumber, std::move(seen));
   Stance stance = problem.stance;

@@ -42,6 +42,13 @@ std::vector<bool> coarse_pairs(const std::shared_ptr<const RobotParameter>& robo
   return coarse;
 }
 
+std::shared_ptr<const WorldParameter> parameter_of(World world, const WorldFiles& files) {
+  const double height = ground_height(world);
+  return std::make_shared<const WorldParameter>(
+      std::make_shared<const WorldSnapshot>(std::move(world), 0.0, files),
+      std::isfinite(height) ? std::optional(height) : std::nullopt);
+}
+
 /// One solve: the graph compiled once, attempts on it.
 class Search {
  public:
@@ -220,7 +227,8 @@ World posture_world(World in_the_way) {
 PostureSolver::PostureSolver(std::shared_ptr<const RobotParameter> robot, World world,
                              const WorldFiles& files)
     : robot_(std::move(robot)),
-      judge_(robot_->robot, world),
+      world_(parameter_of(std::move(world), files)),
+      judge_(robot_->robot, world_->snapshot),
       workspaces_(std::make_unique<Workspaces>()) {
   auto shapes = std::make_unique<PostureShapes>();
   shapes->coarse_pairs = coarse_pairs(robot_, judge_);
@@ -228,13 +236,7 @@ PostureSolver::PostureSolver(std::shared_ptr<const RobotParameter> robot, World 
   for (int link = 0; link < static_cast<int>(model.links().size()); ++link)
     shapes->solids.push_back(std::make_shared<const LinkSolids>(model, link));
   shapes_ = std::move(shapes);
-  const auto seen = std::make_shared<WorldParameter>();
-  seen->set_files(files.map, files.obstacles);
-  if (const double ground = ground_height(world); std::isfinite(ground)) {
-    seen->ground_z_m = ground;
-  }
-  seen->now = distance_view(world);
-  seen_ = seen;
+  world_->snapshot->distance();  // now rather than in the first solve
   if (!model.floating_base()) {
     throw Error("a posture of a robot with a fixed base", "a floating base");
   }
@@ -255,7 +257,7 @@ PostureResult PostureSolver::solve(const PostureProblem& problem,
   }
   std::unique_ptr<Workspace> workspace = workspaces_->take();
   PostureResult result =
-      Search(robot_, seen_, judge_, problem, options, *shapes_, *workspace).run();
+      Search(robot_, world_, judge_, problem, options, *shapes_, *workspace).run();
   workspaces_->give_back(std::move(workspace));
   return result;
 }
@@ -267,7 +269,7 @@ Graph PostureSolver::graph(const PostureProblem& problem, const PostureResult& r
   exact.ground_margin_m = exact.wrench_margin = exact.torque_margin = 0.0;
   // What it stays near is itself: the graph is at rest.
   const PostureProblem found{problem.stance, result.configuration, problem.file};
-  PostureGraph posture(robot_, seen_, found, exact, *shapes_);
+  PostureGraph posture(robot_, world_, found, exact, *shapes_);
   const std::optional<BalanceCertificate>& balance = result.report.balance;
   posture.set(result.configuration, balance ? balance->wrenches : StanceWrenches());
   if (!problem.file.empty()) {

@@ -36,9 +36,6 @@
 
 namespace locograph {
 
-/// Where a world was read from; empty: nowhere.
-struct WorldFiles {
-  std::filesystem::path map = {}, obstacles = {};
 };
 
 /// With the plane z = 0 as the ground, and nothing else that may be touched.
@@ -83,7 +80,7 @@ class PostureSolver {
   class Workspaces;
 
   std::shared_ptr<const RobotParameter> robot_;
-  std::shared_ptr<const WorldParameter> seen_;  ///< the world as edges see it
+  std::shared_ptr<const WorldParameter> world_;
   Judge judge_;
   std::unique_ptr<const PostureShapes> shapes_;
   std::unique_ptr<Workspaces> workspaces_;

@@ -3,7 +3,6 @@
 #include <locograph/plugins/configuration/robot_parameters.h>
 #include <locograph/plugins/configuration/sphere_overshoot.h>
 #include <locograph/robots/shipped_robot.h>
-#include <locograph/world/distance_view.h>
 
 #include <algorithm>
 
@@ -104,33 +103,37 @@ void RobotParameter::write(FieldWriter& out) const {
   }
 }
 
-WorldParameter::WorldParameter(std::filesystem::path map_file, std::filesystem::path obstacle_file,
-                               std::optional<double> ground)
-    : map(std::move(map_file)), obstacles(std::move(obstacle_file)), ground_z_m(ground) {
-  load();
-}
+WorldParameter::WorldParameter() : WorldParameter(std::make_shared<const WorldSnapshot>(World())) {}
 
-void WorldParameter::load() {
-  DistanceFieldOptions options;
-  if (ground_z_m) options.ground_z = *ground_z_m;
-  now = distance_view(load_world(map, obstacles), options);
+WorldParameter::WorldParameter(std::shared_ptr<const WorldSnapshot> world,
+                               std::optional<double> ground)
+    : snapshot(std::move(world)), ground_z_m(ground) {}
+
+WorldParameter::WorldParameter(const WorldFiles& files, std::optional<double> ground)
+    : ground_z_m(ground) {
+  DistanceFieldOptions view;
+  if (ground_z_m) view.ground_z = *ground_z_m;
+  snapshot = std::make_shared<const WorldSnapshot>(load_world(files.map, files.obstacles), 0.0,
+                                                   files, view);
 }
 
 void WorldParameter::read(FieldReader& in) {
-  map = read_path(in);
-  obstacles = read_path(in);
+  WorldFiles files;
+  files.map = read_path(in);
+  files.obstacles = read_path(in);
+  std::optional<double> ground;
   if (!in.at_end()) {
     if (const std::string word = in.word(); word != "ground") {
       in.fail("'" + word + "'", "'ground' and its height, or the end of the line");
     }
-    ground_z_m = in.number();
+    ground = in.number();
   }
-  load();
+  *this = WorldParameter(files, ground);
 }
 
 void WorldParameter::write(FieldWriter& out) const {
-  write_path(out, map);
-  write_path(out, obstacles);
+  write_path(out, snapshot->files().map);
+  write_path(out, snapshot->files().obstacles);
   if (!ground_z_m) return;
   out.word("ground");
   out.number(*ground_z_m);

@@ -12,7 +12,7 @@
 #include <locograph/plugins/configuration/self_collision_shapes.h>
 #include <locograph/robots/collision_model.h>
 #include <locograph/robots/robot.h>
-#include <locograph/world/distance_field.h>
+#include <locograph/world/world_snapshot.h>
 
 #include <filesystem>
 #include <memory>
@@ -55,28 +55,23 @@ struct RobotParameter final : Parameter {
 /// PARAMS_WORLD: what is in the way: OctoMap file and obstacle file, and, where the robot stands on
 /// level ground, `ground` and its height [m]: voxels whose top is no higher are that ground as a
 /// sensor saw it, no obstacles. The ground is that of the plan's scenario; whoever judges a plan
-/// refuses another one. `now` is what the distance edges read: whoever plans online
-/// replaces it when the world shows something new, and with set_files() what the plan will be saved
-/// with; the files are not read again.
+/// refuses another one. The files are read once, into a snapshot; distance edges read its
+/// distance(). Whoever plans online binds another WorldParameter, with a newer snapshot, to his
+/// workspace (core/bindings.h).
 struct WorldParameter final : Parameter {
-  mutable std::filesystem::path map, obstacles;  ///< empty: none
+  std::shared_ptr<const WorldSnapshot> snapshot;  ///< its files are those of the line; not null
   std::optional<double> ground_z_m;
-  mutable WorldDistance now;
 
-  WorldParameter() = default;
-  WorldParameter(std::filesystem::path map, std::filesystem::path obstacles,
-                 std::optional<double> ground_z_m = std::nullopt);
-  void set_files(std::filesystem::path map_file, std::filesystem::path obstacle_file) const {
-    map = std::move(map_file);
-    obstacles = std::move(obstacle_file);
-  }
+  /// Of an empty world.
+  WorldParameter();
+  explicit WorldParameter(std::shared_ptr<const WorldSnapshot> snapshot,
+                          std::optional<double> ground_z_m = std::nullopt);
+  /// Reads the files; empty paths: none. Throws Error for files that cannot be used.
+  explicit WorldParameter(const WorldFiles& files, std::optional<double> ground_z_m = std::nullopt);
 
   std::string_view tag() const override { return "PARAMS_WORLD"; }
   void read(FieldReader& in) override;
   void write(FieldWriter& out) const override;
-
- private:
-  void load();
 };
 
 }  // namespace locograph

@@ -28,20 +28,24 @@ void each_near_sphere(const ConfigurationState& q, const WorldDistance& world, d
 
 }  // namespace
 
-void EdgeObstacleDistance::error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const {
+void EdgeObstacleDistance::error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e,
+                                 const Bindings& bindings) const {
   require_rows(kTag, e.size(), static_cast<long>(q.robot->spheres.size()));
   e.setZero();
-  each_near_sphere(q, world->now, margin_m, [&](int i) {
-    const double distance = world->now.distance(q.sphere_centres[i], q.time_s);
+  const WorldDistance& seen = bindings.get(world_number, *world).snapshot->distance();
+  each_near_sphere(q, seen, margin_m, [&](int i) {
+    const double distance = seen.distance(q.sphere_centres[i], q.time_s);
     e[i] = std::max(0.0, margin_m + q.robot->spheres[i].radius - distance);
   });
 }
 
 void EdgeObstacleDistance::jacobians(const ConfigurationState& q,
-                                     JacobianRef<EdgeObstacleDistance, 0> j) const {
-  each_near_sphere(q, world->now, margin_m, [&](int i) {
+                                     JacobianRef<EdgeObstacleDistance, 0> j,
+                                     const Bindings& bindings) const {
+  const WorldDistance& seen = bindings.get(world_number, *world).snapshot->distance();
+  each_near_sphere(q, seen, margin_m, [&](int i) {
     const CollisionSphere& sphere = q.robot->spheres[i];
-    const DistanceSample sample = world->now.sample(q.sphere_centres[i], q.time_s);
+    const DistanceSample sample = seen.sample(q.sphere_centres[i], q.time_s);
     if (margin_m + sphere.radius - sample.distance <= 0.0) return;
     q.kinematics.add_point_gradient(sphere.link, q.sphere_centres[i], sample.gradient, -1.0,
                                     j.row(i).data());

@@ -4,9 +4,9 @@
 ///     EDGE_OBSTACLE_DISTANCE id  n world margin  weights
 ///
 /// Error (number of spheres) [m]: max(0, margin − (d(c) − r)) for a sphere of radius r about c, d
-/// the signed distance that the PARAMS_WORLD shows at the configuration's time. Inside an obstacle
-/// it grows with the depth, so there is a way out. Links that are far as a whole are looked up
-/// once.
+/// the signed distance that the PARAMS_WORLD, or the one bound in its place, shows at the
+/// configuration's time. Inside an obstacle it grows with the depth, so there is a way out. Links
+/// that are far as a whole are looked up once.
 
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/plugins/configuration/edge_fit.h>
@@ -33,8 +33,10 @@ struct EdgeObstacleDistance : WeightedEdge<Eigen::Dynamic, VertexConfiguration> 
   EdgeObstacleDistance(const RobotParameter& robot, int world_number, double margin_m,
                        double weight);
 
-  void error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const;
-  void jacobians(const ConfigurationState& q, JacobianRef<EdgeObstacleDistance, 0> j) const;
+  void error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e,
+             const Bindings& bindings) const;
+  void jacobians(const ConfigurationState& q, JacobianRef<EdgeObstacleDistance, 0> j,
+                 const Bindings& bindings) const;
   double row_tolerance(int) const { return margin_tolerance(margin_m); }
   RowLabel row_label(int row, const VertexConfiguration& q) const {
     return sphere_row(*q.robot, row, "near an obstacle");

@@ -72,8 +72,12 @@ struct Padding {
 class Step {
  public:
   Step(const EdgeSweptObstacleDistance& edge, const ConfigurationState& a,
-       const ConfigurationState& b)
-      : world_(edge.world->now), margin_m_(edge.margin_m), samples_(edge.samples), a_(a), b_(b) {
+       const ConfigurationState& b, const Bindings& bindings)
+      : world_(bindings.get(edge.world_number, *edge.world).snapshot->distance()),
+        margin_m_(edge.margin_m),
+        samples_(edge.samples),
+        a_(a),
+        b_(b) {
     for (const Obstacle& obstacle : world_.obstacles) {
       const ObstacleStep step = obstacle_step(obstacle, a.time_s, b.time_s);
       world_moves_m_ = std::max(world_moves_m_, step.shift.norm() + step.turn);
@@ -165,17 +169,21 @@ class Step {
 }  // namespace
 
 void EdgeSweptObstacleDistance::error(const ConfigurationState& a, const ConfigurationState& b,
-                                      Eigen::Ref<Eigen::VectorXd> e) const {
+                                      Eigen::Ref<Eigen::VectorXd> e,
+                                      const Bindings& bindings) const {
   require_same_robot(kTag, a.robot, b.robot);
   require_rows(kTag, e.size(), static_cast<long>(a.robot->spheres.size()));
   e.setZero();
-  Step(*this, a, b).each_lacking_sphere([&](int i, const Worst& worst) { e[i] = worst.lack; });
+  Step(*this, a, b, bindings).each_lacking_sphere([&](int i, const Worst& worst) {
+    e[i] = worst.lack;
+  });
 }
 
 void EdgeSweptObstacleDistance::jacobians(const ConfigurationState& a, const ConfigurationState& b,
                                           JacobianRef<EdgeSweptObstacleDistance, 0> ja,
-                                          JacobianRef<EdgeSweptObstacleDistance, 1> jb) const {
-  Step(*this, a, b).each_lacking_sphere([&](int i, const Worst& worst) {
+                                          JacobianRef<EdgeSweptObstacleDistance, 1> jb,
+                                          const Bindings& bindings) const {
+  Step(*this, a, b, bindings).each_lacking_sphere([&](int i, const Worst& worst) {
     const int link = a.robot->spheres[i].link;
     const Eigen::Vector3d by_first = -(1.0 - worst.fraction) * worst.gradient - worst.padding_slope;
     const Eigen::Vector3d by_second = -worst.fraction * worst.gradient + worst.padding_slope;

@@ -6,7 +6,8 @@
 ///
 /// Error (number of spheres) [m], for a sphere of radius r whose centre goes straight from c_a to
 /// c_b: with ρ = r + margin, N samples at s_k = (k + ½)/N and half a gap h = |c_b − c_a| / (2N),
-///   max(0, max_k √(ρ² + h²) − d(c(s_k), t(s_k))),   d the signed distance of the PARAMS_WORLD.
+///   max(0, max_k √(ρ² + h²) − d(c(s_k), t(s_k))),   d the signed distance of the PARAMS_WORLD
+/// or the one bound in its place.
 /// Times are interpolated like the centres, so moving obstacles are met where they are by then.
 ///
 /// Nothing between the samples is missed: if somewhere on the way the distance falls below ρ and is
@@ -45,10 +46,10 @@ struct EdgeSweptObstacleDistance
                             int samples, double weight);
 
   void error(const ConfigurationState& a, const ConfigurationState& b,
-             Eigen::Ref<Eigen::VectorXd> e) const;
+             Eigen::Ref<Eigen::VectorXd> e, const Bindings& bindings) const;
   void jacobians(const ConfigurationState& a, const ConfigurationState& b,
                  JacobianRef<EdgeSweptObstacleDistance, 0> ja,
-                 JacobianRef<EdgeSweptObstacleDistance, 1> jb) const;
+                 JacobianRef<EdgeSweptObstacleDistance, 1> jb, const Bindings& bindings) const;
   double row_tolerance(int) const { return margin_tolerance(margin_m); }
   RowLabel row_label(int row, const VertexConfiguration& a, const VertexConfiguration&) const {
     return sphere_row(*a.robot, row, "near an obstacle on its way");

@@ -415,7 +415,8 @@ namespace online_local_planner_h {
 struct Context : DriveContext {
   Graph& plan_graph = graph;
   const LocalPlannerOptions options;
-  const WorldDistance world = distance_view(DriveContext::world);
+  const std::shared_ptr<const WorldSnapshot> snapshot =
+      std::make_shared<const WorldSnapshot>(world);
 };
 }  // namespace online_local_planner_h
 namespace online_online_plan_h {
@@ -472,6 +473,7 @@ struct Context : WindowContext {
 }  // namespace online_window_solver_h
 namespace online_window_cause_h {
 struct Context : DriveContext {
+  const OnlinePlan online{graph};
   Context() : DriveContext(2.56, 33) {}
 };
 }  // namespace online_window_cause_h
@@ -524,6 +526,7 @@ struct Context : DriveContext {
 }  // namespace plan_plan_index_h
 namespace plan_seen_world_h {
 struct Context : DriveContext {
+  LocalPlanner planner{graph, {}};
   const Judging judging = judging_of(graph, plan, {.data_folder = data_folder});
 };
 }  // namespace plan_seen_world_h

@@ -7,14 +7,13 @@ namespace {
 
 /// A plan with every edge on 20 configurations that violate some of everything; the first fixed.
 /// backwards: half of the binary edges name the later configuration first.
-Graph plan_with_everything(const RobotCase& robot, const WorldDistance& now, bool backwards,
+Graph plan_with_everything(const RobotCase& robot,
+                           const std::shared_ptr<const WorldParameter>& world, bool backwards,
                            bool kernels) {
   Random random(31);
   const Robot& model = robot.model();
   const int tangent = model.tangent_size();
   Graph graph = graph_of(robot);
-  auto world = std::make_shared<WorldParameter>();
-  world->now = now;
   graph.parameters().set(kWorld, world);
   std::vector<VertexId<VertexConfiguration>> ids;
   Eigen::VectorXd q = model.floating_base() ? home(robot) : model.named_configuration("home");
@@ -58,11 +57,8 @@ Graph plan_with_everything(const RobotCase& robot, const WorldDistance& now, boo
   return graph;
 }
 
-WorldDistance everything_around() {
-  WorldDistance now;
-  now.map = std::make_shared<const DistanceField>(DistanceField::from_octree(*some_map(false)));
-  now.obstacles = some_obstacles();
-  return now;
+std::shared_ptr<const WorldParameter> everything_around() {
+  return world_of(some_obstacles(), some_map(false));
 }
 
 class Batch : public testing::TestWithParam<std::string> {};

@@ -131,12 +131,12 @@ struct SweptReference {
   }
 };
 
-void compare_sweeps(const RobotCase& robot, const WorldDistance& now, unsigned seed) {
+void compare_sweeps(const RobotCase& robot, const std::shared_ptr<const WorldParameter>& world,
+                    unsigned seed) {
   constexpr double kMargin = 0.1;
   Random random(seed);
   Graph graph = graph_of(robot);
-  auto world = std::make_shared<WorldParameter>();
-  world->now = now;
+  const WorldDistance& now = world->snapshot->distance();
   graph.parameters().set(kWorld, world);
   const Robot& model = robot.model();
   std::vector<ConfigurationState> from, to;
@@ -171,15 +171,11 @@ void compare_sweeps(const RobotCase& robot, const WorldDistance& now, unsigned s
 }
 
 TEST_P(CollisionEdges, SweptDistanceToPrimitivesHasTheJacobianOfNumericDifferences) {
-  WorldDistance now;
-  now.obstacles = some_obstacles();
-  compare_sweeps(robot, now, 54);
+  compare_sweeps(robot, world_of(some_obstacles()), 54);
 }
 
 TEST_P(CollisionEdges, SweptDistanceToAMapHasTheJacobianOfNumericDifferences) {
-  WorldDistance now;
-  now.map = std::make_shared<const DistanceField>(DistanceField::from_octree(*some_map(false)));
-  compare_sweeps(robot, now, 55);
+  compare_sweeps(robot, world_of({}, some_map(false)), 55);
 }
 
 INSTANTIATE_TEST_SUITE_P(Plugins, CollisionEdges, testing::ValuesIn(all_cases_and_coman_plus()),
@@ -244,7 +240,7 @@ TEST_F(TwoCapsules, WhoseAxesMeetAreAsDeepAsTheyCanBeAndStillKnowAWayOut) {
 
 TEST(SelfCollision, AgreesWithExactDistancesNearHome) {
   const RobotCase robot = robot_case("CentauroAllJoints");
-  const CollisionWorld exact(robot.model(), nullptr, {});
+  const CollisionWorld exact(robot.model(), World());
   Random random(56);
   constexpr double kMargin = 0.1;
   const EdgeSelfCollision edge(*robot.robot, kMargin, 1.0);
@@ -283,7 +279,7 @@ TEST(SelfCollision, LeavesOutPairsThatNoActiveJointMoves) {
 class SweptObstacleDistance : public testing::Test {
  protected:
   RobotCase robot = centauro_lower_body();
-  std::shared_ptr<WorldParameter> world = std::make_shared<WorldParameter>();
+  std::shared_ptr<const WorldParameter> world = std::make_shared<const WorldParameter>();
 
   Eigen::VectorXd between(double from_x, double to_x, double margin = 0.05, int samples = 2,
                           double from_s = 0.0, double to_s = 1.0) const {
@@ -301,7 +297,7 @@ class SweptObstacleDistance : public testing::Test {
 };
 
 TEST_F(SweptObstacleDistance, NoticesAThinWallThoughBothEndsAreFree) {
-  world->now.obstacles = {box_obstacle({0.0, 0.0, 1.0}, {0.01, 6.0, 4.0})};
+  world = world_of({box_obstacle({0.0, 0.0, 1.0}, {0.01, 6.0, 4.0})});
   ASSERT_TRUE(at(-1.4).isZero(0.0));
   ASSERT_TRUE(at(1.4).isZero(0.0));
   for (const int samples : {1, 2, 3, 7, 40}) {
@@ -311,9 +307,7 @@ TEST_F(SweptObstacleDistance, NoticesAThinWallThoughBothEndsAreFree) {
   std::vector<Box> boxes(1);
   boxes[0].world_from_box.translation() << 0.025, 0.0, 1.0;
   boxes[0].size << 0.02, 4.0, 3.0;
-  world->now = {};
-  world->now.map = std::make_shared<const DistanceField>(
-      DistanceField::from_octree(*octree_from_boxes(boxes, 0.05)));
+  world = world_of({}, octree_from_boxes(boxes, 0.05));
   ASSERT_TRUE(at(-1.4).isZero(0.0));
   ASSERT_TRUE(at(1.4).isZero(0.0));
   for (const int samples : {1, 2, 3, 7, 40}) {
@@ -324,8 +318,8 @@ TEST_F(SweptObstacleDistance, NoticesAThinWallThoughBothEndsAreFree) {
 TEST_F(SweptObstacleDistance, IsZeroWhereThereIsRoom) {
   EXPECT_TRUE(between(-1.0, 1.0).isZero(0.0)) << "an empty world";
   EXPECT_TRUE(between(-1.0, 1.0, 0.05, 1).isZero(0.0)) << "an empty world, one sample";
-  world->now.obstacles = {box_obstacle({0.0, 2.5, 0.5}, {8.0, 0.3, 1.0}),
-                          box_obstacle({0.0, -2.5, 0.5}, {8.0, 0.3, 1.0})};
+  world = world_of({box_obstacle({0.0, 2.5, 0.5}, {8.0, 0.3, 1.0}),
+                    box_obstacle({0.0, -2.5, 0.5}, {8.0, 0.3, 1.0})});
   EXPECT_TRUE(between(-0.5, 0.5, 0.05, 2).isZero(0.0));
 }
 
@@ -337,7 +331,7 @@ TEST_F(SweptObstacleDistance, IsTheKnownOneForASphereThatPassesABall) {
   ball.size << 0.2, 0.0, 0.0;
   ball.world_from_obstacle.translation() =
       middle.sphere_centres[0] + (0.2 + r + 0.04) * Eigen::Vector3d::UnitZ();
-  world->now.obstacles = {ball};
+  world = world_of({ball});
   // Three samples: the middle one is where the sphere is nearest, 0.04 m away; h = 0.1.
   EXPECT_NEAR(between(-0.3, 0.3, 0.05, 3)[0], std::hypot(r + 0.05, 0.1) - (r + 0.04), 1e-12);
   // Two samples: each 0.15 m beside it.
@@ -354,7 +348,7 @@ TEST_F(SweptObstacleDistance, HasAGradientJustInsideTheMargin) {
   ball.size << 0.2, 0.0, 0.0;
   ball.world_from_obstacle.translation() =
       middle.sphere_centres[0] + (0.2 + needed - kBeyond) * Eigen::Vector3d::UnitZ();
-  world->now.obstacles = {ball};
+  world = world_of({ball});
   Graph graph = graph_of(robot);
   graph.parameters().set(kWorld, world);
   graph.add_edge(EdgeSweptObstacleDistance(*robot.robot, kWorld, 0.05, 1, 1.0),
@@ -376,7 +370,7 @@ TEST_F(SweptObstacleDistance, MeetsMovingObstaclesAtTheRightTime) {
   there.time_s = 10.0;
   there.pose.translation() << 0.0, 4.0, 0.7;
   cart.motion.push_back(there);
-  world->now.obstacles = {cart};
+  world = world_of({cart});
   // It crosses the robot's way at 5 s; the robot is far from there at either end of its step.
   ASSERT_TRUE(at(-1.5, 4.0).isZero(0.0));
   ASSERT_TRUE(at(1.5, 6.0).isZero(0.0));
@@ -394,17 +388,28 @@ TEST_F(SweptObstacleDistance, CountsTheWayRelativeToAnObstacleThatMovesAlong) {
   there.time_s = 1.0;
   there.pose.translation() << 1.0, 0.0, 1.6;
   escort.motion.push_back(there);
-  world->now.obstacles = {escort};
+  world = world_of({escort});
   const Eigen::VectorXd swept = between(-1.0, 1.0, 0.05, 1), middle = at(0.0, 0.5);
   ASSERT_GT(middle.maxCoeff(), 0.01);
   EXPECT_LT((swept - middle).cwiseAbs().maxCoeff(), 1e-12) << "relative to it the robot stands";
 }
 
+TEST_F(SweptObstacleDistance, IsThatOfAWorldThatIsBoundAsIfItWereTheGraphsOwn) {
+  Graph graph = graph_of(robot);
+  graph.parameters().set(kWorld, world);
+  graph.add_edge(EdgeSweptObstacleDistance(*robot.robot, kWorld, 0.05, 2, 1.0),
+                 add_configuration(graph, robot, 0, 0.0, home(robot, -1.4, 0.0)),
+                 add_configuration(graph, robot, 1, 1.0, home(robot, 1.4, 0.0)));
+  expect_bound_as_own(graph, world_of({box_obstacle({0.0, 0.0, 1.0}, {0.01, 6.0, 4.0})}));
+}
+
 TEST_F(SweptObstacleDistance, MissesNothingThatALookEverywhereFinds) {
-  world->now.obstacles = some_obstacles();
-  for (Obstacle& obstacle : world->now.obstacles) {
+  std::vector<Obstacle> obstacles = some_obstacles();
+  for (Obstacle& obstacle : obstacles) {
     if (!obstacle.motion.empty()) obstacle.motion[0].pose.linear() = Eigen::Matrix3d::Identity();
   }
+  world = world_of(obstacles);
+  const WorldDistance& seen = world->snapshot->distance();
   Random random(57);
   const Robot& model = robot.model();
   constexpr int kRuns = kStates / 2;
@@ -422,8 +427,7 @@ TEST_F(SweptObstacleDistance, MissesNothingThatALookEverywhereFinds) {
     const Eigen::VectorXd e = Evaluated(graph).error(0);
     for (int s = 0; s < e.size(); ++s) {
       const auto room = [&](double f) {
-        return world->now.distance((1.0 - f) * a.sphere_centres[s] + f * b.sphere_centres[s],
-                                   1.0 + f) -
+        return seen.distance((1.0 - f) * a.sphere_centres[s] + f * b.sphere_centres[s], 1.0 + f) -
                robot.robot->spheres[s].radius - 0.05;
       };
       double least = 0.0;

@@ -161,12 +161,12 @@ TEST_P(WheelJacobianOf, RollingIsThatOfNumericDifferences) {
   compare_pairs(steering_slip_of(graph_of(robot), 0.0), 0.5, 0.8, 0.4);
 }
 
-void compare_distances(const RobotCase& robot, const WorldDistance& now, unsigned seed) {
+void compare_distances(const RobotCase& robot, const std::shared_ptr<const WorldParameter>& world,
+                       unsigned seed) {
   constexpr double kMargin = 0.15;
   Random random(seed);
   Graph graph = graph_of(robot);
-  auto world = std::make_shared<WorldParameter>();
-  world->now = now;
+  const WorldDistance& now = world->snapshot->distance();
   graph.parameters().set(kWorld, world);
   std::vector<ConfigurationState> states;
   for (int i = 0; i < kStates; ++i) {
@@ -206,22 +206,15 @@ void compare_distances(const RobotCase& robot, const WorldDistance& now, unsigne
 }
 
 TEST_P(JacobianOf, DistanceToPrimitivesIsThatOfNumericDifferences) {
-  WorldDistance now;
-  now.obstacles = some_obstacles();
-  compare_distances(robot, now, 7);
+  compare_distances(robot, world_of(some_obstacles()), 7);
 }
 
 TEST_P(JacobianOf, DistanceToAMapIsThatOfNumericDifferences) {
-  WorldDistance now;
-  now.map = std::make_shared<const DistanceField>(DistanceField::from_octree(*some_map(false)));
-  compare_distances(robot, now, 8);
+  compare_distances(robot, world_of({}, some_map(false)), 8);
 }
 
 TEST_P(JacobianOf, DistanceToAMapAndPrimitivesIsThatOfNumericDifferences) {
-  WorldDistance now;
-  now.map = std::make_shared<const DistanceField>(DistanceField::from_octree(*some_map(false)));
-  now.obstacles = some_obstacles();
-  compare_distances(robot, now, 9);
+  compare_distances(robot, world_of(some_obstacles(), some_map(false)), 9);
 }
 
 INSTANTIATE_TEST_SUITE_P(Plugins, JacobianOf, testing::ValuesIn(all_cases()), robot_case_name);
@@ -286,15 +279,13 @@ TEST(HingeGradient, DoesNotVanishJustInsideTheMarginOfAnObstacle) {
   ConfigurationState state(robot.robot);
   state.update(home(robot).data());
   Graph graph = graph_of(robot);
-  auto world = std::make_shared<WorldParameter>();
-  world->now.obstacles.resize(1);
-  Obstacle& ball = world->now.obstacles[0];
+  Obstacle ball;
   ball.shape = Obstacle::Shape::kSphere;
   ball.size << 0.2, 0.0, 0.0;
   ball.world_from_obstacle.translation() =
       state.sphere_centres[0] +
       (0.2 + kMargin + robot.robot->spheres[0].radius - kBeyond) * Eigen::Vector3d::UnitX();
-  graph.parameters().set(kWorld, world);
+  graph.parameters().set(kWorld, world_of({ball}));
   graph.add_edge(EdgeObstacleDistance(*robot.robot, kWorld, kMargin, 1.0),
                  add_configuration(graph, robot, 0, 0.0, home(robot)));
   Evaluated evaluated(graph);

@@ -7,7 +7,7 @@ class ObstacleDistance : public testing::Test {
  protected:
   static constexpr double kMargin = 0.05;
   RobotCase robot = centauro_lower_body();
-  std::shared_ptr<WorldParameter> world = std::make_shared<WorldParameter>();
+  std::shared_ptr<const WorldParameter> world = std::make_shared<const WorldParameter>();
   EdgeObstacleDistance edge{*robot.robot, kWorld, kMargin, 1.0};
 
   Eigen::VectorXd at(double x, double y, double time_s = 0.0) const {
@@ -27,13 +27,13 @@ TEST_F(ObstacleDistance, IsZeroInAnEmptyWorld) {
 }
 
 TEST_F(ObstacleDistance, IsWhatTheMarginLacksForEverySphere) {
-  world->now.obstacles = some_obstacles();
+  world = world_of(some_obstacles());
   const Eigen::VectorXd e = at(0.2, -0.1, 4.0);
   const ConfigurationState q = state(0.2, -0.1);
   int violated = 0;
   for (int i = 0; i < e.size(); ++i) {
     double nearest = 1.0;
-    for (const Obstacle& obstacle : world->now.obstacles) {
+    for (const Obstacle& obstacle : world->snapshot->world().obstacles) {
       nearest = std::min(nearest, obstacle.distance(q.sphere_centres[i], 4.0));
     }
     const double lacks = kMargin - (nearest - robot.robot->spheres[i].radius);
@@ -46,7 +46,7 @@ TEST_F(ObstacleDistance, IsWhatTheMarginLacksForEverySphere) {
 
 TEST_F(ObstacleDistance, GrowsWithTheDepthInsideAndPointsOutwards) {
   // A wall far wider than the robot, its face at x = 2: the way out is -x, however deep.
-  world->now.obstacles = {box_obstacle({4.0, 0.0, 0.0}, {4.0, 20.0, 20.0})};
+  world = world_of({box_obstacle({4.0, 0.0, 0.0}, {4.0, 20.0, 20.0})});
   const Eigen::VectorXd touching = at(1.5, 0.0);
   Eigen::VectorXd before = touching;
   for (double x = 1.6; x < 3.25; x += 0.1) {
@@ -80,8 +80,7 @@ TEST_F(ObstacleDistance, GrowsWithTheDepthInsideAMapToo) {
   std::vector<Box> boxes(1);
   boxes[0].world_from_box.translation() << 2.5, 0.0, 0.5;
   boxes[0].size << 1.0, 3.0, 2.0;
-  world->now.map = std::make_shared<const DistanceField>(
-      DistanceField::from_octree(*octree_from_boxes(boxes, 0.05)));
+  world = world_of({}, octree_from_boxes(boxes, 0.05));
   // One sphere of the pelvis, from outside to 0.4 m inside.
   const Eigen::Vector3d centre = state(0.0, 0.0).sphere_centres[0];
   double before = 0.0;
@@ -100,7 +99,7 @@ TEST_F(ObstacleDistance, SeesMovingObstaclesAtTheTimeOfTheConfiguration) {
   here.time_s = 10.0;
   here.pose.translation() << 0.0, 0.0, 0.7;
   cart.motion.push_back(here);
-  world->now.obstacles = {cart};
+  world = world_of({cart});
   EXPECT_TRUE(at(0.0, 0.0, 0.0).isZero(0.0));
   EXPECT_TRUE(at(0.0, 0.0, 5.0).isZero(0.0));
   EXPECT_GT(at(0.0, 0.0, 10.0).maxCoeff(), kMargin);
@@ -108,15 +107,11 @@ TEST_F(ObstacleDistance, SeesMovingObstaclesAtTheTimeOfTheConfiguration) {
 }
 
 TEST_F(ObstacleDistance, IsTheNearerOneOfMapAndObstacles) {
-  WorldDistance map_only, obstacles_only;
-  map_only.map =
-      std::make_shared<const DistanceField>(DistanceField::from_octree(*some_map(false)));
-  obstacles_only.obstacles = some_obstacles();
-  world->now = map_only;
+  world = world_of({}, some_map(false));
   const Eigen::VectorXd map_error = at(0.0, 0.0, 2.0);
-  world->now = obstacles_only;
+  world = world_of(some_obstacles());
   const Eigen::VectorXd obstacle_error = at(0.0, 0.0, 2.0);
-  world->now.map = map_only.map;
+  world = world_of(some_obstacles(), some_map(false));
   const Eigen::VectorXd both = at(0.0, 0.0, 2.0);
   for (int i = 0; i < both.size(); ++i) {
     EXPECT_EQ(both[i], std::max(map_error[i], obstacle_error[i]));
@@ -129,25 +124,25 @@ TEST_F(ObstacleDistance, DoesNotTakeTheGroundThatTheWorldNamesForAnObstacle) {
   const TemporaryFolder folder;
   save_octree(*some_map(true), folder.file("floor.bt"));
   save_octree(*some_map(false), folder.file("no_floor.bt"));
-  world = std::make_shared<WorldParameter>(folder.file("floor.bt"), std::filesystem::path(), 0.0);
+  world = std::make_shared<const WorldParameter>(WorldFiles{.map = folder.file("floor.bt")}, 0.0);
   const Eigen::VectorXd with_floor = at(0.3, 0.1);
   world =
-      std::make_shared<WorldParameter>(folder.file("no_floor.bt"), std::filesystem::path(), 0.0);
+      std::make_shared<const WorldParameter>(WorldFiles{.map = folder.file("no_floor.bt")}, 0.0);
   const Eigen::VectorXd without_floor = at(0.3, 0.1);
   EXPECT_GT(without_floor.maxCoeff(), 0.0);
   EXPECT_TRUE(with_floor == without_floor);
-  world = std::make_shared<WorldParameter>(folder.file("floor.bt"), std::filesystem::path());
+  world = std::make_shared<const WorldParameter>(WorldFiles{.map = folder.file("floor.bt")});
   EXPECT_GT(at(0.3, 0.1).sum(), with_floor.sum()) << "a floor that is not named is in the way";
 }
 
-TEST_F(ObstacleDistance, FollowsAWorldThatIsReplacedWhileThePlanRuns) {
+TEST_F(ObstacleDistance, IsThatOfAWorldThatIsBoundAsIfItWereTheGraphsOwn) {
   Graph graph = graph_of(robot);
   graph.parameters().set(kWorld, world);
   graph.add_edge(edge, add_configuration(graph, robot, 0, 0.0, home(robot)));
-  Evaluated evaluated(graph);
-  EXPECT_TRUE(evaluated.error(0).isZero(0.0));
-  world->now.obstacles = {box_obstacle({0.0, 0.0, 0.7}, {0.3, 0.3, 0.3})};
-  EXPECT_GT(evaluated.error(0).maxCoeff(), kMargin);
+  const auto newer = world_of({box_obstacle({0.0, 0.0, 0.7}, {0.3, 0.3, 0.3})});
+  expect_bound_as_own(graph, newer);
+  graph.replace_parameter(kWorld, newer);
+  EXPECT_GT(Evaluated(graph).error(0).maxCoeff(), kMargin);
 }
 
 }  // namespace

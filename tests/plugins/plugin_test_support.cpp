@@ -1,5 +1,7 @@
 #include "plugins/plugin_test_support.h"
 
+#include <locograph/core/violations.h>
+
 #include <algorithm>
 #include <map>
 
@@ -238,6 +240,27 @@ Eigen::VectorXd Random::configuration(const Robot& robot, double reach, double b
                                              : uniform(joint.lower - beyond, joint.upper + beyond);
   }
   return q;
+}
+
+void expect_bound_as_own(Graph& graph, const std::shared_ptr<const WorldParameter>& world) {
+  Loaded bound(graph);
+  EXPECT_EQ(bound.workspace.evaluate(bound.workspace.state()).chi2, 0.0);
+  Bindings bindings;
+  bindings.set(kWorld, world);
+  bound.workspace.bind(bindings);
+  const double cost = bound.workspace.evaluate(bound.workspace.state()).chi2;
+  bound.workspace.linearise();
+  EXPECT_GT(cost, 0.0);
+  EXPECT_TRUE(violations(graph).empty());
+  EXPECT_FALSE(violations(graph, {}, bindings).empty());
+  const auto own = graph.parameters().get<WorldParameter>(kWorld);
+  graph.replace_parameter(kWorld, world);
+  Loaded replaced(graph);
+  EXPECT_EQ(replaced.workspace.evaluate(replaced.workspace.state()).chi2, cost);
+  replaced.workspace.linearise();
+  EXPECT_EQ(dense_hessian(bound.workspace), dense_hessian(replaced.workspace));
+  EXPECT_EQ(dense_gradient(bound.workspace), dense_gradient(replaced.workspace));
+  graph.replace_parameter(kWorld, own);
 }
 
 Evaluated::Evaluated(Graph& graph) {

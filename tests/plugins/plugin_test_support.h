@@ -133,6 +133,10 @@ class Evaluated {
   std::unique_ptr<StateEvaluation> evaluation_;
 };
 
+/// Of a graph whose world is in no edge's way: with `world` bound, it evaluates and linearises to
+/// the same bits as with that world as its own, to others than without.
+void expect_bound_as_own(Graph& graph, const std::shared_ptr<const WorldParameter>& world);
+
 /// Error of one edge on the given configurations, at their times.
 template <class E>
 Eigen::VectorXd error_of(const RobotCase& robot, const E& edge, const Eigen::VectorXd& q,
@@ -154,6 +158,13 @@ Eigen::VectorXd error_between(const RobotCase& robot, const E& edge, const Eigen
 }
 
 Obstacle box_obstacle(const Eigen::Vector3d& centre, const Eigen::Vector3d& size);
+
+/// A PARAMS_WORLD that was read from no files.
+inline std::shared_ptr<const WorldParameter> world_of(
+    std::vector<Obstacle> obstacles, std::shared_ptr<const octomap::OcTree> map = nullptr) {
+  return std::make_shared<const WorldParameter>(std::make_shared<const WorldSnapshot>(
+      World{.map = std::move(map), .obstacles = std::move(obstacles)}));
+}
 
 /// Sphere, box, cylinder and a moving, turning box around the origin.
 std::vector<Obstacle> some_obstacles();

@@ -50,8 +50,8 @@ class RoundTrip : public testing::TestWithParam<std::string> {
     const Robot& model = robot.model();
     Graph graph = graph_of(robot);
     graph.parameters().set(
-        kWorld, std::make_shared<const WorldParameter>(root / "maps/map.bt",
-                                                       root / "maps/obstacles.xml", 0.1 / 3.0));
+        kWorld, std::make_shared<const WorldParameter>(
+                    WorldFiles{root / "maps/map.bt", root / "maps/obstacles.xml"}, 0.1 / 3.0));
     auto scenario = std::make_shared<ScenarioParameter>();
     scenario->scenario = "a drive, \"quoted\"";
     graph.parameters().set(3, scenario);
@@ -62,7 +62,7 @@ class RoundTrip : public testing::TestWithParam<std::string> {
     const auto contacts = std::make_shared<ContactsParameter>();
     contacts->file = root / "maps/obstacles.xml";
     graph.parameters().set(8, contacts);
-    graph.parameters().set(7, std::make_shared<const WorldParameter>(fs::path(), fs::path()));
+    graph.parameters().set(7, std::make_shared<const WorldParameter>(WorldFiles()));
     std::vector<VertexId<VertexConfiguration>> ids;
     for (int i = 0; i < 5; ++i) {
       ids.push_back(add_configuration(graph, robot, 10 * i, 0.1 * i + 1.0 / 3.0,
@@ -177,12 +177,14 @@ class RoundTrip : public testing::TestWithParam<std::string> {
     const auto world_a = a.parameters().get<WorldParameter>(kWorld);
     const auto world_b = b.parameters().get<WorldParameter>(kWorld);
     EXPECT_EQ(world_a->ground_z_m, world_b->ground_z_m);
-    EXPECT_EQ(world_a->now.obstacles.size(), world_b->now.obstacles.size());
-    ASSERT_TRUE(world_a->now.map && world_b->now.map);
-    EXPECT_TRUE(std::ranges::equal(world_a->now.map->values(), world_b->now.map->values()));
+    const WorldDistance &seen_a = world_a->snapshot->distance(),
+                        &seen_b = world_b->snapshot->distance();
+    EXPECT_EQ(seen_a.obstacles.size(), seen_b.obstacles.size());
+    ASSERT_TRUE(seen_a.map && seen_b.map);
+    EXPECT_TRUE(std::ranges::equal(seen_a.map->values(), seen_b.map->values()));
     EXPECT_EQ(a.parameters().get<ScenarioParameter>(3)->scenario,
               b.parameters().get<ScenarioParameter>(3)->scenario);
-    EXPECT_TRUE(b.parameters().get<WorldParameter>(7)->map.empty());
+    EXPECT_TRUE(b.parameters().get<WorldParameter>(7)->snapshot->files().empty());
     EXPECT_TRUE(b.parameters().get<PlanParameter>(kPlan)->stances_only);
     const ContactMoves& moves = b.parameters().get<PlanParameter>(kPlan)->moves;
     EXPECT_EQ(moves.most_m, 0.1 / 3.0);

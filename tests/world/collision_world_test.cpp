@@ -138,7 +138,7 @@ TEST_F(CollisionWorldTest, NothingWithinTheCutOffIsNoLink) {
   EXPECT_EQ(closest.distance_m, 0.5);
   EXPECT_EQ(closest.link, -1);
   EXPECT_EQ(closest.what, "");
-  EXPECT_EQ(CollisionWorld(robot_, nullptr, {}).environment_distance(far_, 0.0).link, -1);
+  EXPECT_EQ(CollisionWorld(robot_, World()).environment_distance(far_, 0.0).link, -1);
   CollisionWorldOptions options;
   options.cutoff_m = 2.0;
   EXPECT_NEAR(CollisionWorld(robot_, block({0, 0, 0}, {0.5, 0.5, 0.5}), {}, options)
@@ -258,7 +258,7 @@ TEST_F(CollisionWorldTest, AFloorThatCutsThroughALargeLeafLeavesItsUpperPart) {
 }
 
 TEST_F(CollisionWorldTest, SelfDistanceIsTheNearestPairOfLinks) {
-  const CollisionWorld world(robot_, nullptr, {});
+  const CollisionWorld world(robot_, World());
   EXPECT_EQ(world.self_distance(far_).link, -1);
   const std::vector<ConvexShape> shapes = this->shapes();
   std::mt19937 random(3);
@@ -287,20 +287,20 @@ TEST_F(CollisionWorldTest, SelfDistanceIsTheNearestPairOfLinks) {
 }
 
 TEST_F(CollisionWorldTest, WrongNumbersOfPosesAndMissingMeshesAreErrors) {
-  const CollisionWorld world(robot_, nullptr, {});
+  const CollisionWorld world(robot_, World());
   EXPECT_THROW(world.environment_distance({}, 0.0), Error);
   EXPECT_THROW(world.self_distance(std::span(far_).first(2)), Error);
   CollisionWorldOptions options;
   options.ignore_floor_links = {99};
-  EXPECT_THROW(CollisionWorld(robot_, nullptr, {}, options), Error);
+  EXPECT_THROW(CollisionWorld(robot_, World(), options), Error);
   options = {};
   options.cutoff_m = 0.0;
-  EXPECT_THROW(CollisionWorld(robot_, nullptr, {}, options), Error);
+  EXPECT_THROW(CollisionWorld(robot_, World(), options), Error);
 
   std::filesystem::remove(wedge_);
   const Robot incomplete = Robot::load(folder_.file("parts.urdf"));
   try {
-    const CollisionWorld none(incomplete, nullptr, {});
+    const CollisionWorld none(incomplete, World());
     ADD_FAILURE() << "a missing mesh was accepted";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("wedge.stl"), std::string::npos);

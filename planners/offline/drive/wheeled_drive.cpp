@@ -166,7 +166,7 @@ std::optional<Graph> plan_wheeled_drive(const Scenario& scenario, const JobContr
   // Where the scenario names what there is to stand on, that is all there is, as in world_of().
   const bool on_ground = scenario.surfaces.empty() && scenario.scanned.empty();
   graph.parameters().set(kWorldNumber, std::make_shared<const WorldParameter>(
-                                           scenario.map, scenario.obstacles,
+                                           WorldFiles{scenario.map, scenario.obstacles},
                                            on_ground ? std::optional(kGround_m) : std::nullopt));
   const auto origin = std::make_shared<ScenarioParameter>();
   origin->scenario = scenario.source;

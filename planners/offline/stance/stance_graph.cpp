@@ -32,10 +32,10 @@ StanceWrenches wrenches_of(const Judge& judge, const Eigen::VectorXd& configurat
 std::vector<int> add_task(Graph& graph, const Scenario& scenario, const StanceProblem& problem,
                           const std::vector<Stance>& stances, const TaskPlanKind& kind) {
   graph.parameters().set(kRobotNumber, problem.robot);
-  const auto world = std::make_shared<WorldParameter>();
-  world->set_files(scenario.map, scenario.obstacles);
-  world->now = distance_view(problem.world);
-  graph.parameters().set(kWorldNumber, world);
+  graph.parameters().set(
+      kWorldNumber, std::make_shared<const WorldParameter>(std::make_shared<const WorldSnapshot>(
+                        problem.world, 0.0,
+                        WorldFiles{.map = scenario.map, .obstacles = scenario.obstacles})));
   graph.parameters().set(kPlacesNumber, std::make_shared<const PlacesParameter>(
                                             problem.robot, kRobotNumber, problem.world));
   const auto origin = std::make_shared<ScenarioParameter>();

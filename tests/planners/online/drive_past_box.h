@@ -5,8 +5,10 @@
 ///     LocalPlanner planner(graph, {});
 ///     planner.show(seeing({box_ahead()}));
 
-#include <locograph/world/distance_view.h>
+#include <locograph/world/world_snapshot.h>
 
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "planners/planned_drive.h"
@@ -17,10 +19,10 @@ inline Graph drive() { return plan_wheeled_drive(centauro_drive()); }
 
 inline Obstacle box_ahead() { return box("box", {2.0, 0.0, 0.25}, {0.5, 0.5, 0.5}); }
 
-inline WorldDistance seeing(const std::vector<Obstacle>& obstacles) {
-  WorldDistance world;
+inline std::shared_ptr<const WorldSnapshot> seeing(const std::vector<Obstacle>& obstacles) {
+  World world;
   world.obstacles = obstacles;
-  return world;
+  return std::make_shared<const WorldSnapshot>(std::move(world));
 }
 
 }  // namespace locograph

@@ -132,6 +132,9 @@ TEST(Proposals, HearOfANewWorld) {
   LocalPlanner planner(graph, always_asking(script));
   EXPECT_EQ(script.worlds, 0);
   planner.show(seeing({box_ahead()}));
+  EXPECT_EQ(script.worlds, 0) << "a cycle may be running";
+  planner.cycle(0);
+  planner.cycle(1);
   EXPECT_EQ(script.worlds, 1);
 }
 

@@ -14,12 +14,14 @@ struct Surroundings {
   std::vector<Obstacle> obstacles;
   std::shared_ptr<const octomap::OcTree> map;
 
-  WorldDistance seen() const { return distance_view(world_of(obstacles, map)); }
+  std::shared_ptr<const WorldSnapshot> seen() const {
+    return std::make_shared<const WorldSnapshot>(world_of(obstacles, map));
+  }
   CheckReport check(const Graph& graph) const { return check_plan(graph, obstacles, map); }
 };
 
 WalkReport walk_in(Graph& graph, const Surroundings& surroundings, int horizon = 20) {
-  const WorldDistance world = surroundings.seen();
+  const auto world = surroundings.seen();
   WalkOptions options;
   options.planner.horizon = horizon;
   const std::shared_ptr<const Robot> robot = plan_of(graph).robot->robot;
@@ -27,7 +29,7 @@ WalkReport walk_in(Graph& graph, const Surroundings& surroundings, int horizon =
     return check_step(robot, step, world_of(surroundings.obstacles, surroundings.map));
   };
   return walk_plan(
-      graph, [&world](int executed) { return executed == 0 ? &world : nullptr; }, options);
+      graph, [&world](int executed) { return executed == 0 ? world : nullptr; }, options);
 }
 
 Obstacle wall_ahead() { return box("wall", {2.5, 0.0, 0.5}, {0.2, 8.0, 1.0}); }
@@ -88,10 +90,10 @@ TEST(WalkPlan, DrivesAroundABoxGivenAsAMap) { expect_gets_past({{}, map_of(box_a
 
 TEST(WalkPlan, DrivesAroundABoxThatShowsUpOnTheWay) {
   const Surroundings surroundings{{box_ahead()}, nullptr};
-  const WorldDistance world = surroundings.seen();
+  const auto world = surroundings.seen();
   Graph graph = drive();
   const WalkReport report =
-      walk_plan(graph, [&world](int executed) { return executed == 3 ? &world : nullptr; }, {});
+      walk_plan(graph, [&world](int executed) { return executed == 3 ? world : nullptr; }, {});
   EXPECT_TRUE(report.success) << report.reason;
   expect_feasible(surroundings.check(graph));
 }
@@ -141,10 +143,10 @@ TEST(WalkPlan, StopsInFrontOfAWallInAMapAndSaysSo) {
 TEST(WalkPlan, RemovesWhatCannotBeExecutedWhenThereIsNowhereToGo) {
   // Appears around the robot, which cannot get out of the way in one step.
   const Surroundings surroundings{{box("rock", {1.0, 0.0, 0.5}, {1.0, 0.5, 1.0})}, nullptr};
-  const WorldDistance world = surroundings.seen();
+  const auto world = surroundings.seen();
   Graph graph = drive();
   const WalkReport report =
-      walk_plan(graph, [&world](int executed) { return executed == 12 ? &world : nullptr; }, {});
+      walk_plan(graph, [&world](int executed) { return executed == 12 ? world : nullptr; }, {});
   EXPECT_FALSE(report.success);
   EXPECT_EQ(report.reason.find("stopped at configuration 12: "), 0u) << report.reason;
   EXPECT_NE(report.reason.find("(rock)"), std::string::npos) << report.reason;
@@ -208,12 +210,12 @@ TEST(WalkPlan, EndsWithWhatItHasWhenItIsInterrupted) {
 
 TEST(WalkPlan, IsNoSuccessWhereItEndsTooFarFromTheGoal) {
   const Surroundings surroundings{{box_ahead()}, nullptr};
-  const WorldDistance world = surroundings.seen();
+  const auto world = surroundings.seen();
   WalkOptions options;
   options.goal_tolerance_m = 1e-6;
   Graph graph = drive();
   const WalkReport report = walk_plan(
-      graph, [&world](int executed) { return executed == 0 ? &world : nullptr; }, options);
+      graph, [&world](int executed) { return executed == 0 ? world : nullptr; }, options);
   EXPECT_FALSE(report.success);
   EXPECT_EQ(report.configurations, 50);
   EXPECT_NE(report.reason.find("from the goal"), std::string::npos) << report.reason;
