@@ -54,7 +54,7 @@ void run(const LiveJob& job, LiveChannel& channel) {
   PlanFile file = load_plan(job.plan, job.plugins);
   const Judging judging =
       judging_of(file, {.scenario = {}, .map = job.map, .obstacles = job.obstacles});
-  const auto seen = seen_world(file.graph, file.plan, judging.world);
+  const auto seen = seen_world(file.graph, file.plan, judging.world->world());
   send(channel, {{"type", "start"},
                  {"count", file.plan.slots.size()},
                  {"dof", file.plan.robot->robot->tangent_size()},

@@ -127,10 +127,10 @@ ExitCode refine_plan(const CommandOptions& options) {
   check_not_input(options.output, files_of(file));
   const Judging judging = judging_of(file, options.world);
   const Stopwatch watch;
-  const auto seen = seen_world(file.graph, file.plan, judging.world);
+  const auto seen = seen_world(file.graph, file.plan, judging.world->world());
   seen->distance();
   const double field_s = watch.seconds();
-  if (options.world.given()) replace_world(file, options.world, judging.world);
+  if (options.world.given()) replace_world(file, options.world, judging.world->world());
 
   walk_options.verify = step_check(judging);
   const double configurations = static_cast<double>(file.plan.slots.size());

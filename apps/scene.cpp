@@ -8,7 +8,9 @@
 #include <locograph/plugins/configuration/plan_parameters.h>
 
 #include <cmath>
+#include <memory>
 #include <optional>
+#include <utility>
 
 namespace locograph {
 namespace {
@@ -20,15 +22,23 @@ bool has_configurations(const Graph& graph) {
   return false;
 }
 
-/// What the plan is judged by; nothing, with a warning, where it names files that are not there.
-std::optional<Judging> known_judging(const PlanFile& file, const SceneOptions& options) {
+struct KnownWorld {
+  std::optional<Judging> judging;
+  std::shared_ptr<const WorldSnapshot> world;
+};
+
+/// What the plan is judged by, and its world; where it names files that are not there, the world of
+/// the command line alone, with a warning.
+KnownWorld known_world(const PlanFile& file, const SceneOptions& options) {
   try {
-    return judging_of(file, {.scenario = {}, .map = options.map, .obstacles = options.obstacles});
+    const Judging judging =
+        judging_of(file, {.scenario = {}, .map = options.map, .obstacles = options.obstacles});
+    return {judging, judging.world};
   } catch (const Error& error) {
     // What the command line names must be there.
-    load_world(options.map, options.obstacles);
+    auto named = std::make_shared<const WorldSnapshot>(load_world(options.map, options.obstacles));
     print_warning(std::string("neither judged nor shown in its world: ") + error.what());
-    return {};
+    return {std::nullopt, std::move(named)};
   }
 }
 
@@ -54,7 +64,7 @@ Json plan_scene(PlanFile file, const SceneOptions& options) {
                 {"kind", "plan"},
                 {"title", std::filesystem::path(file.name).filename().string()},
                 {"robot", robot_scene(robot)}};
-  const std::optional<Judging> judging = known_judging(file, options);
+  const auto [judging, world] = known_world(file, options);
   add_plan_scene(file, judging ? &*judging : nullptr, options, scene);
   if (!options.tree.empty()) {
     scene["tree"] = tree_scene(options.tree, scenario_name(file), first_stance(file));
@@ -67,8 +77,7 @@ Json plan_scene(PlanFile file, const SceneOptions& options) {
   } else {
     near.extend(Eigen::Vector3d::Zero());
   }
-  add_world_scene(judging ? judging->world : load_world(options.map, options.obstacles), near,
-                  scene);
+  add_world_scene(world->world(), near, scene);
   if (!options.check || !judging) return scene;
   try {
     scene["check"] = check_scene(file, check_plan(file, *judging));

@@ -71,7 +71,7 @@ class TouchedWorld {
  public:
   TouchedWorld(const Robot& robot, const Judging* judging) : robot_(robot) {
     if (judging == nullptr) return;
-    world_ = judging->world;
+    world_ = judging->world->world();
     known_ = judging->options.known;
   }
 

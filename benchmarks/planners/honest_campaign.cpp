@@ -59,7 +59,7 @@ Case case_of(const Graph& graph) {
   const Plan plan = plan_of(graph);
   Judging judging = judging_of(graph, plan, {.data_folder = data_folder()});
   judging.options.threads = 2;
-  return {judging.robot, motion_of(graph, plan), judging.world, judging.options};
+  return {judging.robot, motion_of(graph, plan), judging.world->world(), judging.options};
 }
 
 // Variants ----------------------------------------------------------------------------------------

@@ -263,10 +263,13 @@ class Campaign {
                                 std::make_shared<const WorldSnapshot>(std::move(seen), 0.0,
                                                                       WorldFiles(), view),
                                 own->ground_z_m));
-    judging_.world.obstacles.push_back(box);
+    const auto judged_in = judging_.world;
+    World judged_with = judged_in->world();
+    judged_with.obstacles.push_back(box);
+    judging_.world = std::make_shared<const WorldSnapshot>(std::move(judged_with));
     Json row = optimised(graph);
     graph.replace_parameter(plan_.world_number, own);
-    judging_.world.obstacles.pop_back();
+    judging_.world = judged_in;
     return row;
   }
 

@@ -148,6 +148,7 @@ Judging judging_of(const Graph& graph, const Plan& plan, const JudgingRequest& r
     throw Error("a plan with both a PARAMS_SCENARIO and a PARAMS_CONTACTS", "one of them");
   }
   Judging judging;
+  World world;
   judging.robot = plan.robot->robot;
   judging.incomplete = plan.incomplete;
   judging.moves = plan.moves;
@@ -160,15 +161,15 @@ Judging judging_of(const Graph& graph, const Plan& plan, const JudgingRequest& r
     require_camera_links(*scenario, *judging.robot);
     take_word_of(*scenario, judging.options);
     judging.options.compare_claims = !other;
-    judging.world = world_of(*scenario, request.deadline);
+    world = world_of(*scenario, request.deadline);
     judging.scenario = scenario->source;
   } else {
-    judging.world.surfaces.push_back(ground());
+    world.surfaces.push_back(ground());
     judging.options.surfaces_known = false;
   }
   // A posture that names no scenario is part of no task.
   if (scenario && (origin || plan.slots.size() > 1)) {
-    judging.task = task_of(*scenario, judging.world, plan.moves);
+    judging.task = task_of(*scenario, world, plan.moves);
   }
   if (contacts && !other) {
     Stance stance = load_contacts(contacts->file, *plan.robot->robot);
@@ -176,14 +177,15 @@ Judging judging_of(const Graph& graph, const Plan& plan, const JudgingRequest& r
       judging.options.known.push_back(contact.effector);
     judging.options.places = std::move(stance.contacts);
   }
-  if (!other) require_same_ground(graph, judging.world);
+  if (!other) require_same_ground(graph, world);
   if (!request.map.empty() || !request.obstacles.empty()) {
     World instead = load_world(request.map, request.obstacles);
-    judging.world.map = std::move(instead.map);
-    judging.world.obstacles = std::move(instead.obstacles);
+    world.map = std::move(instead.map);
+    world.obstacles = std::move(instead.obstacles);
   } else if (plan.world && !other) {
-    add_plan_world(*plan.world, scenario ? &*scenario : nullptr, judging.world);
+    add_plan_world(*plan.world, scenario ? &*scenario : nullptr, world);
   }
+  judging.world = std::make_shared<const WorldSnapshot>(std::move(world));
   return judging;
 }
 

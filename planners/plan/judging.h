@@ -25,7 +25,7 @@
 #include <locograph/common/job_control.h>
 #include <locograph/planners/plan/plan.h>
 #include <locograph/robots/robot.h>
-#include <locograph/world/world.h>
+#include <locograph/world/world_snapshot.h>
 
 #include <filesystem>
 #include <memory>
@@ -48,7 +48,7 @@ struct JudgingRequest {
 
 struct Judging {
   std::shared_ptr<const Robot> robot;  ///< the scenario's, whatever the plan says of its own
-  World world;
+  std::shared_ptr<const WorldSnapshot> world;
   CheckOptions options;
   std::string scenario;             ///< by whose word, see Scenario::source; empty: no one's
   std::optional<PlannedTask> task;  ///< of a plan that names a scenario: that of `scenario`

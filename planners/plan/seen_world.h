@@ -1,7 +1,7 @@
 #pragma once
 /// The world around a plan as the local planner is shown it.
 ///
-///     planner.show(seen_world(graph, plan, judging.world));
+///     planner.show(seen_world(graph, plan, judging.world->world()));
 
 #include <locograph/planners/plan/plan.h>
 #include <locograph/world/world_snapshot.h>

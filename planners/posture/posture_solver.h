@@ -36,8 +36,6 @@
 
 namespace locograph {
 
-};
-
 /// With the plane z = 0 as the ground, and nothing else that may be touched.
 World posture_world(World in_the_way = {});
 
