@@ -2,10 +2,10 @@
 /// A world as it is known at one time: immutable, stamped, shared by all that read it. A newer one
 /// replaces it.
 ///
-///     const auto snapshot = std::make_shared<const WorldSnapshot>(load_world("hall.bt",
-///     ""), 12.5); const double away_m = snapshot->distance().distance(point, time_s);     // what
-///     edges see CollisionWorld exact(robot, snapshot->solids());                        // what a
-///     judge sees
+///     const auto snapshot =
+///         std::make_shared<const WorldSnapshot>(load_world("hall.bt", ""), 12.5);
+///     const double away_m = snapshot->distance().distance(point, time_s);  // what edges see
+///     CollisionWorld exact(robot, snapshot->solids());                     // what a judge sees
 ///
 /// Its views are made when they are first asked for, which any thread may do, and are then the same
 /// objects for everybody. Who has no time to wait for one asks for it beforehand.

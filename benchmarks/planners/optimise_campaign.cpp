@@ -258,11 +258,10 @@ class Campaign {
     seen.obstacles.push_back(box);
     DistanceFieldOptions view;
     if (own->ground_z_m) view.ground_z = *own->ground_z_m;
-    graph.replace_parameter(plan_.world_number,
-                            std::make_shared<const WorldParameter>(
-                                std::make_shared<const WorldSnapshot>(std::move(seen), 0.0,
-                                                                      WorldFiles(), view),
-                                own->ground_z_m));
+    graph.replace_parameter(plan_.world_number, std::make_shared<const WorldParameter>(
+                                                    std::make_shared<const WorldSnapshot>(
+                                                        std::move(seen), 0.0, WorldFiles(), view),
+                                                    own->ground_z_m));
     const auto judged_in = judging_.world;
     World judged_with = judged_in->world();
     judged_with.obstacles.push_back(box);

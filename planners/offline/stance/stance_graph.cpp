@@ -33,9 +33,9 @@ std::vector<int> add_task(Graph& graph, const Scenario& scenario, const StancePr
                           const std::vector<Stance>& stances, const TaskPlanKind& kind) {
   graph.parameters().set(kRobotNumber, problem.robot);
   graph.parameters().set(
-      kWorldNumber, std::make_shared<const WorldParameter>(std::make_shared<const WorldSnapshot>(
-                        problem.world, 0.0,
-                        WorldFiles{.map = scenario.map, .obstacles = scenario.obstacles})));
+      kWorldNumber,
+      std::make_shared<const WorldParameter>(std::make_shared<const WorldSnapshot>(
+          problem.world, 0.0, WorldFiles{.map = scenario.map, .obstacles = scenario.obstacles})));
   graph.parameters().set(kPlacesNumber, std::make_shared<const PlacesParameter>(
                                             problem.robot, kRobotNumber, problem.world));
   const auto origin = std::make_shared<ScenarioParameter>();
