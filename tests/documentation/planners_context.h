@@ -16,7 +16,6 @@
 #include <locograph/planners/offline/stance/guided_tree.h>
 #include <locograph/planners/offline/stance/improve_stances.h>
 #include <locograph/planners/offline/stance/judged_path.h>
-#include <locograph/planners/offline/stance/plan_stances.h>
 #include <locograph/planners/offline/stance/stance_graph.h>
 #include <locograph/planners/offline/stance/stance_path.h>
 #include <locograph/planners/offline/stance/stance_planners.h>
@@ -238,12 +237,6 @@ struct Context {
   static void prepare(const GuidedTree::Move&) {}
 };
 }  // namespace offline_stance_guided_tree_h
-namespace offline_stance_plan_stances_h {
-/// A search that gives up.
-struct Context : StepContext {
-  static bool search(StanceSpace&, const Footing&, StancePath&) { return false; }
-};
-}  // namespace offline_stance_plan_stances_h
 namespace offline_stance_rrt_planner_h {
 using Context = StepContext;
 }
@@ -268,6 +261,18 @@ struct Context {
   const Scenario scenario = one_step();
 };
 }  // namespace offline_stance_stance_planner_h
+namespace offline_stance_stance_plan_h {
+struct Context : StepContext {
+  const Judge judge{problem.robot->robot, problem.world};
+};
+}  // namespace offline_stance_stance_plan_h
+namespace offline_stance_stance_search_h {
+/// The first way will do.
+struct Context : StepContext {
+  const std::unique_ptr<const StancePlanner> planner = make_stance_planner("guided");
+  static std::size_t change_without_motion(StanceSpace&, const StancePath&) { return 0; }
+};
+}  // namespace offline_stance_stance_search_h
 namespace offline_stance_stance_tree_h {
 struct Context : SearchContext {
   StancePlan plan;

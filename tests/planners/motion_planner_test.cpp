@@ -291,73 +291,6 @@ TEST(MotionPlannerTest, RefusesASegmentPlannerThatNobodyKnows) {
   }
 }
 
-/// What plan_motion() does with a segment that has no path.
-TEST(AcceptedStancesTest, NoLaterWayHasAChangeThatIsRefused) {
-  struct Change {
-    Stance from, to;
-  };
-  const auto same = [](const Stance& a, const Stance& b) {
-    return std::ranges::is_permutation(
-        a.contacts, b.contacts, [](const Contact& x, const Contact& y) {
-          return x.name() == y.name() && (x.position - y.position).norm() < 1e-9;
-        });
-  };
-  std::vector<Change> refused;
-  int asked = 0;
-  StancePlannerOptions options;
-  options.accept = [&](const std::vector<Stance>& stances, auto& configurations,
-                       std::size_t first) -> std::size_t {
-    ++asked;
-    EXPECT_EQ(stances.size(), configurations.size());
-    EXPECT_EQ(first, 0U);
-    for (std::size_t i = 1; i < stances.size(); ++i) {
-      for (const Change& change : refused) {
-        EXPECT_FALSE(same(stances[i - 1], change.from) && same(stances[i], change.to)) << i;
-      }
-    }
-    if (asked > 2) return 0;
-    const std::size_t number = asked == 1 ? 1 : stances.size() - 1;
-    refused.push_back({stances[number - 1], stances[number]});
-    return number;
-  };
-  const StancePlan plan = make_stance_planner("guided")->plan(standing_up(), options);
-  EXPECT_EQ(asked, 3);
-  ASSERT_TRUE(plan.success) << plan.reason;
-  for (std::size_t i = 1; i < plan.stances.size(); ++i) {
-    for (const Change& change : refused) {
-      EXPECT_FALSE(same(plan.stances[i - 1], change.from) && same(plan.stances[i], change.to));
-    }
-  }
-}
-
-TEST(AcceptedStancesTest, AllThatIsRefusedLeavesNoPlan) {
-  int asked = 0;
-  StancePlannerOptions options;
-  options.max_transitions = 200;
-  options.accept = [&](const auto& stances, auto&, std::size_t) {
-    ++asked;
-    return stances.size() - 1;
-  };
-  const StancePlan plan = make_stance_planner("guided")->plan(standing_up(), options);
-  EXPECT_GT(asked, 0);
-  EXPECT_FALSE(plan.success);
-  EXPECT_FALSE(plan.reason.empty());
-}
-
-TEST(AcceptedStancesTest, OtherConfigurationsTakeTheirPlace) {
-  Eigen::VectorXd other;
-  StancePlannerOptions options;
-  options.accept = [&](const auto&, auto& configurations, std::size_t) -> std::size_t {
-    other = configurations.back();
-    other.tail<1>()[0] += 1e-4;
-    configurations.back() = other;
-    return 0;
-  };
-  const StancePlan plan = make_stance_planner("guided")->plan(standing_up(), options);
-  ASSERT_TRUE(plan.success) << plan.reason;
-  EXPECT_EQ(plan.configurations.back(), other);
-}
-
 /// The right arm of COMAN+ is where nothing asks it to be.
 TEST(NearbyPosturesTest, FreeArmsStayWhereTheyAre) {
   const StanceProblem task = test::stance_task("slanted_wall");
@@ -397,8 +330,7 @@ TEST(PlacesForMotionsTest, NoneIsInAGapThatABallCannotComeOutOf) {
   const int foot = static_cast<int>(found - task.end_effectors.begin());
   const auto places = [&](bool for_motions) {
     StancePlannerOptions options;
-    if (for_motions)
-      options.accept = [](const auto&, auto&, std::size_t) { return std::size_t{0}; };
+    options.approachable_only = for_motions;
     StanceSpace space(task, options);
     int sides = 0, tops = 0;
     for (const int number : space.places_near(foot, {0.65, -0.15, 0.0}, 0.12)) {

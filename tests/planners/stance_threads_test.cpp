@@ -121,7 +121,11 @@ TEST(StanceThreads, EndWhenTheSearchIsStoppedOrOutOfTime) {
   EXPECT_LE(stopped.transitions, 6) << "putting down what was lifted";
 
   options.stop = nullptr;
-  options.observe = [&](const TransitionAttempt&) { options.deadline = Deadline::after(0.0); };
+  options.deadline = Deadline::after(0.05);
+  const Deadline deadline = options.deadline;
+  options.observe = [&](const TransitionAttempt&) {
+    while (!deadline.passed()) std::this_thread::yield();
+  };
   const StancePlan late = make_stance_planner("guided")->plan(task, options);
   EXPECT_FALSE(late.success);
   EXPECT_NE(late.reason.find("time"), std::string::npos) << late.reason;

@@ -13,7 +13,7 @@
 #include <locograph/check/motion.h>
 #include <locograph/planners/offline/motion/motion_options.h>
 #include <locograph/planners/offline/motion/segment_planner.h>
-#include <locograph/planners/offline/stance/stance_planner.h>
+#include <locograph/planners/offline/stance/stance_plan.h>
 #include <locograph/planners/offline/timing/path_timing.h>
 
 #include <memory>

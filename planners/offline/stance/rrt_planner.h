@@ -21,7 +21,8 @@ namespace locograph {
 class RrtPlanner final : public StancePlanner {
  public:
   const std::string& name() const override;
-  StancePlan plan(const StanceProblem& problem, const StancePlannerOptions& options) const override;
+  std::unique_ptr<StanceSearch> begin(const StanceProblem& problem,
+                                      const StancePlannerOptions& options) const override;
 };
 
 }  // namespace locograph

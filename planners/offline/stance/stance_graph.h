@@ -9,7 +9,7 @@
 /// of the smaller of its two stances; and the edges that say so (plan/plan_edges.h).
 
 #include <locograph/core/graph.h>
-#include <locograph/planners/offline/stance/stance_planner.h>
+#include <locograph/planners/offline/stance/stance_plan.h>
 #include <locograph/planners/scenario/scenario.h>
 
 namespace locograph {

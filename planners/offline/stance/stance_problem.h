@@ -5,7 +5,7 @@
 ///     const StanceProblem problem = stance_problem(scenario).problem;
 ///     const StanceProblem similar = stance_problem(scenario, {.most_m = 0.05, .seed = 3}).problem;
 
-#include <locograph/planners/offline/stance/stance_planner.h>
+#include <locograph/planners/offline/stance/stance_plan.h>
 #include <locograph/planners/scenario/scenario.h>
 
 namespace locograph {

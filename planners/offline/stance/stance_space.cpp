@@ -214,7 +214,8 @@ std::vector<int> StanceSpace::places_near(int effector, const Eigen::Vector3d& p
     places_on(effector, surface, point, reach_m, places);
   }
   for (const Bar& bar : problem_.world.bars) places_on(effector, bar, point, reach_m, places);
-  if (options_.accept) std::erase_if(places, [this](int number) { return !has_room(number); });
+  if (options_.approachable_only)
+    std::erase_if(places, [this](int number) { return !has_room(number); });
   return places;
 }
 
@@ -332,15 +333,26 @@ TransitionTask StanceSpace::task_of(const Footing& from, const Footing& to,
   return task;
 }
 
-StanceSpace::Attempt StanceSpace::change(const TransitionTask& task) {
-  const Stopwatch watch;
+StanceSpace::Attempt StanceSpace::solve(const TransitionTask& task) {
   std::optional<TransitionResult> ahead;
   if (ahead_) ahead = ahead_->take(task);
-  Attempt attempt = attempt_of(ahead ? std::move(*ahead) : solver_.solve(task));
+  return attempt_of(ahead ? std::move(*ahead) : solver_.solve(task));
+}
+
+StanceSpace::Attempt StanceSpace::change(const TransitionTask& task) {
+  const Stopwatch watch;
+  Attempt attempt = solve(task);
   ++transitions;
   if (attempt.found) ++transitions_found;
   transitions_s += watch.seconds();
   return attempt;
+}
+
+void StanceSpace::tell(const Footing& from, const Footing& to, const Eigen::VectorXd& start,
+                       int restarts, bool found, double seconds) const {
+  if (options_.observe) {
+    options_.observe({stance(from), stance(to), start, restarts, found, seconds});
+  }
 }
 
 StanceSpace::Attempt StanceSpace::stand(const Stance& stance, const Eigen::VectorXd& start,
@@ -358,9 +370,7 @@ StanceSpace::Attempt StanceSpace::try_transition(const Footing& from, const Foot
   if (refused_.contains(joined(from, to))) return {};
   const Stopwatch watch;
   Attempt attempt = change(task_of(from, to, start, options_.seed, {.restarts = restarts}));
-  if (options_.observe) {
-    options_.observe({stance(from), stance(to), start, restarts, attempt.found, watch.seconds()});
-  }
+  tell(from, to, start, restarts, attempt.found, watch.seconds());
   if (!attempt.found) {
     count_failure(changed_effector(from, to), transition_failure_name(attempt.failure));
   }
@@ -378,7 +388,15 @@ StanceSpace::Attempt StanceSpace::try_nearby(const Footing& from, const Footing&
                                              const Eigen::VectorXd& start) {
   TransitionTask task = task_of(from, to, start, options_.seed, {});
   task.preferred = start;
-  return change(task);
+  return solve(task);
+}
+
+StanceSpace::Attempt StanceSpace::try_again(const Footing& from, const Footing& to,
+                                            const Eigen::VectorXd& start) {
+  const Stopwatch watch;
+  Attempt attempt = solve(task_of(from, to, start, options_.seed, {}));
+  tell(from, to, start, 0, attempt.found, watch.seconds());
+  return attempt;
 }
 
 void StanceSpace::expect(const std::vector<std::vector<Expected>>& chains) {
