@@ -171,7 +171,7 @@ TEST(InterpolationTest, EndsWithTheTimeAllowed) {
 
 /// Go2 on three feet, the front left one to go 0.08 m ahead.
 TEST(InterpolationTest, SaysAtOnceThatABallHasNoWay) {
-  StanceProblem task = test::stance_task("stepping_stones");
+  Task task = test::stance_task("stepping_stones");
   Segment segment;
   segment.held = test::without_contact(task.start, "front_left_foot").contacts;
   const Contact before = test::contact_of(task.start, "front_left_foot");

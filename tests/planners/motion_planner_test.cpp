@@ -22,8 +22,8 @@
 namespace locograph::motion_planner_test {
 namespace {
 
-const StanceProblem& standing_up() {
-  static const StanceProblem task = test::stance_task("standing_up");
+const Task& standing_up() {
+  static const Task task = test::stance_task("standing_up");
   return task;
 }
 
@@ -293,7 +293,7 @@ TEST(MotionPlannerTest, RefusesASegmentPlannerThatNobodyKnows) {
 
 /// The right arm of COMAN+ is where nothing asks it to be.
 TEST(NearbyPosturesTest, FreeArmsStayWhereTheyAre) {
-  const StanceProblem task = test::stance_task("slanted_wall");
+  const Task task = test::stance_task("slanted_wall");
   const StancePlannerOptions options;
   StanceSpace space(task, options);
   const Footing both = space.footing(task.start);
@@ -324,10 +324,11 @@ TEST(NearbyPosturesTest, FreeArmsStayWhereTheyAre) {
 
 /// Stones of Go2 whose sides are 6 cm apart.
 TEST(PlacesForMotionsTest, NoneIsInAGapThatABallCannotComeOutOf) {
-  const StanceProblem task = test::stance_task("stepping_stones");
-  const auto found = std::ranges::find(task.end_effectors, "front_right_foot", &EndEffector::name);
-  ASSERT_NE(found, task.end_effectors.end());
-  const int foot = static_cast<int>(found - task.end_effectors.begin());
+  const Task task = test::stance_task("stepping_stones");
+  const auto found =
+      std::ranges::find(task.end_effectors(), "front_right_foot", &EndEffector::name);
+  ASSERT_NE(found, task.end_effectors().end());
+  const int foot = static_cast<int>(found - task.end_effectors().begin());
   const auto places = [&](bool for_motions) {
     StancePlannerOptions options;
     options.approachable_only = for_motions;
@@ -350,7 +351,7 @@ TEST(PlacesForMotionsTest, NoneIsInAGapThatABallCannotComeOutOf) {
 /// A path is kept when it is timed again.
 TEST(SegmentMoverTest, TheSamePathAtAnotherPace) {
   const auto step = test::step_forward_problem();
-  StanceProblem task = test::stance_task("slanted_wall");
+  Task task = test::stance_task("slanted_wall");
   task.world = step->world;
   const MotionOptions options;
   SegmentMover mover(task, options);

@@ -11,13 +11,12 @@
 namespace locograph::stance_search_test {
 namespace {
 
-const StanceProblem& standing_up() {
-  static const StanceProblem task = test::stance_task("standing_up");
+const Task& standing_up() {
+  static const Task task = test::stance_task("standing_up");
   return task;
 }
 
-std::unique_ptr<StanceSearch> begun(const StanceProblem& task,
-                                    const StancePlannerOptions& options = {}) {
+std::unique_ptr<StanceSearch> begun(const Task& task, const StancePlannerOptions& options = {}) {
   return make_stance_planner("guided")->begin(task, options);
 }
 
@@ -82,7 +81,7 @@ TEST(StanceSearch, OtherConfigurationsTakeThePlaceOfThoseOfACandidate) {
 }
 
 TEST(StanceSearch, CandidatesLeadToOneGoalAfterTheOther) {
-  StanceProblem task = standing_up();
+  Task task = standing_up();
   task.goals = {task.start, task.start};
   const auto search = begun(task);
   for (int goal = 0; goal < 2; ++goal) {

@@ -21,12 +21,12 @@ namespace {
 using test::contact_of, test::stance_task, test::without_contact;
 
 /// Standing up: COMAN+ on all fours under the arch of quadrupedal_walking.
-const StanceProblem& on_all_fours() {
-  static const StanceProblem task = stance_task("standing_up");
+const Task& on_all_fours() {
+  static const Task task = stance_task("standing_up");
   return task;
 }
 
-BalanceRegion region_of(const StanceProblem& task, const Stance& stance) {
+BalanceRegion region_of(const Task& task, const Stance& stance) {
   std::vector<BearingContact> bearing;
   for (const Contact& contact : stance.contacts) bearing.push_back({contact});
   return balance_region(task.robot->robot->total_mass(), bearing, 0.1);
@@ -50,7 +50,7 @@ Eigen::VectorXd at_random(const Robot& robot, const Eigen::VectorXd& q, double b
 }
 
 TransitionProblem problem_of(const Stance& closed, const BalanceRegion* region,
-                             const Eigen::VectorXd& start, const StanceProblem& task) {
+                             const Eigen::VectorXd& start, const Task& task) {
   TransitionProblem problem;
   problem.closed = closed.contacts;
   problem.balance = region;
@@ -82,7 +82,7 @@ class TransitionRowsTest : public testing::Test {
     return values;
   }
 
-  const StanceProblem task;
+  const Task task;
   const Stance feet;
   const BalanceRegion region;
   TransitionRows rows;
@@ -191,7 +191,7 @@ class TransitionSolverTest : public testing::Test {
   }
   TransitionProblem problem() const { return problem(task.start_configuration); }
 
-  const StanceProblem task;
+  const Task task;
   const Stance larger, smaller;
   const BalanceRegion region;
 };

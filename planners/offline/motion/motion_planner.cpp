@@ -39,13 +39,13 @@ class MotionSearch {
  public:
   MotionSearch(StanceSpace& space, const StancePlannerOptions& stances,
                const MotionOptions& options, MotionPlan& plan)
-      : problem_(space.problem()),
+      : task_(space.task()),
         stances_(stances),
         plan_(plan),
         space_(space),
-        mover_(problem_, options),
+        mover_(task_, options),
         all_planners_(!options.segment_planners.empty()),
-        judge_(problem_.robot->robot, problem_.world) {}
+        judge_(task_.robot->robot, task_.world) {}
 
   /// Moves along a way through stances. 0: it does, maybe between other configurations than the
   /// way came with, from change number `first` + 1 on; else the number of a change that will not
@@ -116,7 +116,7 @@ class MotionSearch {
       motion.stances.push_back(space_.stance(path.footings[j]));
     }
     motion.configurations.push_back(path.configurations[done]);
-    motion.slopes.push_back(Eigen::VectorXd::Zero(problem_.robot->robot->tangent_size()));
+    motion.slopes.push_back(Eigen::VectorXd::Zero(task_.robot->robot->tangent_size()));
     motion.time_s.push_back(time_s);
     motion.stance_from.push_back(static_cast<int>(done));
   }
@@ -213,11 +213,11 @@ class MotionSearch {
   template <class F>
   void on_segment(Solved& solved, const F& f) {
     const std::vector<BearingContact> bearing = space_.bearing_contacts(solved.held);
-    const double mass_kg = problem_.robot->robot->total_mass();
+    const double mass_kg = task_.robot->robot->total_mass();
     const BalanceRegion region = balance_region(mass_kg, bearing, kRegionMargin);
     std::optional<TorqueProgramme> torques;
-    if (problem_.check.enforce_torque_limits) {
-      torques.emplace(*problem_.robot->robot, bearing, problem_.check.effort_scale, kRegionMargin);
+    if (task_.check.enforce_torque_limits) {
+      torques.emplace(*task_.robot->robot, bearing, task_.check.effort_scale, kRegionMargin);
     }
     Segment segment;
     segment.held = space_.stance(solved.held).contacts;
@@ -244,7 +244,7 @@ class MotionSearch {
 
   CheckReport judged(const Motion& motion, std::vector<StanceWrenches>* wrenches = nullptr) {
     const Stopwatch watch;
-    CheckOptions asked = problem_.check;
+    CheckOptions asked = task_.check;
     asked.threads = stances_.threads;
     if (wrenches != nullptr) {
       asked.on_balance = [wrenches](int vertex, const StanceWrenches& found) {
@@ -326,7 +326,7 @@ class MotionSearch {
     }
   }
 
-  const StanceProblem& problem_;
+  const Task& task_;
   const StancePlannerOptions& stances_;
   MotionPlan& plan_;
   StanceSpace& space_;
@@ -340,14 +340,14 @@ class MotionSearch {
 
 }  // namespace
 
-MotionPlan plan_motion(const StanceProblem& problem, const StancePlannerOptions& stances,
+MotionPlan plan_motion(const Task& task, const StancePlannerOptions& stances,
                        const MotionOptions& options) {
   const Stopwatch watch;
   MotionPlan plan;
   StancePlannerOptions asked = stances;
   asked.approachable_only = true;
   const auto planner = make_stance_planner(options.stance_planner);
-  const std::unique_ptr<StanceSearch> search = planner->begin(problem, asked);
+  const std::unique_ptr<StanceSearch> search = planner->begin(task, asked);
   MotionSearch motions(search->space(), asked, options, plan);
   while (search->next()) {
     StancePath way = search->candidate();

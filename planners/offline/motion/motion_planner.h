@@ -1,9 +1,9 @@
 #pragma once
 /// A whole motion for a contact task: stances, a path in each, and when.
 ///
-///     const StanceProblem problem = stance_problem(scenario).problem;
-///     const MotionPlan plan = plan_motion(problem, {.seed = 7});
-///     if (plan.success) write_graph(motion_graph(scenario, problem, plan), "plan.g2o");
+///     const Task task = started_task(scenario).task;
+///     const MotionPlan plan = plan_motion(task, {.seed = 7});
+///     if (plan.success) write_graph(motion_graph(task, plan), "plan.g2o");
 ///
 /// Each stance that the stance planner finds is a segment: a path between the configurations in
 /// which it begins and ends (segment_planner.h), with the fastest timing from rest to rest
@@ -15,6 +15,7 @@
 #include <locograph/check/motion.h>
 #include <locograph/planners/offline/motion/motion_options.h>
 #include <locograph/planners/offline/stance/stance_plan.h>
+#include <locograph/planners/task/task.h>
 
 #include <optional>
 #include <string>
@@ -50,7 +51,7 @@ struct MotionPlan {
 
 /// Contacts are put only where they can be approached, whatever the options say
 /// (StancePlannerOptions::approachable_only).
-MotionPlan plan_motion(const StanceProblem& problem, const StancePlannerOptions& stances,
+MotionPlan plan_motion(const Task& task, const StancePlannerOptions& stances,
                        const MotionOptions& options = {});
 
 }  // namespace locograph

@@ -36,8 +36,8 @@ constexpr double kRoughShare = 0.3;
 
 class GuidedSearch final : public StanceSearch {
  public:
-  GuidedSearch(const StanceProblem& problem, const StancePlannerOptions& options)
-      : StanceSearch(problem, options),
+  GuidedSearch(const Task& task, const StancePlannerOptions& options)
+      : StanceSearch(task, options),
         kept_{{space_, options, result_}, {space_, options, result_}},
         random_(options.seed),
         experience_(space_) {}
@@ -548,9 +548,9 @@ const std::string& GuidedPlanner::name() const {
   return own;
 }
 
-std::unique_ptr<StanceSearch> GuidedPlanner::begin(const StanceProblem& problem,
+std::unique_ptr<StanceSearch> GuidedPlanner::begin(const Task& task,
                                                    const StancePlannerOptions& options) const {
-  return std::make_unique<GuidedSearch>(problem, options);
+  return std::make_unique<GuidedSearch>(task, options);
 }
 
 }  // namespace locograph

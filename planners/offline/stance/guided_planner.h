@@ -15,7 +15,7 @@ namespace locograph {
 class GuidedPlanner final : public StancePlanner {
  public:
   const std::string& name() const override;
-  std::unique_ptr<StanceSearch> begin(const StanceProblem& problem,
+  std::unique_ptr<StanceSearch> begin(const Task& task,
                                       const StancePlannerOptions& options) const override;
 };
 

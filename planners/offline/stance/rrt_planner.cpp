@@ -60,8 +60,8 @@ Eigen::AlignedBox3d box_of_search(const World& world, const Eigen::Vector3d& cen
 
 class RrtSearch final : public StanceSearch {
  public:
-  RrtSearch(const StanceProblem& problem, const StancePlannerOptions& options)
-      : StanceSearch(problem, options), tree_(space_, options, result_), random_(options.seed) {}
+  RrtSearch(const Task& task, const StancePlannerOptions& options)
+      : StanceSearch(task, options), tree_(space_, options, result_), random_(options.seed) {}
 
  private:
   bool reach(const Footing& goal, StancePath& path) override {
@@ -97,7 +97,7 @@ class RrtSearch final : public StanceSearch {
     for (const Eigen::Vector3d& position : positions) {
       centre += position / static_cast<double>(positions.size());
     }
-    box_ = box_of_search(space_.problem().world, centre);
+    box_ = box_of_search(space_.task().world, centre);
   }
 
   Vertex& vertex(int number) { return vertices_[static_cast<std::size_t>(number)]; }
@@ -249,9 +249,9 @@ const std::string& RrtPlanner::name() const {
   return own;
 }
 
-std::unique_ptr<StanceSearch> RrtPlanner::begin(const StanceProblem& problem,
+std::unique_ptr<StanceSearch> RrtPlanner::begin(const Task& task,
                                                 const StancePlannerOptions& options) const {
-  return std::make_unique<RrtSearch>(problem, options);
+  return std::make_unique<RrtSearch>(task, options);
 }
 
 }  // namespace locograph

@@ -3,8 +3,8 @@
 /// less from each to the next, and a configuration for each change that is feasible for both.
 ///
 ///     const StancePlannerOptions options{.seed = 7, .max_transitions = 3000};
-///     const StancePlan plan = make_stance_planner("guided")->plan(problem, options);
-///     const CheckReport report = judge.check(stances_motion(plan), problem.check);
+///     const StancePlan plan = make_stance_planner("guided")->plan(task, options);
+///     const CheckReport report = judge.check(stances_motion(plan), task.check);
 ///
 /// Success means that the judge (check/judge.h) takes the plan; wrenches are those of its
 /// certificates.
@@ -12,30 +12,15 @@
 #include <locograph/check/check_report.h>
 #include <locograph/check/motion.h>
 #include <locograph/common/deadline.h>
-#include <locograph/plugins/configuration/plan_parameters.h>
-#include <locograph/plugins/configuration/robot_parameters.h>
-#include <locograph/world/world.h>
 
 #include <Eigen/Core>
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
 namespace locograph {
-
-struct StanceProblem {
-  std::shared_ptr<const RobotParameter> robot;
-  World world;
-  std::vector<EndEffector> end_effectors;
-  Stance start;
-  Eigen::VectorXd start_configuration;  ///< feasible for the start
-  std::vector<Stance> goals;            ///< reached one after the other
-  CheckOptions check;                   ///< what the judge is asked
-  ContactMoves moves;                   ///< how start and goals differ from the scenario's
-};
 
 /// One change of stance that a planner asked for, and what came of it.
 struct TransitionAttempt {

@@ -2,9 +2,8 @@
 
 namespace locograph {
 
-StancePlan StancePlanner::plan(const StanceProblem& problem,
-                               const StancePlannerOptions& options) const {
-  const std::unique_ptr<StanceSearch> search = begin(problem, options);
+StancePlan StancePlanner::plan(const Task& task, const StancePlannerOptions& options) const {
+  const std::unique_ptr<StanceSearch> search = begin(task, options);
   while (search->next()) search->take();
   return search->result();
 }

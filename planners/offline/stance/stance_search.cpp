@@ -7,28 +7,27 @@
 namespace locograph {
 namespace {
 
-const StanceProblem& require_sound(const StanceProblem& problem,
-                                   const StancePlannerOptions& options) {
+const Task& require_sound(const Task& task, const StancePlannerOptions& options) {
   options.validate();
-  const Robot& robot = *problem.robot->robot;
-  require_sound_stance(robot, problem.start);
-  for (const Stance& goal : problem.goals) require_sound_stance(robot, goal);
-  return problem;
+  const Robot& robot = *task.robot->robot;
+  require_sound_stance(robot, task.start);
+  for (const Stance& goal : task.goals) require_sound_stance(robot, goal);
+  return task;
 }
 
 }  // namespace
 
-StanceSearch::StanceSearch(const StanceProblem& problem, const StancePlannerOptions& options)
-    : problem_(require_sound(problem, options)),
+StanceSearch::StanceSearch(const Task& task, const StancePlannerOptions& options)
+    : task_(require_sound(task, options)),
       options_(options),
-      space_(problem_, options_),
-      judge_(problem.robot->robot, problem.world) {
-  taken_.append(space_.footing(problem.start), problem.start_configuration);
-  if (!problem.goals.empty()) begin_goal();
+      space_(task_, options_),
+      judge_(task.robot->robot, task.world) {
+  taken_.append(space_.footing(task.start), task.start_configuration);
+  if (!task.goals.empty()) begin_goal();
 }
 
 void StanceSearch::begin_goal() {
-  next_goal_ = space_.footing(problem_.goals[static_cast<std::size_t>(result_.goals_reached)]);
+  next_goal_ = space_.footing(task_.goals[static_cast<std::size_t>(result_.goals_reached)]);
   first_node_ = result_.tree.size();
   result_.best_contacts = 0;
   result_.best = {};
@@ -39,7 +38,7 @@ void StanceSearch::begin_goal() {
 
 bool StanceSearch::next() {
   const std::size_t first = taken_.changes();
-  while (!over_ && static_cast<std::size_t>(result_.goals_reached) < problem_.goals.size()) {
+  while (!over_ && static_cast<std::size_t>(result_.goals_reached) < task_.goals.size()) {
     candidate_.footings.resize(first + 1);
     candidate_.configurations.resize(first + 1);
     over_ = !reach(next_goal_, candidate_);
@@ -63,7 +62,7 @@ bool StanceSearch::next() {
 void StanceSearch::take() {
   taken_ = std::move(candidate_);
   ++result_.goals_reached;
-  if (static_cast<std::size_t>(result_.goals_reached) < problem_.goals.size()) begin_goal();
+  if (static_cast<std::size_t>(result_.goals_reached) < task_.goals.size()) begin_goal();
 }
 
 void StanceSearch::refuse(std::size_t change, const std::string& reason) {
@@ -93,7 +92,7 @@ void StanceSearch::note_best(const Footing& footing, const Footing& goal) {
 
 StancePlan StanceSearch::result() {
   StancePlan plan = result_;
-  plan.success = static_cast<std::size_t>(plan.goals_reached) == problem_.goals.size();
+  plan.success = static_cast<std::size_t>(plan.goals_reached) == task_.goals.size();
   plan.failures = space_.failures();
   plan.transitions = space_.transitions;
   plan.transitions_found = space_.transitions_found;
@@ -121,9 +120,9 @@ std::string StanceSearch::why_none_stands(const Stance& goal) {
 }
 
 std::string StanceSearch::why_not_reached(const StancePlan& plan) {
-  const std::size_t goals = problem_.goals.size();
+  const std::size_t goals = task_.goals.size();
   const std::string none_stands =
-      why_none_stands(problem_.goals[static_cast<std::size_t>(plan.goals_reached)]);
+      why_none_stands(task_.goals[static_cast<std::size_t>(plan.goals_reached)]);
   std::string reason = goals > 1 ? "goal " + std::to_string(plan.goals_reached + 1) + " of " +
                                        std::to_string(goals) + " is not reached"
                                  : "the goal is not reached";

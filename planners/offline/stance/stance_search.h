@@ -3,7 +3,7 @@
 /// the next goal, is shortened, and the judge takes it. Whoever asks takes it, or says which of its
 /// changes will not do.
 ///
-///     const std::unique_ptr<StanceSearch> search = planner->begin(problem, options);
+///     const std::unique_ptr<StanceSearch> search = planner->begin(task, options);
 ///     while (search->next()) {
 ///       const std::size_t bad = change_without_motion(search->space(), search->candidate());
 ///       if (bad == 0) {
@@ -15,11 +15,12 @@
 ///     const StancePlan plan = search->result();
 ///
 /// Between two candidates the search stands still, but for transitions that other threads work out
-/// ahead. The sequence of candidates depends on the problem, the options and the answers alone.
+/// ahead. The sequence of candidates depends on the task, the options and the answers alone.
 
 #include <locograph/check/judge.h>
 #include <locograph/common/deadline.h>
 #include <locograph/planners/offline/stance/stance_path.h>
+#include <locograph/planners/task/task.h>
 
 #include <string>
 #include <vector>
@@ -52,7 +53,7 @@ class StanceSearch {
   StancePlan result();
 
  protected:
-  StanceSearch(const StanceProblem& problem, const StancePlannerOptions& options);
+  StanceSearch(const Task& task, const StancePlannerOptions& options);
   /// Keeps in the result the footing that has most of the goal's contacts: to be called for each
   /// one that the search comes to.
   void note_best(const Footing& footing, const Footing& goal);
@@ -66,7 +67,7 @@ class StanceSearch {
   /// Why no posture was found in the goal's stance; empty: one was.
   std::string why_none_stands(const Stance& goal);
 
-  const StanceProblem& problem_;
+  const Task& task_;
   const StancePlannerOptions options_;
   const Stopwatch watch_;
 

@@ -2,8 +2,8 @@
 /// What stance planners search in: places that end effectors may touch, stances made of them, and
 /// the transitions between these.
 ///
-///     StanceSpace space(problem, options);
-///     const Footing start = space.footing(problem.start);
+///     StanceSpace space(task, options);
+///     const Footing start = space.footing(task.start);
 ///     const Footing lifted = without(start, 0);
 ///     const StanceSpace::Attempt attempt = space.try_transition(start, lifted, q, 0);
 ///
@@ -12,6 +12,7 @@
 #include <locograph/planners/offline/stance/footing.h>
 #include <locograph/planners/offline/stance/stance_plan.h>
 #include <locograph/planners/offline/stance/transition_ahead.h>
+#include <locograph/planners/task/task.h>
 #include <locograph/world/box_tree.h>
 
 #include <algorithm>
@@ -42,10 +43,10 @@ class StanceSpace {
     int restarts = 0;
   };
 
-  StanceSpace(const StanceProblem& problem, const StancePlannerOptions& options);
+  StanceSpace(const Task& task, const StancePlannerOptions& options);
 
-  const StanceProblem& problem() const { return problem_; }
-  int effectors() const { return static_cast<int>(problem_.end_effectors.size()); }
+  const Task& task() const { return task_; }
+  int effectors() const { return static_cast<int>(task_.end_effectors().size()); }
   const Place& place(int number) const { return places_[static_cast<std::size_t>(number)]; }
   double reach_m(int effector) const { return reach_m_[static_cast<std::size_t>(effector)]; }
 
@@ -128,7 +129,7 @@ class StanceSpace {
   /// What is expected further ahead is hardly ever asked for.
   static constexpr int kMostThreads = 8;
 
-  const StanceProblem& problem_;
+  const Task& task_;
   const StancePlannerOptions& options_;
   BalanceRegions regions_;
   TaskSolver solver_;
