@@ -30,7 +30,7 @@ struct CommandOptions {
 
 /// "scenario: standing_up; it begins at the start, and reaches 1 of 1 goal", a line
 std::string task_text(const Judging& judging, const CheckReport& report) {
-  std::string text = "scenario: " + (judging.scenario.empty() ? "none" : judging.scenario);
+  std::string text = "scenario: " + (judging.task ? judging.task->scenario : "none");
   if (!report.ends) return text + '\n';
   const PlanEnds& ends = *report.ends;
   text += ends.starts() ? "; it begins at the start"
@@ -59,7 +59,7 @@ ExitCode check(const CommandOptions& options) {
   };
   if (options.json) {
     Json json = check_json(report, ids);
-    json["scenario"] = judging.scenario.empty() ? Json(nullptr) : Json(judging.scenario);
+    json["scenario"] = judging.task ? Json(judging.task->scenario) : Json(nullptr);
     if (judging.moves.most_m > 0.0) {
       json["moved_contacts"] = {{"up_to_m", judging.moves.most_m},
                                 {"seed", judging.moves.seed},

@@ -13,7 +13,7 @@
 #include <locograph/planners/offline/stance/improve_stances.h>
 #include <locograph/planners/offline/stance/stance_graph.h>
 #include <locograph/planners/offline/stance/stance_planners.h>
-#include <locograph/planners/offline/stance/stance_problem.h>
+#include <locograph/planners/offline/stance/started_task.h>
 
 #include <algorithm>
 #include <optional>
@@ -28,13 +28,13 @@ struct ContactTaskPlan {
   /// Without a motion where only stances are asked for; success and reason are those of the whole.
   MotionPlan motion;
   std::optional<Graph> graph;  ///< nothing: the time was used up before the search began
-  StartedProblem started;
+  StartedTask started;
   int improved = 0;
   double total_s = 0.0;
 
   const StancePlan& stances() const { return motion.stances; }
   std::vector<std::string> links_without_collision() const {
-    const auto& robot = started.problem.robot;  // null when the time was used up before
+    const auto& robot = started.task.robot;  // null when the time was used up before
     return robot ? robot->robot->links_without_collision() : std::vector<std::string>();
   }
 };
@@ -49,37 +49,37 @@ StancePlannerOptions stance_options(const PlanOptions& options) {
   return asked;
 }
 
-StartedProblem started_problem(const Scenario& scenario, const PlanOptions& options,
-                               const Deadline& deadline) {
-  StartedProblem started =
-      stance_problem(scenario, {.most_m = options.move_contacts_m, .seed = options.seed}, deadline);
+StartedTask asked_task(const Scenario& scenario, const PlanOptions& options,
+                       const Deadline& deadline) {
+  StartedTask started =
+      started_task(scenario, {.most_m = options.move_contacts_m, .seed = options.seed}, deadline);
   if (!options.torques.empty()) {
-    started.problem.check.enforce_torque_limits = options.torques == "enforce";
+    started.task.check.enforce_torque_limits = options.torques == "enforce";
   }
   return started;
 }
 
-void plan_stances_only(const Scenario& scenario, const PlanOptions& options,
-                       const StancePlannerOptions& asked, ContactTaskPlan& plan) {
-  const StanceProblem& problem = plan.started.problem;
+void plan_stances_only(const PlanOptions& options, const StancePlannerOptions& asked,
+                       ContactTaskPlan& plan) {
+  const Task& task = plan.started.task;
   const auto planner = make_stance_planner(options.planner);
   StancePlan& stances = plan.motion.stances;
-  stances = planner->plan(problem, asked);
+  stances = planner->plan(task, asked);
   if (options.improve) {
-    plan.improved = improve_stances(*planner, problem, asked, asked.threads, stances);
+    plan.improved = improve_stances(*planner, task, asked, asked.threads, stances);
   }
   plan.motion.success = stances.success;
   plan.motion.reason = stances.reason;
-  plan.graph = stance_graph(scenario, problem, stances);
+  plan.graph = stance_graph(task, stances);
 }
 
-void plan_whole_motion(const Scenario& scenario, const PlanOptions& options,
-                       const StancePlannerOptions& asked, ContactTaskPlan& plan) {
-  const StanceProblem& problem = plan.started.problem;
+void plan_whole_motion(const PlanOptions& options, const StancePlannerOptions& asked,
+                       ContactTaskPlan& plan) {
+  const Task& task = plan.started.task;
   plan.motion = plan_motion(
-      problem, asked,
+      task, asked,
       {.stance_planner = options.planner, .segment_planners = options.segment_planners});
-  plan.graph = motion_graph(scenario, problem, plan.motion);
+  plan.graph = motion_graph(task, plan.motion);
 }
 
 /// finish: from when on there is something to keep when it is asked to stop.
@@ -90,7 +90,7 @@ ContactTaskPlan plan_of_task(const Scenario& scenario, const PlanOptions& option
   std::optional<Progress> progress("preparing " + options.scenario);
   StancePlannerOptions asked = stance_options(options);
   try {
-    plan.started = started_problem(scenario, options, asked.deadline);
+    plan.started = asked_task(scenario, options, asked.deadline);
   } catch (const OutOfTime& late) {
     plan.motion.reason = std::string("before the search began, ") + late.what();
     plan.total_s = total.seconds();
@@ -100,9 +100,9 @@ ContactTaskPlan plan_of_task(const Scenario& scenario, const PlanOptions& option
   asked.stop = &stop_flag();
   progress.emplace("planning " + options.scenario);
   if (options.stances_only) {
-    plan_stances_only(scenario, options, asked, plan);
+    plan_stances_only(options, asked, plan);
   } else {
-    plan_whole_motion(scenario, options, asked, plan);
+    plan_whole_motion(options, asked, plan);
   }
   plan.total_s = total.seconds();
   return plan;
@@ -179,7 +179,7 @@ Json time_json(const PlanOptions& options, const ContactTaskPlan& plan) {
 Json answer_json(const PlanOptions& options, const ContactTaskPlan& plan) {
   const MotionPlan& motion = plan.motion;
   const StancePlan& stances = plan.stances();
-  const StartedProblem& started = plan.started;
+  const StartedTask& started = plan.started;
   Json json = {
       {"success", motion.success},
       {"reason", motion.reason},
@@ -208,7 +208,7 @@ Json answer_json(const PlanOptions& options, const ContactTaskPlan& plan) {
   if (options.improve) json["improved"] = plan.improved;
   if (options.move_contacts_m > 0.0) {
     json["moved_contacts"] = {{"up_to_m", options.move_contacts_m},
-                              {"start_draws", started.problem.moves.draws}};
+                              {"start_draws", started.task.moves.draws}};
   }
   if (!motion.success) {
     json["best"] = {{"stances", stances.stances.size()},
@@ -239,7 +239,7 @@ std::string answer_text(const std::string& scenario, const PlanOptions& options,
     text += "contacts of start and goals are moved by up to " +
             short_number(options.move_contacts_m) + " m\n" + scenario + ": ";
   }
-  const StartedProblem& started = plan.started;
+  const StartedTask& started = plan.started;
   if (started.moved_base_m > 0.0 || started.moved_joint_rad > 0.0) {
     text += "the start is not feasible as given; the nearest is " +
             short_number(started.moved_base_m) + " m and " + short_number(started.moved_joint_rad) +

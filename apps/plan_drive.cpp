@@ -2,11 +2,12 @@
 #include <locograph/apps/plan_scenario.h>
 #include <locograph/apps/progress.h>
 #include <locograph/apps/robot_files.h>
-#include <locograph/common/data_folder.h>
 #include <locograph/core/graph_file.h>
+#include <locograph/planners/offline/drive/drive_graph.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
 #include <locograph/planners/plan/judging.h>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,20 +30,19 @@ Planned plan_and_judge(const Scenario& scenario, const PlanOptions& options,
                        const JobControl& job) {
   Planned planned;
   Stopwatch watch;
-  planned.graph = plan_wheeled_drive(scenario, job);
+  const auto task = std::make_shared<const Task>(task_of(scenario, job.deadline));
+  const std::optional<Motion> motion = plan_wheeled_drive(*task, job);
+  if (motion) planned.graph = drive_graph(*task, *motion, job);
   planned.whole_body_s = watch.lap();
   if (!planned.graph) return planned;
-  const Plan plan = plan_of(*planned.graph);
-  planned.links_without_collision = plan.robot->robot->links_without_collision();
-  const Motion motion = motion_of(*planned.graph, plan);
-  planned.configurations = motion.configurations.size();
-  planned.duration_s = motion.time_s.back() - motion.time_s.front();
-  Judging judging =
-      judging_of(*planned.graph, plan, {.deadline = job.deadline, .data_folder = data_folder()});
+  planned.links_without_collision = task->robot->robot->links_without_collision();
+  planned.configurations = motion->configurations.size();
+  planned.duration_s = motion->time_s.back() - motion->time_s.front();
+  Judging judging = judging_of(task);
   if (!options.torques.empty()) {
     judging.options.enforce_torque_limits = options.torques == "enforce";
   }
-  const std::optional<CheckReport> report = judged(motion, judging, job);
+  const std::optional<CheckReport> report = judged(*motion, judging, job);
   planned.judge_s = watch.lap();
   if (!report || job.deadline.passed()) return planned;
   planned.success = report->feasible;

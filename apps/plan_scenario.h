@@ -3,7 +3,7 @@
 
 #include <locograph/apps/command.h>
 #include <locograph/common/deadline.h>
-#include <locograph/planners/offline/stance/stance_planner.h>
+#include <locograph/planners/offline/stance/stance_plan.h>
 #include <locograph/planners/scenario/scenario.h>
 
 #include <algorithm>

@@ -85,13 +85,15 @@ Json report_json(const WalkReport& report, const CommandOptions& options, double
   };
 }
 
-/// A refined plan is a success if it is one for whoever checks the file that is written. Returns
-/// the seconds that took.
-double require_feasible(const PlanFile& file, WalkReport& report) {
+/// A refined plan is a success if it is one for whoever checks the file that is written. task: of
+/// the plan's scenario, null where it has none. Returns the seconds that took.
+double require_feasible(const PlanFile& file, const std::shared_ptr<const Task>& task,
+                        WalkReport& report) {
   const Stopwatch watch;
   if (!report.success) return 0.0;
   const Plan plan = plan_of(file.graph);
-  const Judging judging = judging_of(file.graph, plan, {.data_folder = data_folder()});
+  const Judging judging =
+      judging_of(file.graph, plan, {.task = task, .data_folder = data_folder()});
   const CheckReport check = judged(file.graph, plan, judging);
   if (!check.feasible) {
     report.success = false;
@@ -142,7 +144,7 @@ ExitCode refine_plan(const CommandOptions& options) {
   WalkReport report = walk_plan(
       file.graph, [&seen](int executed) { return executed == 0 ? seen : nullptr; }, walk_options);
   progress.emplace("judging " + options.input);
-  const double judge_s = require_feasible(file, report);
+  const double judge_s = require_feasible(file, judging.task, report);
   progress.emplace("writing " + options.output);
   write_graph(file.graph, options.output);
   progress.reset();

@@ -6,7 +6,7 @@
 ///     scene["tree"] = tree_scene("tree.json", scenario.name, plan.stances.front());
 
 #include <locograph/apps/output.h>
-#include <locograph/planners/offline/stance/stance_planner.h>
+#include <locograph/planners/offline/stance/stance_plan.h>
 
 namespace locograph {
 

@@ -23,7 +23,7 @@ namespace locograph {
 struct CheckOptions {
   /// What the scenario or the contacts file says that each end effector can bear, by its name. It
   /// counts instead of what a motion says of it.
-  std::vector<EndEffector> known;
+  std::vector<EndEffector> known = {};
   /// Contacts whose places are known, by the word of a contacts file. A contact of a motion that is
   /// at none of its end effector's violates `contact_claims`. Empty: a motion says where it stands.
   std::vector<Contact> places = {};
@@ -43,7 +43,7 @@ struct CheckOptions {
   /// window of a longer motion: there is no acceleration then at that end.
   bool starts_at_rest = true, ends_at_rest = true;
   /// Where the motion ends, the robot stands still on, in the stance it ends in, until this time.
-  std::optional<double> until_s;
+  std::optional<double> until_s = {};
 
   /// To obstacles and voxels; above 0 also to surfaces, bars and solids that a link touches neither
   /// in a step's stance nor in the one before or after it.

@@ -8,6 +8,7 @@
 // of the plan's end along x.
 #include <locograph/check/judge.h>
 #include <locograph/common/uniform.h>
+#include <locograph/planners/offline/drive/drive_graph.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/plan.h>
@@ -66,18 +67,15 @@ std::shared_ptr<const octomap::OcTree> map_of(const Scene& scene, bool with_wall
 class Campaign {
  public:
   Campaign()
-      : scenario_(load_scenario(LOCOGRAPH_SOURCE_DIR "/planners/scenarios/centauro_drive.xml",
-                                LOCOGRAPH_SOURCE_DIR)) {
-    const Graph graph = plan_wheeled_drive(scenario_);
-    const Plan plan = plan_of(graph);
-    motion_ = motion_of(graph, plan);
-    robot_ = plan.robot;
-    check_.known = scenario_.end_effectors;
+      : task_(task_of(load_scenario(LOCOGRAPH_SOURCE_DIR "/planners/scenarios/centauro_drive.xml",
+                                    LOCOGRAPH_SOURCE_DIR))),
+        motion_(*plan_wheeled_drive(task_)) {
+    check_.known = task_.end_effectors();
   }
 
   /// False when the box stands where the robot starts or is to end.
   bool usable(const Scene& scene) const {
-    const Judge judge(robot_->robot, world_with(map_of(scene, false)));
+    const Judge judge(task_.robot->robot, world_with(map_of(scene, false)));
     for (const Eigen::VectorXd& q :
          {motion_.configurations.front(), motion_.configurations.back()}) {
       if (judge.check(q, motion_.stances.front(), check_)
@@ -91,10 +89,10 @@ class Campaign {
 
   nlohmann::ordered_json run(const Scene& scene) {
     const World world = world_with(map_of(scene, true));
-    const Judge judge(robot_->robot, world);
+    const Judge judge(task_.robot->robot, world);
     const CheckReport before = judge.check(motion_, check_);
 
-    Graph graph = plan_wheeled_drive(scenario_);
+    Graph graph = *drive_graph(task_, motion_);
     const auto seen = std::make_shared<const WorldSnapshot>(world);
     const WalkReport report =
         walk_plan(graph, [&seen](int executed) { return executed == 0 ? seen : nullptr; }, {});
@@ -139,14 +137,13 @@ class Campaign {
 
  private:
   World world_with(std::shared_ptr<const octomap::OcTree> map) const {
-    World world = world_of(scenario_);
+    World world = task_.world->world();
     world.map = std::move(map);
     return world;
   }
 
-  Scenario scenario_;
+  Task task_;
   Motion motion_;
-  std::shared_ptr<const RobotParameter> robot_;
   CheckOptions check_;
 };
 

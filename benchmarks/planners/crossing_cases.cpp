@@ -2,6 +2,7 @@
 
 #include <locograph/check/judge.h>
 #include <locograph/check/motion_curve.h>
+#include <locograph/planners/offline/drive/drive_graph.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
 #include <locograph/planners/plan/slope_limits.h>
 
@@ -27,12 +28,8 @@ Obstacle person(const Crossing& crossing, double meets_at_s) {
 }
 
 /// Of a window: the plan goes on before and after it.
-CheckOptions window_options(const Scenario& scenario) {
-  CheckOptions options;
-  options.known = scenario.end_effectors;
-  options.base_linear_m_s = scenario.limits.base_linear_m_s;
-  options.base_angular_rad_s = scenario.limits.base_angular_rad_s;
-  options.joint_acceleration_rad_s2 = scenario.limits.joint_acceleration_rad_s2;
+CheckOptions window_options(const Task& task) {
+  CheckOptions options = task.check;
   options.starts_at_rest = options.ends_at_rest = false;
   return options;
 }
@@ -82,7 +79,8 @@ std::vector<Crossing> crossings(int count) {
 
 CrossingResult run_crossing(const Scenario& scenario, const Crossing& crossing,
                             const CrossingOptions& options) {
-  Graph graph = plan_wheeled_drive(scenario);
+  const Task task = task_of(scenario);
+  Graph graph = *drive_graph(task, *plan_wheeled_drive(task));
   LocalPlanner planner(graph, options.planner);
   const Plan& plan = planner.plan();
   const double meets_at_s = crossing.x_m / scenario.drive->speed_m_s + crossing.delay_s;
@@ -90,10 +88,10 @@ CrossingResult run_crossing(const Scenario& scenario, const Crossing& crossing,
   World seen;
   seen.obstacles = obstacles;
   planner.show(std::make_shared<const WorldSnapshot>(seen));
-  World world = world_of(scenario);
+  World world = task.world->world();
   world.obstacles = obstacles;
   const Judge judge(plan.robot->robot, world);
-  const CheckOptions check = window_options(scenario);
+  const CheckOptions check = window_options(task);
 
   CrossingResult result;
   for (int executed = 0; executed + 1 < planner.plan_size(); ++executed) {

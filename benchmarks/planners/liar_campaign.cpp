@@ -39,15 +39,14 @@ Honest drive(std::mt19937_64& random) {
   scenario.drive->speed_m_s = uniform(random, 0.05, 0.2);
   scenario.drive->configurations = 4 + static_cast<int>(random() % 12);
   scenario.limits.base_linear_m_s = 0.5;
-  const Graph graph = plan_wheeled_drive(scenario);
-  const Plan plan = plan_of(graph);
+  const Task task = task_of(scenario);
   Honest honest{.name = "drive",
-                .robot = plan.robot->robot,
-                .world = world_of(scenario),
-                .motion = motion_of(graph, plan),
+                .robot = task.robot->robot,
+                .world = task.world->world(),
+                .motion = *plan_wheeled_drive(task),
                 .options = {}};
-  honest.options.known = scenario.end_effectors;
-  honest.options.base_linear_m_s = scenario.limits.base_linear_m_s;
+  honest.options.known = task.end_effectors();
+  honest.options.base_linear_m_s = task.check.base_linear_m_s;
   return honest;
 }
 

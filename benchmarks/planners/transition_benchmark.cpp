@@ -15,8 +15,8 @@
 #include <locograph/check/judge.h>
 #include <locograph/common/data_folder.h>
 #include <locograph/planners/offline/stance/stance_planners.h>
-#include <locograph/planners/offline/stance/stance_problem.h>
 #include <locograph/planners/offline/stance/stance_space.h>
+#include <locograph/planners/offline/stance/started_task.h>
 
 #include <algorithm>
 #include <atomic>
@@ -58,7 +58,7 @@ struct Replayed {
   double seconds = 0.0;
 };
 
-std::vector<Recorded> recorded(const StanceProblem& problem, const TransitionsAsked& asked) {
+std::vector<Recorded> recorded(const Task& task, const TransitionsAsked& asked) {
   const auto planner = make_stance_planner(asked.planner);
   const std::size_t wanted = static_cast<std::size_t>(asked.transitions);
   std::vector<Recorded> all;
@@ -71,7 +71,7 @@ std::vector<Recorded> recorded(const StanceProblem& problem, const TransitionsAs
   };
   for (options.seed = asked.seed; !enough; ++options.seed) {
     const std::size_t before = all.size();
-    planner->plan(problem, options);
+    planner->plan(task, options);
     if (all.size() == before) throw Error("the planner asks for no transitions", "a way to go");
     std::cerr << all.size() << " of " << wanted << " transitions\n";
   }
@@ -83,12 +83,12 @@ std::vector<Recorded> recorded(const StanceProblem& problem, const TransitionsAs
 class Replayer {
  public:
   /// judge: may be null. Both must live.
-  Replayer(const StanceProblem& problem, const Judge* judge) : problem_(problem), judge_(judge) {}
+  Replayer(const Task& task, const Judge* judge) : task_(task), judge_(judge) {}
 
   Replayed replay(const Recorded& asked, int restarts) {
     if (!space_ || options_.seed != asked.seed) {
       options_.seed = asked.seed;
-      space_ = std::make_unique<StanceSpace>(problem_, options_);
+      space_ = std::make_unique<StanceSpace>(task_, options_);
     }
     const TransitionAttempt& attempt = asked.attempt;
     const Footing from = space_->footing(attempt.from), to = space_->footing(attempt.to);
@@ -100,7 +100,7 @@ class Replayer {
     } else if (judge_ != nullptr) {
       const CheckReport report = judge_->check(
           stances_motion({attempt.from, attempt.to}, {found.configuration, found.configuration}),
-          problem_.check);
+          task_.check);
       result.accepted = report.feasible;
       if (!report.feasible) result.reason = "judge: " + report.worst().constraint;
     }
@@ -108,7 +108,7 @@ class Replayer {
   }
 
  private:
-  const StanceProblem& problem_;
+  const Task& task_;
   const Judge* judge_;
   StancePlannerOptions options_;
   std::unique_ptr<StanceSpace> space_;
@@ -178,9 +178,8 @@ Json failures_json(const std::map<std::string, TransitionTally>& failures) {
 }
 
 /// own: each with the restarts that the planner allowed.
-Json report(const StanceProblem& problem, const TransitionsAsked& asked,
-            const std::vector<Recorded>& all, const std::vector<Replayed>& own,
-            const std::vector<Replayed>& most) {
+Json report(const Task& task, const TransitionsAsked& asked, const std::vector<Recorded>& all,
+            const std::vector<Replayed>& own, const std::vector<Replayed>& most) {
   TransitionTally together, lifts, places;
   std::map<std::string, TransitionTally> failures;
   int otherwise = 0;
@@ -194,7 +193,7 @@ Json report(const StanceProblem& problem, const TransitionsAsked& asked,
                {"planner", asked.planner},
                {"seed", asked.seed},
                {"seeds", all.back().seed - asked.seed + 1},
-               {"torque_limits", problem.check.enforce_torque_limits ? "enforce" : "report"},
+               {"torque_limits", task.check.enforce_torque_limits ? "enforce" : "report"},
                {"restarts", asked.restarts},
                {"judged", asked.judge},
                {"solved_otherwise_than_by_the_planner", otherwise}};
@@ -206,23 +205,23 @@ Json report(const StanceProblem& problem, const TransitionsAsked& asked,
 }
 
 Json measure(const TransitionsAsked& asked) {
-  StanceProblem problem = stance_problem(load_scenario(asked.scenario, data_folder())).problem;
-  if (!asked.torques.empty()) problem.check.enforce_torque_limits = asked.torques == "enforce";
-  const std::vector<Recorded> all = recorded(problem, asked);
+  Task task = started_task(load_scenario(asked.scenario, data_folder())).task;
+  if (!asked.torques.empty()) task.check.enforce_torque_limits = asked.torques == "enforce";
+  const std::vector<Recorded> all = recorded(task, asked);
   std::unique_ptr<const Judge> judge;
-  if (asked.judge) judge = std::make_unique<const Judge>(problem.robot->robot, problem.world);
+  if (asked.judge) judge = std::make_unique<const Judge>(task.robot->robot, task.world);
 
   std::vector<Replayed> own;
-  Replayer as_planned(problem, judge.get());
+  Replayer as_planned(task, judge.get());
   for (const Recorded& one : all) own.push_back(as_planned.replay(one, one.attempt.restarts));
   std::vector<Replayed> most = own;
-  Replayer with_restarts(problem, judge.get());
+  Replayer with_restarts(task, judge.get());
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (i % 1000 == 0) std::cerr << i << " of " << all.size() << " with restarts\n";
     const int restarts = std::max(asked.restarts, all[i].attempt.restarts);
     if (!own[i].solved) most[i] = with_restarts.replay(all[i], restarts);
   }
-  return report(problem, asked, all, own, most);
+  return report(task, asked, all, own, most);
 }
 
 }  // namespace

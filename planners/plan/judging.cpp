@@ -2,8 +2,6 @@
 #include <locograph/common/input_file.h>
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/scenario/contacts_file.h>
-#include <locograph/planners/scenario/scenario.h>
-#include <locograph/planners/scenario/task_stances.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/world/distance_view.h>
 #include <locograph/world/octree.h>
@@ -30,8 +28,9 @@ std::vector<std::string> active_names(const Robot& robot) {
 
 /// The scenario's robot, also where the plan says less of its own: that it does not float, that
 /// joints are frozen, that links may meet.
-std::shared_ptr<const Robot> robot_of(const Scenario& scenario,
-                                      const std::shared_ptr<const Robot>& own) {
+std::shared_ptr<const RobotParameter> robot_of(
+    const Scenario& scenario, const std::shared_ptr<const RobotParameter>& parameter) {
+  const std::shared_ptr<const Robot>& own = parameter->robot;
   const std::string names_robot = "the plan's robot, " + own->urdf_file().string();
   const bool same_urdf = same_file(own->urdf_file(), scenario.urdf);
   if (!same_urdf && read_file(own->urdf_file()) != read_file(scenario.urdf)) {
@@ -43,33 +42,25 @@ std::shared_ptr<const Robot> robot_of(const Scenario& scenario,
                          same_file(own->srdf_file(), scenario.srdf);
   if (same_urdf && same_srdf && ours.floating_base == theirs.floating_base &&
       ours.active_joints == theirs.active_joints && ours.frozen_state == theirs.frozen_state) {
-    return own;
+    return parameter;
   }
-  auto robot =
-      std::make_shared<const Robot>(Robot::load(scenario.urdf, scenario.srdf, scenario.robot));
-  if (robot->floating_base() != own->floating_base()) {
+  auto theirs_loaded =
+      std::make_shared<const RobotParameter>(scenario.urdf, scenario.srdf, scenario.robot);
+  const Robot& robot = *theirs_loaded->robot;
+  if (robot.floating_base() != own->floating_base()) {
     throw Error(names_robot + ", is " + (own->floating_base() ? "floating" : "fixed") +
                     ", that of the scenario " + scenario.source + " is not",
-                robot->floating_base() ? "floating" : "fixed");
+                robot.floating_base() ? "floating" : "fixed");
   }
-  if (active_names(*robot) != active_names(*own)) {
+  if (active_names(robot) != active_names(*own)) {
     throw Error(names_robot + ", moves other joints than that of the scenario " + scenario.source,
                 "the same active joints");
   }
-  return robot;
-}
-
-void take_word_of(const Scenario& scenario, CheckOptions& options) {
-  options.known = scenario.end_effectors;
-  options.base_linear_m_s = scenario.limits.base_linear_m_s;
-  options.base_angular_rad_s = scenario.limits.base_angular_rad_s;
-  options.joint_acceleration_rad_s2 = scenario.limits.joint_acceleration_rad_s2;
-  options.enforce_torque_limits = scenario.enforce_torque_limits;
-  options.effort_scale = scenario.effort_scale;
+  return theirs_loaded;
 }
 
 /// Worked out anew: nothing is shared with what plans drives.
-PlannedTask task_of(const DriveTask& drive) {
+PlannedTask ends_of(const DriveTask& drive) {
   const double turned = drive.curvature_1_m * drive.distance_m;
   Eigen::Vector3d end(drive.distance_m, 0.5 * turned * drive.distance_m, turned);
   if (std::abs(turned) > 1e-9) {
@@ -80,27 +71,25 @@ PlannedTask task_of(const DriveTask& drive) {
           .goals = {{.base = end, .within_m = limits::kGoal_m, .within_rad = limits::kGoal_rad}}};
 }
 
-PlannedTask task_of(const Scenario& scenario, const World& world, const ContactMoves& moves) {
-  if (scenario.drive) return task_of(*scenario.drive);
-  TaskStances stances = task_stances(scenario, world, moves);
-  PlannedTask task;
-  task.start.stance = std::move(stances.start);
-  for (Stance& goal : stances.goals) task.goals.push_back({.stance = std::move(goal)});
-  return task;
+PlannedTask ends_of(const Task& task) {
+  if (task.drive) return ends_of(*task.drive);
+  PlannedTask ends{.start = {.stance = task.start}, .goals = {}};
+  for (const Stance& goal : task.goals) ends.goals.push_back({.stance = goal});
+  return ends;
 }
 
 /// Says of the report where the motion begins and what it gets to.
 void judge_ends(const Motion& motion, const Judging& judging, CheckReport& report) {
   std::string no_start, no_goals;
   if (judging.incomplete) no_goals = "the plan says that it is incomplete";
-  if (!judging.task) no_start = no_goals = "the plan names no scenario";
-  if (judging.task) report.ends = plan_ends(motion, *judging.task);
+  if (!judging.ends) no_start = no_goals = "the plan names no scenario";
+  if (judging.ends) report.ends = plan_ends(motion, *judging.ends);
   for (Violation& violation :
        end_violations(motion, report.ends.value_or(PlanEnds()), no_start, no_goals)) {
     if (violation.violated) report.feasible = false;
     report.violations.push_back(std::move(violation));
   }
-  if (!judging.task || !(judging.moves.most_m > 0.0)) return;
+  if (!judging.ends || !(judging.moves.most_m > 0.0)) return;
   char moved[96];
   std::snprintf(moved, sizeof moved, "start and goals: that contacts are moved by up to %.4g m",
                 judging.moves.most_m);
@@ -125,18 +114,22 @@ void require_same_ground(const Graph& graph, const World& world) {
   }
 }
 
-/// What PARAMS_WORLD names and the scenario does not.
-void add_plan_world(const WorldParameter& seen, const Scenario* scenario, World& world) {
+/// A world, and what PARAMS_WORLD names and that world's own files are not.
+std::shared_ptr<const WorldSnapshot> with_plan_world(
+    const std::shared_ptr<const WorldSnapshot>& own, const WorldParameter& seen) {
   const WorldFiles& files = seen.snapshot->files();
   const World& more = seen.snapshot->world();
-  const bool same_map = scenario != nullptr && same_file(files.map, scenario->map);
-  const bool same_obstacles =
-      scenario != nullptr && same_file(files.obstacles, scenario->obstacles);
-  if (!files.map.empty() && !same_map && more.map) {
-    world.map = world.map ? joined(*world.map, *more.map) : more.map;
+  const bool another_map =
+      more.map && !files.map.empty() && !same_file(files.map, own->files().map);
+  const bool other_obstacles =
+      !files.obstacles.empty() && !same_file(files.obstacles, own->files().obstacles);
+  if (!another_map && !other_obstacles) return own;
+  World world = own->world();
+  if (another_map) world.map = world.map ? joined(*world.map, *more.map) : more.map;
+  if (other_obstacles) {
+    world.obstacles.insert(world.obstacles.end(), more.obstacles.begin(), more.obstacles.end());
   }
-  if (files.obstacles.empty() || same_obstacles) return;
-  world.obstacles.insert(world.obstacles.end(), more.obstacles.begin(), more.obstacles.end());
+  return std::make_shared<const WorldSnapshot>(std::move(world));
 }
 
 }  // namespace
@@ -147,45 +140,54 @@ Judging judging_of(const Graph& graph, const Plan& plan, const JudgingRequest& r
   if (origin && contacts) {
     throw Error("a plan with both a PARAMS_SCENARIO and a PARAMS_CONTACTS", "one of them");
   }
+  const bool other = !request.scenario.empty();
+  std::shared_ptr<const Task> task = other ? nullptr : request.task;
+  if (!task && (other || origin)) {
+    const Scenario scenario =
+        load_scenario(other ? request.scenario : origin->scenario, request.data_folder);
+    task = std::make_shared<const Task>(
+        task_of(scenario, robot_of(scenario, plan.robot), plan.moves, request.deadline));
+  }
   Judging judging;
-  World world;
-  judging.robot = plan.robot->robot;
+  if (task) {
+    judging = judging_of(task);
+    judging.options.compare_claims = !other;
+    // A posture that names no scenario is part of no task.
+    if (!origin && plan.slots.size() == 1) judging.ends.reset();
+  } else {
+    judging.robot = plan.robot->robot;
+    judging.world = std::make_shared<const WorldSnapshot>(World{.surfaces = {ground()}});
+    judging.options.surfaces_known = false;
+  }
   judging.incomplete = plan.incomplete;
   judging.moves = plan.moves;
   judging.states_wrenches = plan.states_wrenches;
-  std::optional<Scenario> scenario;
-  const bool other = !request.scenario.empty();
-  if (other || origin) {
-    scenario = load_scenario(other ? request.scenario : origin->scenario, request.data_folder);
-    judging.robot = robot_of(*scenario, plan.robot->robot);
-    require_camera_links(*scenario, *judging.robot);
-    take_word_of(*scenario, judging.options);
-    judging.options.compare_claims = !other;
-    world = world_of(*scenario, request.deadline);
-    judging.scenario = scenario->source;
-  } else {
-    world.surfaces.push_back(ground());
-    judging.options.surfaces_known = false;
-  }
-  // A posture that names no scenario is part of no task.
-  if (scenario && (origin || plan.slots.size() > 1)) {
-    judging.task = task_of(*scenario, world, plan.moves);
-  }
   if (contacts && !other) {
     Stance stance = load_contacts(contacts->file, *plan.robot->robot);
     for (const Contact& contact : stance.contacts)
       judging.options.known.push_back(contact.effector);
     judging.options.places = std::move(stance.contacts);
   }
-  if (!other) require_same_ground(graph, world);
+  if (!other) require_same_ground(graph, judging.world->world());
   if (!request.map.empty() || !request.obstacles.empty()) {
-    World instead = load_world(request.map, request.obstacles);
+    World world = judging.world->world(), instead = load_world(request.map, request.obstacles);
     world.map = std::move(instead.map);
     world.obstacles = std::move(instead.obstacles);
+    judging.world = std::make_shared<const WorldSnapshot>(std::move(world));
   } else if (plan.world && !other) {
-    add_plan_world(*plan.world, scenario ? &*scenario : nullptr, world);
+    judging.world = with_plan_world(judging.world, *plan.world);
   }
-  judging.world = std::make_shared<const WorldSnapshot>(std::move(world));
+  return judging;
+}
+
+Judging judging_of(std::shared_ptr<const Task> task) {
+  Judging judging;
+  judging.robot = task->robot->robot;
+  judging.world = task->world;
+  judging.options = task->check;
+  judging.ends = ends_of(*task);
+  judging.moves = task->moves;
+  judging.task = std::move(task);
   return judging;
 }
 

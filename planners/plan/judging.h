@@ -24,6 +24,7 @@
 #include <locograph/check/plan_ends.h>
 #include <locograph/common/job_control.h>
 #include <locograph/planners/plan/plan.h>
+#include <locograph/planners/task/task.h>
 #include <locograph/robots/robot.h>
 #include <locograph/world/world_snapshot.h>
 
@@ -36,9 +37,10 @@ namespace locograph {
 
 struct JudgingRequest {
   /// A scenario to judge in instead of the plan's own: its world, its friction, its limits, its
-  /// start and goals. Claims
-  /// of the plan are then not compared with it.
+  /// start and goals. Claims of the plan are then not compared with it.
   std::string scenario = {};
+  /// The task of the plan's own scenario where that is loaded already; null: it is loaded.
+  std::shared_ptr<const Task> task = nullptr;
   /// Instead of what is in the way, surfaces aside; both empty: as it is.
   std::filesystem::path map = {}, obstacles = {};
   Deadline deadline = {};  ///< see world_of()
@@ -50,16 +52,19 @@ struct Judging {
   std::shared_ptr<const Robot> robot;  ///< the scenario's, whatever the plan says of its own
   std::shared_ptr<const WorldSnapshot> world;
   CheckOptions options;
-  std::string scenario;             ///< by whose word, see Scenario::source; empty: no one's
-  std::optional<PlannedTask> task;  ///< of a plan that names a scenario: that of `scenario`
-  ContactMoves moves;               ///< by the plan's word, of the contacts of the task
-  bool incomplete = false;          ///< by its word: goals are told, and not judged
-  bool states_wrenches = false;     ///< which are not judged: that there are some that hold is
+  std::shared_ptr<const Task> task;  ///< by whose word; null: no one's
+  std::optional<PlannedTask> ends;   ///< of a plan that names a scenario: where `task` has them
+  ContactMoves moves;                ///< by the plan's word, of the contacts of the task
+  bool incomplete = false;           ///< by its word: goals are told, and not judged
+  bool states_wrenches = false;      ///< which are not judged: that there are some that hold is
 };
 
 /// Throws Error for files that cannot be used, for a plan that names both a scenario and a contacts
 /// file, and for a plan of another robot than the scenario's, or one that moves other joints.
 Judging judging_of(const Graph& graph, const Plan& plan, const JudgingRequest& request);
+
+/// Of a plan that was made for this task just now: whole, and as it is.
+Judging judging_of(std::shared_ptr<const Task> task);
 
 /// A posture, one configuration that stands, is judged as PostureSolver does; others as motions. To
 /// what the judge says are added `scenario_start` and `scenario_goals`, see check/plan_ends.h.

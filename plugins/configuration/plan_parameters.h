@@ -25,7 +25,7 @@ inline constexpr int kPlanFormat = 3, kOldestPlanFormat = 2;
 inline constexpr int kMostDraws = 20;
 
 /// The contacts of a scenario's start and goals moved at random, see
-/// planners/scenario/task_stances.h.
+/// planners/task/task_stances.h.
 struct ContactMoves {
   /// As far as tasks may be moved; others are other tasks.
   static constexpr double kFurthest_m = 10.0;

@@ -8,6 +8,7 @@
 #include <locograph/common/data_folder.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/planners/balance/reach_programme.h>
+#include <locograph/planners/offline/drive/drive_graph.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
 #include <locograph/planners/offline/motion/motion_graph.h>
 #include <locograph/planners/offline/motion/segment_motion.h>
@@ -16,13 +17,12 @@
 #include <locograph/planners/offline/stance/guided_tree.h>
 #include <locograph/planners/offline/stance/improve_stances.h>
 #include <locograph/planners/offline/stance/judged_path.h>
-#include <locograph/planners/offline/stance/plan_stances.h>
 #include <locograph/planners/offline/stance/stance_graph.h>
 #include <locograph/planners/offline/stance/stance_path.h>
 #include <locograph/planners/offline/stance/stance_planners.h>
-#include <locograph/planners/offline/stance/stance_problem.h>
 #include <locograph/planners/offline/stance/stance_tree.h>
 #include <locograph/planners/offline/stance/standing_wheels.h>
+#include <locograph/planners/offline/stance/started_task.h>
 #include <locograph/planners/offline/stance/transition_rows.h>
 #include <locograph/planners/offline/timing/path_timing.h>
 #include <locograph/planners/online/sideways_detour.h>
@@ -37,6 +37,7 @@
 #include <locograph/planners/scenario/move_contacts.h>
 #include <locograph/planners/scenario/scenario.h>
 #include <locograph/planners/scenario/snap_to_places.h>
+#include <locograph/planners/task/task_stances.h>
 #include <locograph/plugins/robot_types.h>
 #include <locograph/robots/xml_file.h>
 #include <locograph/types/standard_types.h>
@@ -74,21 +75,25 @@ inline Scenario one_step() {
   scenario.limits.joint_acceleration_rad_s2 = 10.0;
   return scenario;
 }
-inline const StanceProblem& step_problem() {
-  static const StanceProblem problem = stance_problem(one_step()).problem;
-  return problem;
+inline const Task& step_task() {
+  static const Task task = started_task(one_step()).task;
+  return task;
 }
 /// On both feet, on the right one, on both.
 inline const StancePlan& step_stances() {
-  static const StancePlan plan = make_stance_planner("guided")->plan(step_problem(), {.seed = 7});
+  static const StancePlan plan = make_stance_planner("guided")->plan(step_task(), {.seed = 7});
   if (plan.configurations.size() != 3) throw Error("the step is not planned: " + plan.reason);
   return plan;
 }
-inline Graph drive(double distance_m, int configurations) {
+inline Task drive_task(double distance_m, int configurations) {
   Scenario scenario = load_scenario("centauro_drive", data_folder());
   scenario.drive->distance_m = distance_m;
   scenario.drive->configurations = configurations;
-  return plan_wheeled_drive(scenario);
+  return task_of(scenario);
+}
+inline Graph drive(double distance_m, int configurations) {
+  const Task task = drive_task(distance_m, configurations);
+  return *drive_graph(task, *plan_wheeled_drive(task));
 }
 inline std::vector<Eigen::VectorXd> configurations_of(const Graph& graph, const Plan& plan) {
   return motion_of(graph, plan).configurations;
@@ -124,11 +129,11 @@ struct WindowContext : DriveContext {
 /// The step that COMAN+ makes.
 struct StepContext : Context {
   const Scenario scenario = one_step();
-  const StanceProblem& problem = step_problem();
-  const Robot& robot = *problem.robot->robot;
-  const World& world = problem.world;
-  const Stance& stance = problem.start;
-  const Eigen::VectorXd& q = problem.start_configuration;
+  const Task& task = step_task();
+  const Robot& robot = *task.robot->robot;
+  const World& world = task.world->world();
+  const Stance& stance = task.start;
+  const Eigen::VectorXd& q = task.start_configuration;
   const RobotState state = state_at(robot, q);
   const std::vector<BearingContact> bearing = {{stance.contacts[0]}, {stance.contacts[1]}};
   StancePlannerOptions options;
@@ -136,14 +141,14 @@ struct StepContext : Context {
 
 /// The search for it.
 struct SearchContext : StepContext {
-  StanceSpace space{problem, options};
-  const Footing footing = space.footing(problem.start), start = footing;
-  const int effector = 0, place = footing[0], other_place = space.footing(problem.goals[0])[0];
+  StanceSpace space{task, options};
+  const Footing footing = space.footing(task.start), start = footing;
+  const int effector = 0, place = footing[0], other_place = space.footing(task.goals[0])[0];
 };
 
 /// The moment when the left foot is lifted: the smaller stance is the right foot's.
 struct TransitionContext : StepContext {
-  const std::shared_ptr<const RobotParameter>& robot = problem.robot;
+  const std::shared_ptr<const RobotParameter>& robot = task.robot;
   const std::vector<Contact> smaller = {stance.contacts[1]};
   const BalanceRegion region_of_smaller =
       balance_region(robot->robot->total_mass(), std::vector<BearingContact>{{smaller[0]}}, 0.1);
@@ -173,12 +178,12 @@ struct SegmentContext : StepContext {
   const Segment segment = {.held = {stance.contacts[1]},
                            .balance = &region,
                            .left = {stance.contacts[0]},
-                           .reached = {problem.goals[0].contacts[0]},
+                           .reached = {task.goals[0].contacts[0]},
                            .from = stances.configurations[1],
                            .to = stances.configurations[2]};
 };
 struct LiftedContext : SegmentContext {
-  SegmentSpace space{problem.robot, problem.world};
+  SegmentSpace space{task.robot, task.world->world()};
   LiftedContext() {
     space.set_segment(segment);
     if (!space.lift_off()) throw Error("the foot is not lifted: " + space.why_not());
@@ -188,7 +193,7 @@ struct LiftedContext : SegmentContext {
 /// An arm moves while both feet stand.
 struct TimingContext : StepContext {
   const std::vector<Eigen::VectorXd> waypoints = {q, moved(0.1), moved(0.2)};
-  const TimingLimits limits = timing_limits(robot, scenario.limits);
+  const TimingLimits limits = timing_limits(robot, task.check);
   const TimingOptions options;
   Eigen::VectorXd moved(double angle_rad) const {
     Eigen::VectorXd to = q;
@@ -215,6 +220,12 @@ struct Context {
       .group = {0, 0, 0}, .lower = {0, 0, 0}, .upper = {1, 1, 1}, .most = {-1}};
 };
 }  // namespace balance_reach_programme_h
+namespace offline_drive_drive_graph_h {
+struct Context {
+  const Task task = drive_task(0.32, 5);
+  const Motion motion = *plan_wheeled_drive(task);
+};
+}  // namespace offline_drive_drive_graph_h
 namespace offline_drive_wheel_motion_h {
 struct Context : DriveContext {
   const Robot& robot = *parameter->robot;
@@ -238,12 +249,6 @@ struct Context {
   static void prepare(const GuidedTree::Move&) {}
 };
 }  // namespace offline_stance_guided_tree_h
-namespace offline_stance_plan_stances_h {
-/// A search that gives up.
-struct Context : StepContext {
-  static bool search(StanceSpace&, const Footing&, StancePath&) { return false; }
-};
-}  // namespace offline_stance_plan_stances_h
 namespace offline_stance_rrt_planner_h {
 using Context = StepContext;
 }
@@ -254,7 +259,7 @@ struct Context : StepContext {
 }  // namespace offline_stance_improve_stances_h
 namespace offline_stance_judged_path_h {
 struct Context : SearchContext {
-  const Judge judge{problem.robot->robot, world};
+  const Judge judge{task.robot->robot, world};
   StancePath path = {.footings = {start}, .configurations = {q}};
 };
 }  // namespace offline_stance_judged_path_h
@@ -268,6 +273,18 @@ struct Context {
   const Scenario scenario = one_step();
 };
 }  // namespace offline_stance_stance_planner_h
+namespace offline_stance_stance_plan_h {
+struct Context : StepContext {
+  const Judge judge{task.robot->robot, task.world};
+};
+}  // namespace offline_stance_stance_plan_h
+namespace offline_stance_stance_search_h {
+/// The first way will do.
+struct Context : StepContext {
+  const std::unique_ptr<const StancePlanner> planner = make_stance_planner("guided");
+  static std::size_t change_without_motion(StanceSpace&, const StancePath&) { return 0; }
+};
+}  // namespace offline_stance_stance_search_h
 namespace offline_stance_stance_tree_h {
 struct Context : SearchContext {
   StancePlan plan;
@@ -282,20 +299,20 @@ struct Context : SearchContext {
 namespace offline_stance_transition_ahead_h {
 struct Context : TransitionContext {
   BalanceRegions regions{robot->robot->total_mass()};
-  TaskSolver solver{problem, regions};
-  const TransitionTask task = task_of({0, 1}, {kFree, 1}), likeliest = task,
+  TaskSolver solver{task, regions};
+  const TransitionTask transition = task_of({0, 1}, {kFree, 1}), likeliest = transition,
                        lift = task_of({2, 1}, {kFree, 1}), put = task_of({3, 1}, {kFree, 1});
 };
 }  // namespace offline_stance_transition_ahead_h
 namespace offline_stance_transition_task_h {
 struct Context : TransitionContext {
-  const TransitionTask task = task_of({0, 1}, {kFree, 1});
+  const TransitionTask transition = task_of({0, 1}, {kFree, 1});
   const double mass_kg = robot->robot->total_mass();
 };
 }  // namespace offline_stance_transition_task_h
 namespace offline_motion_motion_graph_h {
 struct Context : StepContext {
-  const MotionPlan plan = plan_motion(problem, {.seed = 7});
+  const MotionPlan plan = plan_motion(task, {.seed = 7});
 };
 }  // namespace offline_motion_motion_graph_h
 namespace offline_motion_motion_planner_h {
@@ -313,7 +330,7 @@ using Context = SegmentContext;
 }
 namespace offline_motion_segment_space_h {
 struct Context : SegmentContext {
-  const std::shared_ptr<const RobotParameter>& robot = problem.robot;
+  const std::shared_ptr<const RobotParameter>& robot = task.robot;
   std::vector<Eigen::VectorXd> waypoints;
 };
 }  // namespace offline_motion_segment_space_h
@@ -556,7 +573,7 @@ struct Context {
 }  // namespace scenario_contacts_file_h
 namespace posture_posture_graph_h {
 struct Context : StepContext {
-  const std::shared_ptr<const RobotParameter>& robot = StepContext::problem.robot;
+  const std::shared_ptr<const RobotParameter>& robot = task.robot;
   const std::shared_ptr<const WorldParameter> seen = std::make_shared<const WorldParameter>();
   const PostureProblem problem = {.stance = stance, .preferred = q};
   const PostureOptions options;
@@ -584,18 +601,18 @@ struct Context : scenario_contacts_file_h::Context {
 namespace scenario_bar_place_h {
 struct Context {
   const Bar bar = small_room().bars[0];
-  const Contact contact = step_problem().start.contacts[0];
+  const Contact contact = step_task().start.contacts[0];
 };
 }  // namespace scenario_bar_place_h
 namespace scenario_contact_place_h {
 struct Context {
   const World world = small_room();
-  const Contact contact = step_problem().start.contacts[0];
+  const Contact contact = step_task().start.contacts[0];
 };
 }  // namespace scenario_contact_place_h
 namespace scenario_contact_task_h {
 struct Context {
-  const Stance &start = step_problem().start, &goal = step_problem().goals[0];
+  const Stance &start = step_task().start, &goal = step_task().goals[0];
 };
 }  // namespace scenario_contact_task_h
 namespace scenario_contact_task_element_h {
@@ -635,7 +652,12 @@ struct Context : StepContext {
   ContactTask task = *scenario.contacts;
 };
 }  // namespace scenario_snap_to_places_h
-namespace scenario_task_stances_h {
+namespace task_task_h {
+struct Context : StepContext {
+  const Motion motion = stances_motion(step_stances());
+};
+}  // namespace task_task_h
+namespace task_task_stances_h {
 using Context = StepContext;
 }
 

@@ -149,7 +149,7 @@ TEST(BalanceRows, ServeOnePathAfterTheOther) {
 /// COMAN+ on its feet, arms thrown about as fast as joints can: it falls, but for the rows.
 TEST(BalanceRows, KeepAHumanoidBalancedThatThrowsItsArms) {
   if (test::kSanitized) GTEST_SKIP() << "takes long there";
-  const StanceProblem task = test::stance_task("quadrupedal_walking");
+  const Task task = test::stance_task("quadrupedal_walking");
   const Robot& robot = *task.robot->robot;
   const TimingLimits limits = timing_limits(robot, {.joint_acceleration_rad_s2 = 20.0});
   std::vector<BearingContact> bearing;

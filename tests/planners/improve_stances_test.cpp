@@ -12,7 +12,7 @@ namespace locograph::improve_stances_test {
 namespace {
 
 TEST(ImproveStances, FindsPlansWithNoMoreStancesOnTwoThreadsAndTheJudgeAccepts) {
-  const StanceProblem task = test::stance_task("quadrupedal_walking");
+  const Task task = test::stance_task("quadrupedal_walking");
   const auto planner = make_stance_planner("guided");
   StancePlannerOptions options;
   StancePlan plan = planner->plan(task, options);
@@ -32,7 +32,7 @@ TEST(ImproveStances, FindsPlansWithNoMoreStancesOnTwoThreadsAndTheJudgeAccepts) 
 }
 
 TEST(ImproveStances, LeavesAloneWhatDidNotSucceedAndNeedsAnEnd) {
-  const StanceProblem task = test::stance_task("standing_up");
+  const Task task = test::stance_task("standing_up");
   const auto planner = make_stance_planner("guided");
   StancePlannerOptions options;
   StancePlan none;

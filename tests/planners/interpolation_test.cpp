@@ -171,7 +171,7 @@ TEST(InterpolationTest, EndsWithTheTimeAllowed) {
 
 /// Go2 on three feet, the front left one to go 0.08 m ahead.
 TEST(InterpolationTest, SaysAtOnceThatABallHasNoWay) {
-  StanceProblem task = test::stance_task("stepping_stones");
+  Task task = test::stance_task("stepping_stones");
   Segment segment;
   segment.held = test::without_contact(task.start, "front_left_foot").contacts;
   const Contact before = test::contact_of(task.start, "front_left_foot");
@@ -181,15 +181,15 @@ TEST(InterpolationTest, SaysAtOnceThatABallHasNoWay) {
   segment.reached = {after};
   segment.from = segment.to = task.start_configuration;
   segment.to[0] += 0.08;
+  World world = task.world->world();
   const auto plan = [&] {
-    SegmentSpace space(task.robot, task.world);
+    SegmentSpace space(task.robot, world);
     space.set_segment(segment);
     return make_interpolation()->plan(space, {});
   };
   EXPECT_FALSE(plan().no_arc) << "nothing is in the way of the foot, whatever the rest does";
   const double x = before.position.x() + 0.04;
-  task.world.solids.push_back(
-      test::box_between("wall", {x - 0.01, -2.0, -1.0}, {x + 0.01, 2.0, 2.0}));
+  world.solids.push_back(test::box_between("wall", {x - 0.01, -2.0, -1.0}, {x + 0.01, 2.0, 2.0}));
   const SegmentPath path = plan();
   EXPECT_FALSE(path.found);
   EXPECT_TRUE(path.no_arc);

@@ -36,18 +36,18 @@ class MotionGraph : public testing::Test {
   static constexpr int kCount = 11, kChange = 5;
 
   MotionGraph() : scenario(changed_scenario("standing_up", {})) {
-    problem = stance_problem(scenario).problem;
-    problem.moves = {.most_m = 0.02, .seed = 3, .draws = 1};
+    task = started_task(scenario).task;
+    task.moves = {.most_m = 0.02, .seed = 3, .draws = 1};
     plan.success = true;
     Motion& motion = plan.motion;
-    motion.stances = {problem.start, without_contact(problem.start, "left_hand")};
+    motion.stances = {task.start, without_contact(task.start, "left_hand")};
     for (int i = 0; i < kCount; ++i) {
       motion.time_s.push_back(0.2 * i);
-      motion.configurations.push_back(problem.start_configuration);
+      motion.configurations.push_back(task.start_configuration);
       motion.stance_from.push_back(i < kChange ? 0 : 1);
       const Stance& stance = motion.stances[static_cast<std::size_t>(motion.stance_from.back())];
       const BalanceCertificate certificate =
-          certify_balance(*problem.robot->robot, problem.start_configuration, stance.contacts, {});
+          certify_balance(*task.robot->robot, task.start_configuration, stance.contacts, {});
       motion.wrenches.push_back(certificate.wrenches);
     }
     for (int j = 0; j < 2; ++j) {
@@ -67,12 +67,12 @@ class MotionGraph : public testing::Test {
   }
 
   Scenario scenario;
-  StanceProblem problem;
+  Task task;
   MotionPlan plan;
 };
 
 TEST_F(MotionGraph, SaysAllThatThePlanKnows) {
-  const std::string text = write_graph_text(motion_graph(scenario, problem, plan));
+  const std::string text = write_graph_text(motion_graph(task, plan));
   const Graph graph = read_graph_text(text, "plan.g2o", ".", types());
   const Plan read = plan_of(graph);
   EXPECT_FALSE(read.incomplete);
@@ -97,7 +97,7 @@ TEST_F(MotionGraph, SaysAllThatThePlanKnows) {
 }
 
 TEST_F(MotionGraph, BothStancesHoldWhereTheyChange) {
-  const Graph graph = motion_graph(scenario, problem, plan);
+  const Graph graph = motion_graph(task, plan);
   const std::size_t all = plan.motion.stances[0].contacts.size();
   const Plan read = plan_of(graph);
   std::vector<std::size_t> contacts(static_cast<std::size_t>(kCount));
@@ -111,23 +111,23 @@ TEST_F(MotionGraph, BothStancesHoldWhereTheyChange) {
 }
 
 TEST_F(MotionGraph, WrenchesBalanceEachConfigurationWhereTheyAreKnown) {
-  const Graph graph = motion_graph(scenario, problem, plan);
+  const Graph graph = motion_graph(task, plan);
   EXPECT_EQ(graph.vertices_of<VertexWrenches>().size(), static_cast<std::size_t>(kCount));
   for (const VertexWrenches& wrenches : graph.vertices_of<VertexWrenches>()) {
     EXPECT_GT(wrenches.state.norm(), 100.0);
   }
   plan.motion.wrenches.clear();
-  const Graph without = motion_graph(scenario, problem, plan);
+  const Graph without = motion_graph(task, plan);
   EXPECT_TRUE(without.vertices_of<VertexWrenches>().empty());
   EXPECT_TRUE(without.edges_of<EdgeBalance>().empty());
 }
 
 TEST_F(MotionGraph, LinksThatLookTooNearHaveNoWeight) {
-  const Graph graph = motion_graph(scenario, problem, plan);
+  const Graph graph = motion_graph(task, plan);
   ASSERT_EQ(graph.edges_of<EdgeSelfCollision>().size(), static_cast<std::size_t>(kCount));
   const EdgeSelfCollision& edge = graph.edges_of<EdgeSelfCollision>().front();
-  ConfigurationState state(problem.robot);
-  state.update(problem.start_configuration.data());
+  ConfigurationState state(task.robot);
+  state.update(task.start_configuration.data());
   EdgeSelfCollision weighted = edge;
   weighted.weights.setOnes();
   Eigen::VectorXd lack(edge.weights.size());
@@ -138,7 +138,7 @@ TEST_F(MotionGraph, LinksThatLookTooNearHaveNoWeight) {
 }
 
 TEST_F(MotionGraph, HasEveryConstraintAndEveryCost) {
-  const Graph graph = motion_graph(scenario, problem, plan);
+  const Graph graph = motion_graph(task, plan);
   const auto count = static_cast<std::size_t>(kCount);
   EXPECT_EQ(graph.edges_of<EdgePlanTracking>().size(), count);
   EXPECT_EQ(graph.edges_of<EdgeJointLimits>().size(), count);
@@ -162,7 +162,7 @@ double most_moved(const Graph& graph, const std::vector<Eigen::VectorXd>& from) 
 }
 
 TEST_F(MotionGraph, OptimisedItStaysWhereItIsAndDisturbedItComesBack) {
-  Graph graph = motion_graph(scenario, problem, plan);
+  Graph graph = motion_graph(task, plan);
   const auto solver = make_linear_solver("auto");
   OptimiserOptions options = OptimiserOptions::for_any_start();
   options.max_iterations = 50;
@@ -181,7 +181,7 @@ TEST_F(MotionGraph, OptimisedItStaysWhereItIsAndDisturbedItComesBack) {
 }
 
 TEST_F(MotionGraph, AnIndexTellsWhereEverythingIs) {
-  const Graph graph = motion_graph(scenario, problem, plan);
+  const Graph graph = motion_graph(task, plan);
   const Plan read = plan_of(graph);
   for (int i = 0; i < kCount; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -197,7 +197,7 @@ TEST_F(MotionGraph, AnIndexTellsWhereEverythingIs) {
 }
 
 TEST_F(MotionGraph, WrenchesAtFewerContactsThanBearAreNotKnown) {
-  Graph graph = motion_graph(scenario, problem, plan);
+  Graph graph = motion_graph(task, plan);
   const Plan read = plan_of(graph);
   // Configuration kChange is left without the left hand; the one before stands on all.
   const int some = read.index.wrenches[kChange].front(), slot = read.index.wrenches[0].front();
@@ -213,19 +213,18 @@ TEST_F(MotionGraph, WrenchesAtFewerContactsThanBearAreNotKnown) {
 
 TEST_F(MotionGraph, RefusesWrenchesThatDoNotFit) {
   plan.motion.wrenches.pop_back();
-  EXPECT_THROW(motion_graph(scenario, problem, plan), Error);
+  EXPECT_THROW(motion_graph(task, plan), Error);
   plan.motion.wrenches.push_back({Eigen::Matrix<double, 6, 1>::Zero()});
-  EXPECT_THROW(motion_graph(scenario, problem, plan), Error);
+  EXPECT_THROW(motion_graph(task, plan), Error);
 }
 
 TEST_F(MotionGraph, TakesSomeThousandCharactersForEachConfiguration) {
-  const double text =
-      static_cast<double>(write_graph_text(motion_graph(scenario, problem, plan)).size());
+  const double text = static_cast<double>(write_graph_text(motion_graph(task, plan)).size());
   EXPECT_LT(text / kCount, 4000.0);
 }
 
 TEST_F(MotionGraph, APlanThatIsCutEndsItsSegments) {
-  Graph graph = motion_graph(scenario, problem, plan);
+  Graph graph = motion_graph(task, plan);
   for (int i = 8; i < kCount; ++i) graph.remove_vertex(graph.slot_of(i));
   EXPECT_THROW(plan_of(graph), Error);
   mark_incomplete(graph);
@@ -242,9 +241,9 @@ TEST_F(MotionGraph, APlanThatIsCutEndsItsSegments) {
 
 TEST_F(MotionGraph, RefusesAMotionThatItCannotSay) {
   plan.motion.stance_from[3] = -1;
-  EXPECT_THROW(motion_graph(scenario, problem, plan), Error);
+  EXPECT_THROW(motion_graph(task, plan), Error);
   plan.motion = {};
-  EXPECT_THROW(motion_graph(scenario, problem, plan), Error);
+  EXPECT_THROW(motion_graph(task, plan), Error);
 }
 
 }  // namespace

@@ -22,8 +22,8 @@
 namespace locograph::motion_planner_test {
 namespace {
 
-const StanceProblem& standing_up() {
-  static const StanceProblem task = test::stance_task("standing_up");
+const Task& standing_up() {
+  static const Task task = test::stance_task("standing_up");
   return task;
 }
 
@@ -291,76 +291,9 @@ TEST(MotionPlannerTest, RefusesASegmentPlannerThatNobodyKnows) {
   }
 }
 
-/// What plan_motion() does with a segment that has no path.
-TEST(AcceptedStancesTest, NoLaterWayHasAChangeThatIsRefused) {
-  struct Change {
-    Stance from, to;
-  };
-  const auto same = [](const Stance& a, const Stance& b) {
-    return std::ranges::is_permutation(
-        a.contacts, b.contacts, [](const Contact& x, const Contact& y) {
-          return x.name() == y.name() && (x.position - y.position).norm() < 1e-9;
-        });
-  };
-  std::vector<Change> refused;
-  int asked = 0;
-  StancePlannerOptions options;
-  options.accept = [&](const std::vector<Stance>& stances, auto& configurations,
-                       std::size_t first) -> std::size_t {
-    ++asked;
-    EXPECT_EQ(stances.size(), configurations.size());
-    EXPECT_EQ(first, 0U);
-    for (std::size_t i = 1; i < stances.size(); ++i) {
-      for (const Change& change : refused) {
-        EXPECT_FALSE(same(stances[i - 1], change.from) && same(stances[i], change.to)) << i;
-      }
-    }
-    if (asked > 2) return 0;
-    const std::size_t number = asked == 1 ? 1 : stances.size() - 1;
-    refused.push_back({stances[number - 1], stances[number]});
-    return number;
-  };
-  const StancePlan plan = make_stance_planner("guided")->plan(standing_up(), options);
-  EXPECT_EQ(asked, 3);
-  ASSERT_TRUE(plan.success) << plan.reason;
-  for (std::size_t i = 1; i < plan.stances.size(); ++i) {
-    for (const Change& change : refused) {
-      EXPECT_FALSE(same(plan.stances[i - 1], change.from) && same(plan.stances[i], change.to));
-    }
-  }
-}
-
-TEST(AcceptedStancesTest, AllThatIsRefusedLeavesNoPlan) {
-  int asked = 0;
-  StancePlannerOptions options;
-  options.max_transitions = 200;
-  options.accept = [&](const auto& stances, auto&, std::size_t) {
-    ++asked;
-    return stances.size() - 1;
-  };
-  const StancePlan plan = make_stance_planner("guided")->plan(standing_up(), options);
-  EXPECT_GT(asked, 0);
-  EXPECT_FALSE(plan.success);
-  EXPECT_FALSE(plan.reason.empty());
-}
-
-TEST(AcceptedStancesTest, OtherConfigurationsTakeTheirPlace) {
-  Eigen::VectorXd other;
-  StancePlannerOptions options;
-  options.accept = [&](const auto&, auto& configurations, std::size_t) -> std::size_t {
-    other = configurations.back();
-    other.tail<1>()[0] += 1e-4;
-    configurations.back() = other;
-    return 0;
-  };
-  const StancePlan plan = make_stance_planner("guided")->plan(standing_up(), options);
-  ASSERT_TRUE(plan.success) << plan.reason;
-  EXPECT_EQ(plan.configurations.back(), other);
-}
-
 /// The right arm of COMAN+ is where nothing asks it to be.
 TEST(NearbyPosturesTest, FreeArmsStayWhereTheyAre) {
-  const StanceProblem task = test::stance_task("slanted_wall");
+  const Task task = test::stance_task("slanted_wall");
   const StancePlannerOptions options;
   StanceSpace space(task, options);
   const Footing both = space.footing(task.start);
@@ -391,14 +324,14 @@ TEST(NearbyPosturesTest, FreeArmsStayWhereTheyAre) {
 
 /// Stones of Go2 whose sides are 6 cm apart.
 TEST(PlacesForMotionsTest, NoneIsInAGapThatABallCannotComeOutOf) {
-  const StanceProblem task = test::stance_task("stepping_stones");
-  const auto found = std::ranges::find(task.end_effectors, "front_right_foot", &EndEffector::name);
-  ASSERT_NE(found, task.end_effectors.end());
-  const int foot = static_cast<int>(found - task.end_effectors.begin());
+  const Task task = test::stance_task("stepping_stones");
+  const auto found =
+      std::ranges::find(task.end_effectors(), "front_right_foot", &EndEffector::name);
+  ASSERT_NE(found, task.end_effectors().end());
+  const int foot = static_cast<int>(found - task.end_effectors().begin());
   const auto places = [&](bool for_motions) {
     StancePlannerOptions options;
-    if (for_motions)
-      options.accept = [](const auto&, auto&, std::size_t) { return std::size_t{0}; };
+    options.approachable_only = for_motions;
     StanceSpace space(task, options);
     int sides = 0, tops = 0;
     for (const int number : space.places_near(foot, {0.65, -0.15, 0.0}, 0.12)) {
@@ -418,8 +351,8 @@ TEST(PlacesForMotionsTest, NoneIsInAGapThatABallCannotComeOutOf) {
 /// A path is kept when it is timed again.
 TEST(SegmentMoverTest, TheSamePathAtAnotherPace) {
   const auto step = test::step_forward_problem();
-  StanceProblem task = test::stance_task("slanted_wall");
-  task.world = step->world;
+  Task task = test::stance_task("slanted_wall");
+  task.world = std::make_shared<const WorldSnapshot>(step->world);
   const MotionOptions options;
   SegmentMover mover(task, options);
   const std::vector<BearingContact> bearing = {{step->segment.held[0]}};
@@ -439,7 +372,7 @@ TEST(SegmentMoverTest, TheSamePathAtAnotherPace) {
     EXPECT_EQ(motion->configurations.back(), step->segment.to);
   }
   // As close to the path as its waypoints are.
-  SegmentSpace space(task.robot, task.world);
+  SegmentSpace space(task.robot, task.world->world());
   space.set_segment(step->segment);
   for (const Eigen::VectorXd& q : fine.configurations) {
     double least = 1.0;

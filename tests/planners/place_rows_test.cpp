@@ -16,8 +16,8 @@ namespace {
 using test::stance_task;
 
 /// Go2 on blocks.
-const StanceProblem& on_stones() {
-  static const StanceProblem task = stance_task("stepping_stones");
+const Task& on_stones() {
+  static const Task task = stance_task("stepping_stones");
   return task;
 }
 
@@ -47,9 +47,9 @@ struct Agreement {
 };
 
 Agreement compare(const Stance& closed, const Stance& held, int draws, std::uint64_t seed) {
-  const StanceProblem& task = on_stones();
+  const Task& task = on_stones();
   const Robot& robot = *task.robot->robot;
-  TransitionRows rows(task.robot, task.world);
+  TransitionRows rows(task.robot, task.world->world());
   TransitionProblem problem;
   problem.closed = closed.contacts;
   problem.held = held.contacts;
@@ -103,8 +103,8 @@ TEST(PlaceRows, WhatIsFreeBesideBoxesTheJudgeAccepts) {
 
 /// A calf in the stone that its own foot stands on: what rows did not see.
 TEST(PlaceRows, ACalfInTheStoneOfItsFootIsSeen) {
-  const StanceProblem& task = on_stones();
-  TransitionRows rows(task.robot, task.world);
+  const Task& task = on_stones();
+  TransitionRows rows(task.robot, task.world->world());
   TransitionProblem problem;
   problem.closed = task.start.contacts;
   rows.set_problem(problem, {});
@@ -124,9 +124,9 @@ TEST(PlaceRows, ACalfInTheStoneOfItsFootIsSeen) {
 
 TEST(PlaceRows, GradientsBesideBoxesAreThoseOfCentralDifferences) {
   constexpr double kStep = 1e-6, kKink = 1e-3;
-  const StanceProblem& task = on_stones();
+  const Task& task = on_stones();
   const Robot& robot = *task.robot->robot;
-  TransitionRows rows(task.robot, task.world);
+  TransitionRows rows(task.robot, task.world->world());
   TransitionProblem problem;
   problem.closed = task.start.contacts;
   rows.set_problem(problem, {});

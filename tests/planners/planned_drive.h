@@ -1,11 +1,12 @@
 #pragma once
 /// What the tests of the planners share: the shipped drive as a plan, changed at will, and a check.
 ///
-///     Graph graph = plan_wheeled_drive(centauro_drive(4.0, 0.3));
+///     Graph graph = planned_drive(centauro_drive(4.0, 0.3));
 ///     EXPECT_EQ(violated(check_plan(graph, {box("b", {2, 0, 0.25}, {0.5, 0.5, 0.5})})), …);
 
 #include <gtest/gtest.h>
 #include <locograph/check/judge.h>
+#include <locograph/planners/offline/drive/drive_graph.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
@@ -15,6 +16,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 
 #include "check/centauro_on_wheels.h"
@@ -42,6 +44,14 @@ inline Scenario centauro_drive(double distance_m = 4.0, double curvature_1_m = 0
   scenario.drive->configurations = configurations;
   return scenario;
 }
+
+/// Nothing when the job ends before the plan is whole.
+inline std::optional<Graph> planned_drive(const Scenario& scenario, const JobControl& job) {
+  const Task task = task_of(scenario);
+  const std::optional<Motion> motion = plan_wheeled_drive(task, job);
+  return motion ? drive_graph(task, *motion, job) : std::nullopt;
+}
+inline Graph planned_drive(const Scenario& scenario) { return *planned_drive(scenario, {}); }
 
 /// What stands on the ground z = 0.
 inline World world_of(std::vector<Obstacle> obstacles,

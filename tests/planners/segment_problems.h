@@ -65,7 +65,7 @@ inline std::vector<SolidBox> wall_with_windows(double x_m, double middle_y_m, do
 /// Throws std::invalid_argument for an unknown name and std::runtime_error where no posture is
 /// found for an end.
 inline std::unique_ptr<SegmentProblem> segment_problem(const std::string& name) {
-  StanceProblem task = stance_task("slanted_wall");
+  Task task = stance_task("slanted_wall");
   auto problem = std::make_unique<SegmentProblem>();
   problem->robot = task.robot;
   problem->world.surfaces = {ground()};
@@ -83,7 +83,7 @@ inline std::unique_ptr<SegmentProblem> segment_problem(const std::string& name) 
     throw std::invalid_argument("no segment problem " + name);
   }
   const auto effector = [&](const std::string& wanted) {
-    for (const EndEffector& one : task.end_effectors) {
+    for (const EndEffector& one : task.end_effectors()) {
       if (one.name == wanted) return one;
     }
     throw std::invalid_argument("no end effector " + wanted);
@@ -120,7 +120,7 @@ inline std::unique_ptr<SegmentProblem> segment_problem(const std::string& name) 
 
 /// COMAN+ on its left foot; the right one steps forward.
 inline std::unique_ptr<SegmentProblem> step_forward_problem(double step_m = 0.12) {
-  StanceProblem task = stance_task("slanted_wall");
+  Task task = stance_task("slanted_wall");
   auto problem = std::make_unique<SegmentProblem>();
   problem->robot = task.robot;
   problem->world.surfaces = {ground()};

@@ -83,7 +83,7 @@ TEST(SlopeLimits, StraightOnAsByTheRuleAndAroundACornerSlower) {
 /// A drive whose curve has slopes of its own.
 class CarriedSlopes : public testing::Test {
  protected:
-  CarriedSlopes() : graph(plan_wheeled_drive(centauro_drive(0.72, 0.0, 10))), plan(plan_of(graph)) {
+  CarriedSlopes() : graph(planned_drive(centauro_drive(0.72, 0.0, 10))), plan(plan_of(graph)) {
     before = motion_of(graph, plan);
     before.slopes.clear();
     const MotionCurve curve(*plan.robot->robot, before);

@@ -28,7 +28,7 @@ StancePlannerOptions at_most(int transitions, std::uint64_t seed = 0) {
   return options;
 }
 
-StancePlan plan(const StanceProblem& task, const StancePlannerOptions& options) {
+StancePlan plan(const Task& task, const StancePlannerOptions& options) {
   return make_stance_planner("guided")->plan(task, options);
 }
 
@@ -60,31 +60,31 @@ bool is_stance(const Stance& stance, const Stance& expected) {
          });
 }
 
-void expect_judged_feasible(const StanceProblem& task, const StancePlan& plan) {
+void expect_judged_feasible(const Task& task, const StancePlan& plan) {
   const Judge judge(task.robot->robot, task.world);
   const CheckReport report = judge.check(stances_motion(plan), task.check);
   EXPECT_TRUE(report.feasible) << violation_text(report.worst());
 }
 
-bool names_an_end_effector(const StanceProblem& task, const std::string& text) {
-  return std::ranges::any_of(task.end_effectors, [&](const EndEffector& effector) {
+bool names_an_end_effector(const Task& task, const std::string& text) {
+  return std::ranges::any_of(task.end_effectors(), [&](const EndEffector& effector) {
     return text.find(effector.name) != std::string::npos;
   });
 }
 
-struct Task {
+struct ShippedTask {
   std::string name;
   bool enforces_torque_limits;
   std::uint64_t seed;
 };
 
-class ShippedTasks : public testing::TestWithParam<Task> {};
+class ShippedTasks : public testing::TestWithParam<ShippedTask> {};
 
 TEST_P(ShippedTasks, ArePlannedOneContactAtATimeAndJudgedFeasible) {
   if (test::kSanitized && GetParam().name == "stepping_stones") {
     GTEST_SKIP() << "takes long there";
   }
-  StanceProblem task = stance_task(GetParam().name);
+  Task task = stance_task(GetParam().name);
   task.check.enforce_torque_limits = GetParam().enforces_torque_limits;
   const StancePlannerOptions options = at_most(3000, GetParam().seed);
   const StancePlan found = plan(task, options);
@@ -121,23 +121,23 @@ TEST_P(ShippedTasks, ArePlannedOneContactAtATimeAndJudgedFeasible) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Tasks, ShippedTasks,
-                         testing::Values(Task{"quadrupedal_walking", true, 0},
-                                         Task{"standing_up", true, 0},
-                                         Task{"parallel_walls", false, 1},
-                                         Task{"centauro_platform", true, 0},
-                                         Task{"stepping_stones", true, 1}),
+                         testing::Values(ShippedTask{"quadrupedal_walking", true, 0},
+                                         ShippedTask{"standing_up", true, 0},
+                                         ShippedTask{"parallel_walls", false, 1},
+                                         ShippedTask{"centauro_platform", true, 0},
+                                         ShippedTask{"stepping_stones", true, 1}),
                          [](const auto& info) { return info.param.name; });
 
 /// All fours of standing_up, with the left hand 50 m ahead.
-StanceProblem out_of_reach() {
-  StanceProblem task = stance_task("standing_up", {kFarFloor});
+Task out_of_reach() {
+  Task task = stance_task("standing_up", {kFarFloor});
   task.goals = {task.start};
   contact_of(task.goals[0], "left_hand").position = {51.0, 0.1, 0.0};
   return task;
 }
 
 TEST(StancePlanner, AGoalOutOfReachIsAnswerNoWithWhatWasInTheWay) {
-  const StanceProblem task = out_of_reach();
+  const Task task = out_of_reach();
   const StancePlan found = plan(task, at_most(300));
   EXPECT_FALSE(found.success);
   EXPECT_EQ(found.goals_reached, 0);
@@ -159,7 +159,7 @@ TEST(StancePlanner, AGoalOutOfReachIsAnswerNoWithWhatWasInTheWay) {
 }
 
 TEST(StancePlanner, KeepsWhatLeadsToTheGoalsBeforeTheOneThatIsNotReached) {
-  StanceProblem task = stance_task("standing_up", {kFarFloor});
+  Task task = stance_task("standing_up", {kFarFloor});
   task.goals.push_back(out_of_reach().goals[0]);
   const StancePlan found = plan(task, at_most(300));
   EXPECT_FALSE(found.success);
@@ -175,7 +175,7 @@ TEST(StancePlanner, KeepsWhatLeadsToTheGoalsBeforeTheOneThatIsNotReached) {
 // The judge refuses what torques forbid; the search goes on, but not for ever.
 TEST(StancePlanner, TransitionsAreLimitedForAGoalHoweverOftenTheJudgeRefuses) {
   if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
-  const StanceProblem task = stance_task("parallel_walls");
+  const Task task = stance_task("parallel_walls");
   ASSERT_TRUE(task.check.enforce_torque_limits);
   StancePlannerOptions options = at_most(1000);
   // Of two goals, and what shortening and mending take.
@@ -189,7 +189,7 @@ TEST(StancePlanner, TransitionsAreLimitedForAGoalHoweverOftenTheJudgeRefuses) {
 }
 
 TEST(StancePlanner, AGoalIsReachedWhereItIsNotWhereTheGridHasAPlaceNearby) {
-  StanceProblem task = stance_task("standing_up");
+  Task task = stance_task("standing_up");
   Stance higher = task.goals[0];
   Contact& hand = contact_of(higher, "right_hand");
   hand.position.z() += 0.05 + 4e-5;
@@ -201,7 +201,7 @@ TEST(StancePlanner, AGoalIsReachedWhereItIsNotWhereTheGridHasAPlaceNearby) {
 }
 
 TEST(StancePlanner, TellsOfTheTransitionsItTriesAndPlansTheSame) {
-  const StanceProblem task = stance_task("standing_up");
+  const Task task = stance_task("standing_up");
   StancePlannerOptions options = at_most(3000);
   int told = 0, told_found = 0;
   options.observe = [&](const TransitionAttempt& attempt) {
@@ -224,7 +224,7 @@ TEST(StancePlanner, TellsOfTheTransitionsItTriesAndPlansTheSame) {
 
 TEST(StancePlanner, KeepsTheTreeItTriedOnlyWhenAskedAndPlansTheSame) {
   if (test::kSanitized) GTEST_SKIP() << "takes long there";
-  const StanceProblem task = stance_task("standing_up");
+  const Task task = stance_task("standing_up");
   for (const std::string& name : stance_planner_names()) {
     StancePlannerOptions options = at_most(3000);
     const StancePlan without = make_stance_planner(name)->plan(task, options);
@@ -255,7 +255,7 @@ TEST(StancePlanner, KeepsTheTreeItTriedOnlyWhenAskedAndPlansTheSame) {
 }
 
 TEST(StancePlanner, AGoalThatIsTheStartNeedsNothing) {
-  StanceProblem task = stance_task("standing_up");
+  Task task = stance_task("standing_up");
   task.goals = {task.start};
   const StancePlan found = plan(task, {});
   EXPECT_TRUE(found.success) << found.reason;
@@ -274,15 +274,17 @@ TEST(StancePlanner, AStartOnAFloorThatIsNotThereIsRefused) {
     EXPECT_NE(std::string(error.what()).find("touches nothing"), std::string::npos) << error.what();
   }
   // Taken away afterwards, the judge finds it out.
-  StanceProblem task = stance_task("standing_up");
-  std::erase_if(task.world.surfaces, [](const Surface& one) { return one.name == "floor"; });
+  Task task = stance_task("standing_up");
+  World world = task.world->world();
+  std::erase_if(world.surfaces, [](const Surface& one) { return one.name == "floor"; });
+  task.world = std::make_shared<const WorldSnapshot>(std::move(world));
   const StancePlan found = plan(task, at_most(300));
   EXPECT_FALSE(found.success);
   EXPECT_FALSE(found.reason.empty());
 }
 
 TEST(StancePlanner, EndsWhenItIsToldTo) {
-  const StanceProblem task = stance_task("standing_up");
+  const Task task = stance_task("standing_up");
   const std::atomic<bool> stop = true;
   StancePlannerOptions stopped, late;
   stopped.stop = &stop;
@@ -308,11 +310,11 @@ TEST(StancePlanner, RefusesNamesGoalsAndOptionsThatMakeNoSense) {
     EXPECT_NE(std::string(error.what()).find("guidd"), std::string::npos) << error.what();
   }
 
-  const StanceProblem task = stance_task("standing_up");
-  StanceProblem unknown = task;
+  const Task task = stance_task("standing_up");
+  Task unknown = task;
   contact_of(unknown.goals[0], "left_hand").effector.name = "third_hand";
   EXPECT_THROW(plan(unknown, {}), Error);
-  StanceProblem empty = task;
+  Task empty = task;
   empty.goals = {Stance{}};
   EXPECT_THROW(plan(empty, {}), Error);
 

@@ -1,11 +1,11 @@
 #pragma once
 /// Contact tasks that come along as stance planners take them, changed at will.
 ///
-///     StanceProblem task = stance_task("standing_up");
-///     StanceProblem slippery = stance_task("standing_up", {{"friction=\"0.5\"",
+///     Task task = stance_task("standing_up");
+///     Task slippery = stance_task("standing_up", {{"friction=\"0.5\"",
 ///     "friction=\"0.1\""}}); Contact& hand = contact_of(task.start, "left_hand");
 
-#include <locograph/planners/offline/stance/stance_problem.h>
+#include <locograph/planners/offline/stance/started_task.h>
 
 #include <algorithm>
 #include <iterator>
@@ -28,8 +28,8 @@ inline Scenario changed_scenario(const std::string& name, const Replacements& re
   return scenario_of(text);
 }
 
-inline StanceProblem stance_task(const std::string& name, const Replacements& replacements = {}) {
-  return stance_problem(changed_scenario(name, replacements)).problem;
+inline Task stance_task(const std::string& name, const Replacements& replacements = {}) {
+  return started_task(changed_scenario(name, replacements)).task;
 }
 
 inline Contact& contact_of(Stance& stance, const std::string& name) {

@@ -36,7 +36,7 @@ struct Told {
   std::vector<TransitionAttempt> attempts;
 };
 
-Told plan_on(int threads, const StanceProblem& task, StancePlannerOptions options) {
+Told plan_on(int threads, const Task& task, StancePlannerOptions options) {
   Told told;
   options.threads = threads;
   options.keep_tree = true;
@@ -90,7 +90,7 @@ TEST(StanceThreads, GiveTheSamePlanAndReportToTheLastBit) {
                      {"ladder_climbing", test::kSanitized ? 10 : 300, true},
                      {"parallel_walls", test::kSanitized ? 90 : 300, false}};
   for (const auto& [name, transitions, enforced] : tasks) {
-    StanceProblem task = stance_task(name);
+    Task task = stance_task(name);
     task.check.enforce_torque_limits = enforced;
     for (std::uint64_t seed = 0; seed < (test::kSanitized ? 1 : 2); ++seed) {
       StancePlannerOptions options;
@@ -107,7 +107,7 @@ TEST(StanceThreads, GiveTheSamePlanAndReportToTheLastBit) {
 }
 
 TEST(StanceThreads, EndWhenTheSearchIsStoppedOrOutOfTime) {
-  const StanceProblem task = stance_task("ladder_climbing");
+  const Task task = stance_task("ladder_climbing");
   std::atomic<bool> stop = false;
   StancePlannerOptions options;
   options.threads = 3;
@@ -121,7 +121,11 @@ TEST(StanceThreads, EndWhenTheSearchIsStoppedOrOutOfTime) {
   EXPECT_LE(stopped.transitions, 6) << "putting down what was lifted";
 
   options.stop = nullptr;
-  options.observe = [&](const TransitionAttempt&) { options.deadline = Deadline::after(0.0); };
+  options.deadline = Deadline::after(0.05);
+  const Deadline deadline = options.deadline;
+  options.observe = [&](const TransitionAttempt&) {
+    while (!deadline.passed()) std::this_thread::yield();
+  };
   const StancePlan late = make_stance_planner("guided")->plan(task, options);
   EXPECT_FALSE(late.success);
   EXPECT_NE(late.reason.find("time"), std::string::npos) << late.reason;
@@ -131,13 +135,13 @@ TEST(StanceThreads, EndWhenTheSearchIsStoppedOrOutOfTime) {
 /// Transitions from the start of a task: one contact less, or the same contact back.
 class TransitionsAhead : public testing::Test {
  protected:
-  const StanceProblem problem_ = stance_task("standing_up");
-  BalanceRegions regions_{problem_.robot->robot->total_mass()};
-  TaskSolver solver_{problem_, regions_};
+  const Task task_ = stance_task("standing_up");
+  BalanceRegions regions_{task_.robot->robot->total_mass()};
+  TaskSolver solver_{task_, regions_};
 
   TransitionTask task(int lifted, int restarts = 0) const {
     TransitionTask task;
-    const std::vector<Contact>& contacts = problem_.start.contacts;
+    const std::vector<Contact>& contacts = task_.start.contacts;
     for (std::size_t c = 0; c < contacts.size(); ++c) {
       const int place = static_cast<int>(c);
       task.larger.push_back(place);
@@ -147,7 +151,7 @@ class TransitionsAhead : public testing::Test {
       task.held.push_back(contacts[c]);
       task.bearing.push_back({contacts[c]});
     }
-    task.start = problem_.start_configuration;
+    task.start = task_.start_configuration;
     task.options.restarts = restarts;
     return task;
   }
@@ -167,11 +171,11 @@ class TransitionsAhead : public testing::Test {
 };
 
 TEST_F(TransitionsAhead, AreThoseThatANewSolverFindsWhateverWasSolvedBefore) {
-  const int contacts = static_cast<int>(problem_.start.contacts.size());
+  const int contacts = static_cast<int>(task_.start.contacts.size());
   for (int lifted = 0; lifted < contacts; ++lifted) {
     const TransitionTask asked = task(lifted, 1);
-    BalanceRegions regions(problem_.robot->robot->total_mass());
-    const TransitionResult fresh = TaskSolver(problem_, regions).solve(asked);
+    BalanceRegions regions(task_.robot->robot->total_mass());
+    const TransitionResult fresh = TaskSolver(task_, regions).solve(asked);
     const TransitionResult used = solver_.solve(asked);
     EXPECT_EQ(used.found, fresh.found);
     EXPECT_EQ(used.failure, fresh.failure);

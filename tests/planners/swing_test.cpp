@@ -55,7 +55,7 @@ class SwingTest : public testing::Test {
     return least;
   }
 
-  StanceProblem task;
+  Task task;
   Contact before, after;
   Swing swing;
 };

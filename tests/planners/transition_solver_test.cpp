@@ -21,12 +21,12 @@ namespace {
 using test::contact_of, test::stance_task, test::without_contact;
 
 /// Standing up: COMAN+ on all fours under the arch of quadrupedal_walking.
-const StanceProblem& on_all_fours() {
-  static const StanceProblem task = stance_task("standing_up");
+const Task& on_all_fours() {
+  static const Task task = stance_task("standing_up");
   return task;
 }
 
-BalanceRegion region_of(const StanceProblem& task, const Stance& stance) {
+BalanceRegion region_of(const Task& task, const Stance& stance) {
   std::vector<BearingContact> bearing;
   for (const Contact& contact : stance.contacts) bearing.push_back({contact});
   return balance_region(task.robot->robot->total_mass(), bearing, 0.1);
@@ -50,7 +50,7 @@ Eigen::VectorXd at_random(const Robot& robot, const Eigen::VectorXd& q, double b
 }
 
 TransitionProblem problem_of(const Stance& closed, const BalanceRegion* region,
-                             const Eigen::VectorXd& start, const StanceProblem& task) {
+                             const Eigen::VectorXd& start, const Task& task) {
   TransitionProblem problem;
   problem.closed = closed.contacts;
   problem.balance = region;
@@ -65,7 +65,7 @@ class TransitionRowsTest : public testing::Test {
       : task(on_all_fours()),
         feet(without_contact(without_contact(task.start, "left_hand"), "right_hand")),
         region(region_of(task, task.start)),
-        rows(task.robot, stance_task("quadrupedal_walking").world) {
+        rows(task.robot, stance_task("quadrupedal_walking").world->world()) {
     // Hands are near the floor and not to touch it.
     rows.set_problem(problem_of(feet, &region, task.start_configuration, task), {});
   }
@@ -82,7 +82,7 @@ class TransitionRowsTest : public testing::Test {
     return values;
   }
 
-  const StanceProblem task;
+  const Task task;
   const Stance feet;
   const BalanceRegion region;
   TransitionRows rows;
@@ -191,7 +191,7 @@ class TransitionSolverTest : public testing::Test {
   }
   TransitionProblem problem() const { return problem(task.start_configuration); }
 
-  const StanceProblem task;
+  const Task task;
   const Stance larger, smaller;
   const BalanceRegion region;
 };
@@ -203,7 +203,7 @@ TransitionOptions restarts(int count) {
 }
 
 TEST_F(TransitionSolverTest, WhatItFindsTheJudgeAcceptsOnBothStances) {
-  TransitionSolver solver(task.robot, task.world);
+  TransitionSolver solver(task.robot, task.world->world());
   const TransitionResult result = solver.solve(problem(), restarts(2));
   ASSERT_TRUE(result.found) << result.reason;
   EXPECT_EQ(result.failure, TransitionFailure::kNone);
@@ -231,7 +231,7 @@ TEST_F(TransitionSolverTest, AContactOutOfReachIsNamedWithTheAmount) {
   contact_of(far, "left_hand").position.x() += 5.0;
   TransitionProblem asked = problem();
   asked.closed = far.contacts;
-  TransitionSolver solver(task.robot, task.world);
+  TransitionSolver solver(task.robot, task.world->world());
   const TransitionResult result = solver.solve(asked, restarts(1));
   EXPECT_FALSE(result.found);
   EXPECT_EQ(result.restarts, 1);
@@ -247,7 +247,7 @@ TEST_F(TransitionSolverTest, AStanceThatBalancesNowhereIsRefusedAtOnce) {
   const BalanceRegion none;
   TransitionProblem asked = problem();
   asked.balance = &none;
-  TransitionSolver solver(task.robot, task.world);
+  TransitionSolver solver(task.robot, task.world->world());
   const TransitionResult result = solver.solve(asked, restarts(5));
   EXPECT_FALSE(result.found);
   EXPECT_EQ(result.failure, TransitionFailure::kBalance);
@@ -265,7 +265,7 @@ TEST_F(TransitionSolverTest, ACentreOfMassThatCannotGetThereIsBalance) {
   }
   TransitionProblem asked = problem();
   asked.balance = &away;
-  TransitionSolver solver(task.robot, task.world);
+  TransitionSolver solver(task.robot, task.world->world());
   const TransitionResult result = solver.solve(asked);
   EXPECT_FALSE(result.found);
   EXPECT_NE(result.failure, TransitionFailure::kNone);
@@ -278,7 +278,7 @@ TEST_F(TransitionSolverTest, GivesTheSameBitsForTheSameSeedWhateverItSolvedBefor
   for (int i = 0; i < 5; ++i) {
     starts.push_back(at_random(robot(), task.start_configuration, 0.1, 0.4, random));
   }
-  TransitionSolver one(task.robot, task.world);
+  TransitionSolver one(task.robot, task.world->world());
   std::vector<TransitionResult> results;
   for (const Eigen::VectorXd& start : starts) {
     results.push_back(one.solve(problem(start, 5), restarts(2)));
@@ -286,7 +286,7 @@ TEST_F(TransitionSolverTest, GivesTheSameBitsForTheSameSeedWhateverItSolvedBefor
   // Memory lies elsewhere, and the problems come in another order.
   for (std::size_t padding = 1; padding <= 3; ++padding) {
     const std::vector<double> elsewhere(1 + 7 * padding);
-    TransitionSolver other(task.robot, task.world);
+    TransitionSolver other(task.robot, task.world->world());
     for (std::size_t i = starts.size(); i-- > 0;) {
       const TransitionResult again = other.solve(problem(starts[i], 5), restarts(2));
       EXPECT_EQ(again.found, results[i].found) << i;
@@ -299,7 +299,7 @@ TEST_F(TransitionSolverTest, GivesTheSameBitsForTheSameSeedWhateverItSolvedBefor
 }
 
 TEST_F(TransitionSolverTest, RestartsFindWhatOneAttemptDoesNot) {
-  TransitionSolver solver(task.robot, task.world);
+  TransitionSolver solver(task.robot, task.world->world());
   std::mt19937_64 random(21);
   int lost = 0, found_after_all = 0;
   for (int i = 0; i < 60 && found_after_all == 0; ++i) {
@@ -320,7 +320,7 @@ TEST_F(TransitionSolverTest, RefusesContactsAndRobotsThatMakeNoSense) {
   contact_of(unsound, "left_hand").effector.link = "nowhere";
   TransitionProblem asked = problem();
   asked.closed = unsound.contacts;
-  TransitionSolver solver(task.robot, task.world);
+  TransitionSolver solver(task.robot, task.world->world());
   EXPECT_THROW(solver.solve(asked), Error);
   EXPECT_TRUE(solver.solve(problem(), restarts(2)).found) << "it goes on as before";
 
@@ -329,7 +329,7 @@ TEST_F(TransitionSolverTest, RefusesContactsAndRobotsThatMakeNoSense) {
   const std::string stem = LOCOGRAPH_SOURCE_DIR "/robots/models/coman_plus/coman_plus";
   const auto on_a_plinth =
       std::make_shared<const RobotParameter>(stem + ".urdf", stem + ".srdf", fixed);
-  EXPECT_THROW(TransitionSolver(on_a_plinth, task.world), Error);
+  EXPECT_THROW(TransitionSolver(on_a_plinth, task.world->world()), Error);
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ Eigen::Vector3d along(double angle) { return {std::cos(angle), std::sin(angle), 
 /// CENTAURO at the start of the straight drive: every wheel heads along x.
 struct Drive {
   Drive()
-      : graph(plan_wheeled_drive(centauro_drive())),
+      : graph(planned_drive(centauro_drive())),
         plan(plan_of(graph)),
         robot(*plan.robot->robot),
         motion(robot, plan.stance_from.front()->stance),

@@ -13,7 +13,7 @@ namespace locograph {
 namespace {
 
 TEST(WheeledDrive, StraightOnIsFiftyConfigurationsOverFourMetresAtOneHeight) {
-  const Graph graph = plan_wheeled_drive(centauro_drive());
+  const Graph graph = planned_drive(centauro_drive());
   const Plan plan = plan_of(graph);
   const Motion motion = motion_of(graph, plan);
   ASSERT_EQ(motion.configurations.size(), 50u);
@@ -48,7 +48,7 @@ class Curved : public testing::TestWithParam<double> {};
 
 TEST_P(Curved, DriveStandsOnItsWheelsAndRollsToTheOrderOfTheEdge) {
   const double curvature = GetParam();
-  const Graph graph = plan_wheeled_drive(centauro_drive(4.0, curvature));
+  const Graph graph = planned_drive(centauro_drive(4.0, curvature));
   const Plan plan = plan_of(graph);
   const std::vector<Eigen::VectorXd> all = configurations(graph);
   RobotState state(*plan.robot->robot);
@@ -85,7 +85,7 @@ TEST_P(Curved, DriveStandsOnItsWheelsAndRollsToTheOrderOfTheEdge) {
 }
 
 TEST_P(Curved, DriveIsFeasibleForTheIndependentChecker) {
-  const Graph graph = plan_wheeled_drive(centauro_drive(4.0, GetParam()));
+  const Graph graph = planned_drive(centauro_drive(4.0, GetParam()));
   const CheckReport report = check_plan(graph);
   expect_feasible(report);
   EXPECT_EQ(report.configurations, 50);
@@ -98,7 +98,7 @@ TEST_P(Curved, DriveIsFeasibleForTheIndependentChecker) {
 }
 
 TEST_P(Curved, DriveSaysThatItStandsOnItsFourWheels) {
-  const Graph graph = plan_wheeled_drive(centauro_drive(4.0, GetParam(), 7));
+  const Graph graph = planned_drive(centauro_drive(4.0, GetParam(), 7));
   const Plan plan = plan_of(graph);
   const Motion motion = motion_of(graph, plan);
   ASSERT_EQ(motion.stances.size(), 1u);
@@ -116,7 +116,7 @@ TEST_P(Curved, DriveSaysThatItStandsOnItsFourWheels) {
 TEST_P(Curved, DriveFollowsItsArc) {
   const double curvature = GetParam();
   const std::vector<Eigen::VectorXd> all =
-      configurations(plan_wheeled_drive(centauro_drive(4.0, curvature)));
+      configurations(planned_drive(centauro_drive(4.0, curvature)));
   const Eigen::VectorXd& last = all.back();
   EXPECT_NEAR(2.0 * std::atan2(last[5], last[6]), 4.0 * curvature, 1e-12);
   if (curvature == 0.0) {
@@ -131,7 +131,7 @@ TEST_P(Curved, DriveFollowsItsArc) {
 }
 
 TEST_P(Curved, DriveIsAnOptimumOfItsOwnGraph) {
-  Graph graph = plan_wheeled_drive(centauro_drive(4.0, GetParam()));
+  Graph graph = planned_drive(centauro_drive(4.0, GetParam()));
   const std::vector<Eigen::VectorXd> before = configurations(graph);
   const OptimiserResult result = optimise(graph, {}, *make_linear_solver("auto"));
   EXPECT_LT(result.initial.chi2, 1e-3) << result.reason_text();
@@ -145,7 +145,7 @@ TEST_P(Curved, DriveIsAnOptimumOfItsOwnGraph) {
 
 TEST_P(Curved, DriveSavesAndLoadsBitByBit) {
   const TemporaryFolder folder;
-  const Graph graph = plan_wheeled_drive(centauro_drive(4.0, GetParam(), 7));
+  const Graph graph = planned_drive(centauro_drive(4.0, GetParam(), 7));
   write_graph(graph, folder.path() / "plan.g2o");
   TypeRegistry types;
   add_robot_types(types);
@@ -167,7 +167,7 @@ TEST(WheeledDrive, RefusesAStartStateWhoseWheelsAreNotLevel) {
   Scenario scenario = centauro_drive();
   scenario.end_effectors[2].radius_m = 0.07;
   try {
-    plan_wheeled_drive(scenario);
+    planned_drive(scenario);
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("level"), std::string::npos) << error.what();
@@ -177,7 +177,7 @@ TEST(WheeledDrive, RefusesAStartStateWhoseWheelsAreNotLevel) {
 TEST(WheeledDrive, RefusesAnArcThatAWheelCannotBeSteeredInto) {
   // As shipped, but for the range of one steering joint: 0.2 rad around where it is.
   const Scenario shipped = centauro_drive();
-  const Graph straight = plan_wheeled_drive(shipped);
+  const Graph straight = planned_drive(shipped);
   const Robot& robot = *plan_of(straight).robot->robot;
   const Joint& yaw = robot.joints()[robot.joint_index("ankle_yaw_3")];
   const double home = configurations(straight).front()[7 + yaw.index];
@@ -193,10 +193,10 @@ TEST(WheeledDrive, RefusesAnArcThatAWheelCannotBeSteeredInto) {
   Scenario scenario = shipped;
   scenario.urdf = folder.write("stiff.urdf", urdf);
   scenario.drive->curvature_1_m = 0.3;
-  EXPECT_EQ(check_plan(plan_wheeled_drive(scenario)).feasible, true);
+  EXPECT_EQ(check_plan(planned_drive(scenario)).feasible, true);
   scenario.drive->curvature_1_m = 1.5;
   try {
-    plan_wheeled_drive(scenario);
+    planned_drive(scenario);
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("wheel_3 cannot be steered"), std::string::npos)
@@ -207,12 +207,12 @@ TEST(WheeledDrive, RefusesAnArcThatAWheelCannotBeSteeredInto) {
 TEST(WheeledDrive, RefusesAScenarioWithoutADrive) {
   Scenario scenario = centauro_drive();
   scenario.drive.reset();
-  EXPECT_THROW(plan_wheeled_drive(scenario), Error);
+  EXPECT_THROW(planned_drive(scenario), Error);
 }
 
 TEST(WheeledDrive, IsNoneWhenItsTimeIsUpWhereverThatHappens) {
   const Scenario scenario = centauro_drive(1.0, 0.0, 5);
-  EXPECT_FALSE(plan_wheeled_drive(scenario, {.deadline = Deadline::after(0.0)}));
+  EXPECT_FALSE(planned_drive(scenario, {.deadline = Deadline::after(0.0)}));
   std::vector<std::string> parts;
   JobControl job;
   job.report = [&parts](std::string_view part, double fraction) {
@@ -220,7 +220,7 @@ TEST(WheeledDrive, IsNoneWhenItsTimeIsUpWhereverThatHappens) {
     EXPECT_LT(fraction, 1.0);
     if (parts.empty() || parts.back() != part) parts.emplace_back(part);
   };
-  ASSERT_TRUE(plan_wheeled_drive(scenario, job));
+  ASSERT_TRUE(planned_drive(scenario, job));
   EXPECT_EQ(parts, (std::vector<std::string>{"rolling", "placing configurations", "comparing links",
                                              "adding constraints"}));
   for (const std::string& last : parts) {
@@ -228,7 +228,7 @@ TEST(WheeledDrive, IsNoneWhenItsTimeIsUpWhereverThatHappens) {
     ended.report = [&](std::string_view part, double) {
       if (part == last) ended.deadline = Deadline::after(0.0);
     };
-    EXPECT_FALSE(plan_wheeled_drive(scenario, ended)) << last;
+    EXPECT_FALSE(planned_drive(scenario, ended)) << last;
   }
 }
 

@@ -16,16 +16,16 @@ using test::contact_of, test::stance_task;
 
 constexpr double kRadius = 0.078;
 
-const StanceProblem& platform() {
-  static const StanceProblem task = stance_task("centauro_platform");
+const Task& platform() {
+  static const Task task = stance_task("centauro_platform");
   return task;
 }
 
 /// How far a wheel is turned on a plane, but for a constant and whole turns.
-double turned(const StanceProblem& task, std::size_t effector, const Eigen::Vector3d& normal,
+double turned(const Task& task, std::size_t effector, const Eigen::Vector3d& normal,
               const Eigen::VectorXd& q) {
   const Robot& robot = *task.robot->robot;
-  const Wheel wheel = wheel_of(robot, task.end_effectors[effector]);
+  const Wheel wheel = wheel_of(robot, task.end_effectors()[effector]);
   RobotState state(robot);
   state.update(q.data());
   return q[robot.base_configuration_size() + wheel.joint] + carrier_pitch(state, wheel, normal);
@@ -104,7 +104,7 @@ TEST(WheelsAsFeet, TurnBackWhatTheirCarriersPitchWhileTheyTouch) {
     if (e == 2) {
       EXPECT_EQ(path.configurations[2], [&] {
         Eigen::VectorXd others = path.configurations[2];
-        const Wheel wheel = wheel_of(robot, platform().end_effectors[e]);
+        const Wheel wheel = wheel_of(robot, platform().end_effectors()[e]);
         const int joint = robot.base_configuration_size() + wheel.joint;
         others[joint] = more[joint];
         return others;

@@ -1,8 +1,5 @@
 #include <locograph/planners/offline/drive/wheel_motion.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
-#include <locograph/planners/plan/plan.h>
-#include <locograph/planners/plan/plan_edges.h>
-#include <locograph/plugins/configuration/plan_parameters.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +8,7 @@
 namespace locograph {
 namespace {
 
-constexpr double kLevelTolerance_m = 1e-3, kGround_m = 0.0;
+constexpr double kLevelTolerance_m = 1e-3;
 /// Of the base while it speeds up and brakes, at most; of the accelerations that a scenario allows
 /// its wheels, a share.
 constexpr double kAcceleration_m_s2 = 0.5, kShareOfLimit = 0.8;
@@ -28,10 +25,10 @@ DrivePoint path_point(const DriveTask& drive, double distance) {
           turned};
 }
 
-/// Every wheel of the scenario on the plane z = 0.
-Stance all_wheels(const Scenario& scenario) {
+/// Every wheel of the task on the plane z = 0.
+Stance all_wheels(const Task& task) {
   Stance stance;
-  for (const EndEffector& effector : scenario.end_effectors) {
+  for (const EndEffector& effector : task.end_effectors()) {
     if (effector.kind == ContactKind::kWheel) stance.contacts.push_back({.effector = effector});
   }
   return stance;
@@ -62,12 +59,12 @@ struct Ramp {
 
 class WheeledDrive {
  public:
-  WheeledDrive(const Scenario& scenario, const Robot& robot, const Stance& stance)
-      : drive_(*scenario.drive),
-        robot_(robot),
-        motion_(robot, stance),
-        wheel_limit_rad_s2_(scenario.limits.joint_acceleration_rad_s2) {
-    stand_ = robot.named_configuration(scenario.start_state);
+  WheeledDrive(const Task& task, const Stance& stance)
+      : drive_(*task.drive),
+        robot_(*task.robot->robot),
+        motion_(robot_, stance),
+        wheel_limit_rad_s2_(task.check.joint_acceleration_rad_s2) {
+    stand_ = robot_.named_configuration(task.start_state);
     put_on_ground();
     steer();
   }
@@ -151,37 +148,16 @@ class WheeledDrive {
 
 }  // namespace
 
-Graph plan_wheeled_drive(const Scenario& scenario) {
-  return *plan_wheeled_drive(scenario, JobControl());
-}
-
-std::optional<Graph> plan_wheeled_drive(const Scenario& scenario, const JobControl& job) {
-  if (!scenario.drive) throw Error(scenario.source, 0, "the scenario has no drive", "<drive …/>");
-  Graph graph;
-  const auto robot =
-      std::make_shared<const RobotParameter>(scenario.urdf, scenario.srdf, scenario.robot);
-  require_camera_links(scenario, *robot->robot);
-  robot->robot->require_collision_shapes();
-  graph.parameters().set(kRobotNumber, robot);
-  // Where the scenario names what there is to stand on, that is all there is, as in world_of().
-  const bool on_ground = scenario.surfaces.empty() && scenario.scanned.empty();
-  graph.parameters().set(kWorldNumber, std::make_shared<const WorldParameter>(
-                                           WorldFiles{scenario.map, scenario.obstacles},
-                                           on_ground ? std::optional(kGround_m) : std::nullopt));
-  const auto origin = std::make_shared<ScenarioParameter>();
-  origin->scenario = scenario.source;
-  graph.parameters().set(kScenarioNumber, origin);
-
-  const DriveTask& drive = *scenario.drive;
+std::optional<Motion> plan_wheeled_drive(const Task& task, const JobControl& job) {
+  if (!task.drive) throw Error(task.scenario, 0, "the scenario has no drive", "<drive …/>");
   Motion motion;
-  motion.stances = {all_wheels(scenario)};
-  require_sound_stance(*robot->robot, motion.stances.front());
-  WheeledDrive(scenario, *robot->robot, motion.stances.front()).drive(job, motion);
-  if (motion.configurations.size() < static_cast<std::size_t>(drive.configurations)) return {};
-  const std::vector<int> numbers = add_stances(graph, robot, motion.stances);
-  if (!add_configurations(graph, motion, numbers, job)) return {};
-  if (!add_plan_edges(graph, drive_edges(), {}, job)) return {};
-  return graph;
+  motion.stances = {all_wheels(task)};
+  require_sound_stance(*task.robot->robot, motion.stances.front());
+  WheeledDrive(task, motion.stances.front()).drive(job, motion);
+  if (motion.configurations.size() < static_cast<std::size_t>(task.drive->configurations)) {
+    return {};
+  }
+  return motion;
 }
 
 }  // namespace locograph

@@ -6,12 +6,12 @@
 
 namespace locograph {
 
-Graph motion_graph(const Scenario& scenario, const StanceProblem& problem, const MotionPlan& plan) {
+Graph motion_graph(const Task& task, const MotionPlan& plan) {
   const Motion& motion = plan.motion;
   if (motion.configurations.empty()) throw Error("a motion without configurations", "one or more");
   Graph graph;
   const std::vector<int> numbers =
-      add_task(graph, scenario, problem, motion.stances, {.incomplete = !plan.success});
+      add_task(graph, task, motion.stances, {.incomplete = !plan.success});
   int number = graph.parameters().all().rbegin()->first;
   for (std::size_t j = 0; j < plan.segments.size(); ++j) {
     const SegmentRecord& record = plan.segments[j];
@@ -24,7 +24,7 @@ Graph motion_graph(const Scenario& scenario, const StanceProblem& problem, const
     graph.parameters().set(++number, segment);
   }
   add_configurations(graph, motion, numbers);
-  add_plan_edges(graph, motion_edges(problem.check), motion.wrenches);
+  add_plan_edges(graph, motion_edges(task.check), motion.wrenches);
   return graph;
 }
 

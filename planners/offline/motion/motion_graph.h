@@ -1,7 +1,7 @@
 #pragma once
 /// A whole motion as a graph: what `locograph plan` writes.
 ///
-///     Graph graph = motion_graph(scenario, problem, plan);
+///     Graph graph = motion_graph(task, plan);
 ///     write_graph(graph, "plan.g2o");
 ///
 /// One VERTEX_CONFIGURATION for each configuration with its time and the stance that it is left in,
@@ -10,12 +10,12 @@
 
 #include <locograph/core/graph.h>
 #include <locograph/planners/offline/motion/motion_planner.h>
-#include <locograph/planners/scenario/scenario.h>
+#include <locograph/planners/task/task.h>
 
 namespace locograph {
 
 /// The plan is marked incomplete where it has no success. Throws Error for a motion without
 /// configurations or with a step whose stance is not known.
-Graph motion_graph(const Scenario& scenario, const StanceProblem& problem, const MotionPlan& plan);
+Graph motion_graph(const Task& task, const MotionPlan& plan);
 
 }  // namespace locograph

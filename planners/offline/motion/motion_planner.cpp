@@ -2,7 +2,6 @@
 #include <locograph/planners/offline/motion/motion_planner.h>
 #include <locograph/planners/offline/motion/segment_motion.h>
 #include <locograph/planners/offline/stance/stance_planners.h>
-#include <locograph/planners/offline/stance/stance_space.h>
 #include <locograph/planners/offline/stance/standing_wheels.h>
 
 #include <algorithm>
@@ -23,7 +22,7 @@ constexpr int kFewStates = 4000;
 
 /// What one segment came to be, to be looked up when the stance planner comes back to it.
 struct Solved {
-  Stance before, held, after;
+  Footing before, held, after;  ///< before: empty where the motion begins
   Eigen::VectorXd from, to;
   std::size_t planner = 0;  ///< the first one that has not been refused
   SegmentPace pace;
@@ -36,50 +35,29 @@ bool is_of_inertia(const Violation& violation) {
   return violation.constraint == "static_balance" || violation.constraint == "torque_limits";
 }
 
-bool same(const Stance& a, const Stance& b) {
-  return std::equal(a.contacts.begin(), a.contacts.end(), b.contacts.begin(), b.contacts.end(),
-                    [](const Contact& x, const Contact& y) {
-                      return x.name() == y.name() && x.position == y.position &&
-                             x.normal == y.normal && x.forward == y.forward;
-                    });
-}
-
-/// Contacts of `of` whose end effectors are not in `held`.
-std::vector<Contact> besides(const Stance& of, const Stance& held) {
-  std::vector<Contact> contacts;
-  for (const Contact& contact : of.contacts) {
-    if (std::ranges::find(held.contacts, contact.name(), &Contact::name) == held.contacts.end()) {
-      contacts.push_back(contact);
-    }
-  }
-  return contacts;
-}
-
 class MotionSearch {
  public:
-  MotionSearch(const StanceProblem& problem, const StancePlannerOptions& stances,
+  MotionSearch(StanceSpace& space, const StancePlannerOptions& stances,
                const MotionOptions& options, MotionPlan& plan)
-      : problem_(problem),
+      : task_(space.task()),
         stances_(stances),
         plan_(plan),
-        space_(problem, stances_),
-        mover_(problem, options),
+        space_(space),
+        mover_(task_, options),
         all_planners_(!options.segment_planners.empty()),
-        judge_(problem.robot->robot, problem.world) {}
+        judge_(task_.robot->robot, task_.world) {}
 
-  /// See StancePlannerOptions::accept.
-  std::size_t accept(const std::vector<Stance>& stances,
-                     std::vector<Eigen::VectorXd>& configurations, std::size_t first) {
-    const std::size_t count = configurations.size() - 1;
+  /// Moves along a way through stances. 0: it does, maybe between other configurations than the
+  /// way came with, from change number `first` + 1 on; else the number of a change that will not
+  /// do.
+  std::size_t move_along(StancePath& way, std::size_t first) {
+    const std::size_t count = way.changes();
     ways_.resize(count, nullptr);
     for (std::size_t j = first; j < count; ++j) {
-      if (!found_at(stances, configurations, j) &&
-          !move_postures(stances, configurations, first, j)) {
-        return refuse(j);
-      }
+      if (!found_at(way, j) && !move_postures(way, first, j)) return refuse(j);
     }
     for (bool whole = false;; whole = true) {
-      assemble(stances, configurations);
+      assemble(way);
       std::vector<StanceWrenches> wrenches(plan_.motion.configurations.size());
       plan_.report = judged(plan_.motion, &wrenches);
       plan_.motion.wrenches = std::move(wrenches);
@@ -92,7 +70,7 @@ class MotionSearch {
       bool mended = false;
       for (std::size_t j = first; j < count; ++j) {
         if (ways_[j]->judged || !named[j]) continue;
-        if (!mend(stances, j, mended)) return refuse(j);
+        if (!mend(j, mended)) return refuse(j);
       }
       if (mended || slow_down(first)) continue;
       if (!whole) continue;
@@ -104,11 +82,9 @@ class MotionSearch {
   }
 
   /// Without success: as far as segments were found.
-  void assemble(const std::vector<Stance>& stances,
-                const std::vector<Eigen::VectorXd>& configurations) {
+  void assemble(const StancePath& path) {
     Motion& motion = plan_.motion;
     motion = {};
-    motion.stances = stances;
     plan_.segments.clear();
     double time_s = 0.0;
     for (std::size_t j = 0; j < ways_.size() && ways_[j]->motion.found; ++j) {
@@ -136,9 +112,11 @@ class MotionSearch {
       plan_.segments.push_back(std::move(record));
     }
     const std::size_t done = plan_.segments.size();
-    motion.stances.resize(done + 1);
-    motion.configurations.push_back(configurations[done]);
-    motion.slopes.push_back(Eigen::VectorXd::Zero(problem_.robot->robot->tangent_size()));
+    for (std::size_t j = 0; j <= done; ++j) {
+      motion.stances.push_back(space_.stance(path.footings[j]));
+    }
+    motion.configurations.push_back(path.configurations[done]);
+    motion.slopes.push_back(Eigen::VectorXd::Zero(task_.robot->robot->tangent_size()));
     motion.time_s.push_back(time_s);
     motion.stance_from.push_back(static_cast<int>(done));
   }
@@ -158,58 +136,50 @@ class MotionSearch {
   /// Other postures at an end of segment j, near the one at its other end: where free arms are on
   /// different sides of a bar there is no short way. False: none makes it found; nothing is
   /// changed.
-  bool move_postures(const std::vector<Stance>& stances,
-                     std::vector<Eigen::VectorXd>& configurations, std::size_t first,
-                     std::size_t j) {
+  bool move_postures(StancePath& path, std::size_t first, std::size_t j) {
     if (ways_[j]->motion.no_arc) return false;
-    const auto footing = [&](std::size_t i) { return space_.footing(stances[i]); };
+    const std::vector<Footing>& footings = path.footings;
     const auto found_with = [&](std::size_t i, const StanceSpace::Attempt& other) {
       if (!other.found) return false;
-      StancePath path{{}, configurations};
-      for (std::size_t k = 0; k < stances.size(); ++k) path.footings.push_back(footing(k));
+      std::vector<Eigen::VectorXd> as_they_were = path.configurations;
       path.configurations[i] = other.configuration;
       hold_wheels(space_, path, i);
-      std::swap(configurations, path.configurations);
-      const bool found = found_at(stances, configurations, j) &&
-                         (i > j || found_at(stances, configurations, j - 1));
-      if (!found) std::swap(configurations, path.configurations);
+      const bool found = found_at(path, j) && (i > j || found_at(path, j - 1));
+      if (!found) path.configurations = std::move(as_they_were);
       return found;
     };
-    const Eigen::VectorXd begin = configurations[j], end = configurations[j + 1];
+    const Eigen::VectorXd begin = path.configurations[j], end = path.configurations[j + 1];
     const bool moved =
-        found_with(j + 1, space_.try_nearby(footing(j), footing(j + 1), begin)) ||
-        (j > first && (found_with(j, space_.try_nearby(footing(j - 1), footing(j), end)) ||
-                       found_with(j, space_.try_transition(footing(j - 1), footing(j), end, 0))));
+        found_with(j + 1, space_.try_nearby(footings[j], footings[j + 1], begin)) ||
+        (j > first && (found_with(j, space_.try_nearby(footings[j - 1], footings[j], end)) ||
+                       found_with(j, space_.try_again(footings[j - 1], footings[j], end))));
     if (!moved) {
-      found_at(stances, configurations, j);
-      if (j > first) found_at(stances, configurations, j - 1);
+      found_at(path, j);
+      if (j > first) found_at(path, j - 1);
     }
     return moved;
   }
 
-  bool found_at(const std::vector<Stance>& stances,
-                const std::vector<Eigen::VectorXd>& configurations, std::size_t j) {
-    ways_[j] = &solved(stances, configurations, j);
+  bool found_at(const StancePath& path, std::size_t j) {
+    ways_[j] = &solved(path, j);
     return ways_[j]->motion.found;
   }
 
-  Solved& solved(const std::vector<Stance>& stances,
-                 const std::vector<Eigen::VectorXd>& configurations, std::size_t j) {
-    const Stance none;
-    const Stance& before = j == 0 ? none : stances[j - 1];
+  Solved& solved(const StancePath& path, std::size_t j) {
+    const Footing before = j == 0 ? Footing() : path.footings[j - 1];
     for (const auto& known : known_) {
-      if (known->from == configurations[j] && known->to == configurations[j + 1] &&
-          same(known->held, stances[j]) && same(known->after, stances[j + 1]) &&
-          same(known->before, before)) {
+      if (known->from == path.configurations[j] && known->to == path.configurations[j + 1] &&
+          known->held == path.footings[j] && known->after == path.footings[j + 1] &&
+          known->before == before) {
         return *known;
       }
     }
     auto fresh = std::make_unique<Solved>();
     fresh->before = before;
-    fresh->held = stances[j];
-    fresh->after = stances[j + 1];
-    fresh->from = configurations[j];
-    fresh->to = configurations[j + 1];
+    fresh->held = path.footings[j];
+    fresh->after = path.footings[j + 1];
+    fresh->from = path.configurations[j];
+    fresh->to = path.configurations[j + 1];
     move(*fresh);
     return *known_.emplace_back(std::move(fresh));
   }
@@ -231,21 +201,26 @@ class MotionSearch {
     });
   }
 
+  /// Contacts of `of` whose end effectors are not in `held`.
+  std::vector<Contact> besides(Footing of, const Footing& held) const {
+    for (std::size_t e = 0; e < of.size(); ++e) {
+      if (held[e] != kFree) of[e] = kFree;
+    }
+    return space_.stance(of).contacts;
+  }
+
   /// Calls f with the segment and its contacts.
   template <class F>
   void on_segment(Solved& solved, const F& f) {
-    std::vector<BearingContact> bearing;
-    for (const int number : space_.footing(solved.held)) {
-      if (number != kFree) bearing.push_back(space_.place(number).bearing);
-    }
-    const double mass_kg = problem_.robot->robot->total_mass();
+    const std::vector<BearingContact> bearing = space_.bearing_contacts(solved.held);
+    const double mass_kg = task_.robot->robot->total_mass();
     const BalanceRegion region = balance_region(mass_kg, bearing, kRegionMargin);
     std::optional<TorqueProgramme> torques;
-    if (problem_.check.enforce_torque_limits) {
-      torques.emplace(*problem_.robot->robot, bearing, problem_.check.effort_scale, kRegionMargin);
+    if (task_.check.enforce_torque_limits) {
+      torques.emplace(*task_.robot->robot, bearing, task_.check.effort_scale, kRegionMargin);
     }
     Segment segment;
-    segment.held = solved.held.contacts;
+    segment.held = space_.stance(solved.held).contacts;
     segment.balance = &region;
     segment.torques = torques ? &*torques : nullptr;
     segment.left = besides(solved.before, solved.held);
@@ -269,7 +244,7 @@ class MotionSearch {
 
   CheckReport judged(const Motion& motion, std::vector<StanceWrenches>* wrenches = nullptr) {
     const Stopwatch watch;
-    CheckOptions asked = problem_.check;
+    CheckOptions asked = task_.check;
     asked.threads = stances_.threads;
     if (wrenches != nullptr) {
       asked.on_balance = [wrenches](int vertex, const StanceWrenches& found) {
@@ -317,12 +292,12 @@ class MotionSearch {
 
   /// Judges a segment by itself, and moves it again until it holds: slower, or by the next planner.
   /// False: it cannot be moved otherwise.
-  bool mend(const std::vector<Stance>& stances, std::size_t j, bool& mended) {
+  bool mend(std::size_t j, bool& mended) {
     Solved& solved = *ways_[j];
     for (;;) {
       const SegmentMotion& way = solved.motion;
       Motion alone = as_motion(way);
-      alone.stances = {stances[j], stances[j + 1]};
+      alone.stances = {space_.stance(solved.held), space_.stance(solved.after)};
       alone.stance_from.assign(way.configurations.size(), 0);
       alone.stance_from.back() = 1;
       const CheckReport report = judged(alone);
@@ -351,10 +326,10 @@ class MotionSearch {
     }
   }
 
-  const StanceProblem& problem_;
-  const StancePlannerOptions stances_;
+  const Task& task_;
+  const StancePlannerOptions& stances_;
   MotionPlan& plan_;
-  StanceSpace space_;
+  StanceSpace& space_;
   SegmentMover mover_;
   bool all_planners_;  ///< from the first segment on
   Judge judge_;
@@ -365,25 +340,35 @@ class MotionSearch {
 
 }  // namespace
 
-MotionPlan plan_motion(const StanceProblem& problem, const StancePlannerOptions& stances,
+MotionPlan plan_motion(const Task& task, const StancePlannerOptions& stances,
                        const MotionOptions& options) {
   const Stopwatch watch;
   MotionPlan plan;
-  MotionSearch search(problem, stances, options, plan);
   StancePlannerOptions asked = stances;
-  asked.accept = [&](const auto& of, auto& configurations, std::size_t first) {
-    return search.accept(of, configurations, first);
-  };
-  plan.stances = make_stance_planner(options.stance_planner)->plan(problem, asked);
+  asked.approachable_only = true;
+  const auto planner = make_stance_planner(options.stance_planner);
+  const std::unique_ptr<StanceSearch> search = planner->begin(task, asked);
+  MotionSearch motions(search->space(), asked, options, plan);
+  while (search->next()) {
+    StancePath way = search->candidate();
+    const std::size_t refused = motions.move_along(way, search->taken().changes());
+    if (refused > 0) {
+      search->refuse(refused, "no motion for one of its stances");
+    } else {
+      search->replace(std::move(way.configurations));
+      search->take();
+    }
+  }
+  plan.stances = search->result();
   plan.success = plan.stances.success;
   plan.reason = plan.stances.reason;
   if (!plan.success) {
-    if (!search.refused_reason().empty()) {
-      plan.reason += "; the last motion that was not found: " + search.refused_reason();
+    if (!motions.refused_reason().empty()) {
+      plan.reason += "; the last motion that was not found: " + motions.refused_reason();
     }
     plan.report = {};
-    search.keep(plan.stances.configurations.size() - 1);
-    search.assemble(plan.stances.stances, plan.stances.configurations);
+    motions.keep(search->taken().changes());
+    motions.assemble(search->taken());
   }
   plan.total_s = watch.seconds();
   return plan;

@@ -1,19 +1,21 @@
 #pragma once
 /// A whole motion for a contact task: stances, a path in each, and when.
 ///
-///     const StanceProblem problem = stance_problem(scenario).problem;
-///     const MotionPlan plan = plan_motion(problem, {.seed = 7});
-///     if (plan.success) write_graph(motion_graph(scenario, problem, plan), "plan.g2o");
+///     const Task task = started_task(scenario).task;
+///     const MotionPlan plan = plan_motion(task, {.seed = 7});
+///     if (plan.success) write_graph(motion_graph(task, plan), "plan.g2o");
 ///
 /// Each stance that the stance planner finds is a segment: a path between the configurations in
 /// which it begins and ends (segment_planner.h), with the fastest timing from rest to rest
-/// (timing/path_timing.h). A segment that no planner solves is told to the stance planner, which
-/// does not go that way again. The whole motion is judged (check/judge.h) before it counts.
+/// (timing/path_timing.h). The stance planner hands out one candidate after the other
+/// (stance_search.h): where a segment is solved by no planner, its change of stance is refused, and
+/// the next candidate does without. The whole motion is judged (check/judge.h) before it counts.
 
 #include <locograph/check/check_report.h>
 #include <locograph/check/motion.h>
 #include <locograph/planners/offline/motion/motion_options.h>
-#include <locograph/planners/offline/stance/stance_planner.h>
+#include <locograph/planners/offline/stance/stance_plan.h>
+#include <locograph/planners/task/task.h>
 
 #include <optional>
 #include <string>
@@ -47,8 +49,9 @@ struct MotionPlan {
   double whole_body_s = 0.0, timing_s = 0.0, judge_s = 0.0, total_s = 0.0;
 };
 
-/// StancePlannerOptions::accept is used, and must be empty.
-MotionPlan plan_motion(const StanceProblem& problem, const StancePlannerOptions& stances,
+/// Contacts are put only where they can be approached, whatever the options say
+/// (StancePlannerOptions::approachable_only).
+MotionPlan plan_motion(const Task& task, const StancePlannerOptions& stances,
                        const MotionOptions& options = {});
 
 }  // namespace locograph

@@ -54,6 +54,14 @@ Eigen::VectorXd slope_of(const Robot& robot, const TimedPoint& point) {
   return slope;
 }
 
+/// What the judge is asked, and a limit of accelerations where that has none.
+CheckOptions with_accelerations(CheckOptions check, const MotionOptions& options) {
+  if (!(check.joint_acceleration_rad_s2 > 0.0)) {
+    check.joint_acceleration_rad_s2 = options.joint_acceleration_rad_s2;
+  }
+  return check;
+}
+
 }  // namespace
 
 Motion as_motion(const SegmentMotion& way) {
@@ -67,17 +75,11 @@ Motion as_motion(const SegmentMotion& way) {
   return motion;
 }
 
-SegmentMover::SegmentMover(const StanceProblem& problem, const MotionOptions& options)
-    : problem_(problem),
+SegmentMover::SegmentMover(const Task& task, const MotionOptions& options)
+    : task_(task),
       options_(options),
-      space_(problem.robot, problem.world, options.lift_off_m),
-      limits_(
-          timing_limits(*problem.robot->robot,
-                        {.base_linear_m_s = problem.check.base_linear_m_s,
-                         .base_angular_rad_s = problem.check.base_angular_rad_s,
-                         .joint_acceleration_rad_s2 = problem.check.joint_acceleration_rad_s2 > 0.0
-                                                          ? problem.check.joint_acceleration_rad_s2
-                                                          : options.joint_acceleration_rad_s2})) {
+      space_(task.robot, task.world->world(), options.lift_off_m),
+      limits_(timing_limits(*task.robot->robot, with_accelerations(task.check, options))) {
   const std::vector<std::string>& names =
       options.segment_planners.empty() ? segment_planner_names() : options.segment_planners;
   for (const std::string& name : names) planners_.push_back(make_segment_planner(name));
@@ -231,9 +233,9 @@ std::optional<SegmentMover::Node> SegmentMover::missing(const PathSpline& path, 
 
 bool SegmentMover::time(const PathSpline& path, std::span<const BearingContact> bearing,
                         double slower, SegmentMotion& motion) {
-  const bool torques = problem_.check.enforce_torque_limits;
+  const bool torques = task_.check.enforce_torque_limits;
   BalanceRows balance(space_.robot(), bearing,
-                      {.effort_scale = torques ? problem_.check.effort_scale : 0.0});
+                      {.effort_scale = torques ? task_.check.effort_scale : 0.0});
   TimingOptions options;
   options.smoothing_s = options_.smoothing_s;
   options.intervals = 100;

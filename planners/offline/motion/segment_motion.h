@@ -1,7 +1,7 @@
 #pragma once
 /// The motion within one stance: a path by the first planner that finds one, and its timing.
 ///
-///     SegmentMover mover(problem, options);
+///     SegmentMover mover(task, options);
 ///     const SegmentMotion motion = mover.move(segment, bearing, 0, 1, {.seed = 7});
 ///     if (motion.found) std::cout << motion.configurations.size() << " configurations\n";
 ///
@@ -13,8 +13,8 @@
 #include <locograph/check/motion.h>
 #include <locograph/planners/offline/motion/motion_options.h>
 #include <locograph/planners/offline/motion/segment_planner.h>
-#include <locograph/planners/offline/stance/stance_planner.h>
 #include <locograph/planners/offline/timing/path_timing.h>
+#include <locograph/planners/task/task.h>
 
 #include <memory>
 #include <optional>
@@ -52,7 +52,7 @@ Motion as_motion(const SegmentMotion& way);
 class SegmentMover {
  public:
   /// Throws Error for unknown names of planners, and as SegmentSpace does.
-  SegmentMover(const StanceProblem& problem, const MotionOptions& options);
+  SegmentMover(const Task& task, const MotionOptions& options);
 
   /// bearing: the contacts that are held, with their areas. first, end: numbers of the segment
   /// planners that are tried.
@@ -89,7 +89,7 @@ class SegmentMover {
   void take_slopes(const std::vector<bool>& moved, SegmentMotion& motion);
   void keep_limits(SegmentMotion& motion);
 
-  const StanceProblem& problem_;
+  const Task& task_;
   const MotionOptions& options_;
   SegmentSpace space_;
   TimingLimits limits_;

@@ -2,7 +2,7 @@
 /// Finds how a robot moves within one stance: from one configuration to another with the stance's
 /// contacts closed, in balance, within joint limits and free of collisions.
 ///
-///     SegmentSpace space(problem.robot, problem.world);           // segment_space.h
+///     SegmentSpace space(task.robot, task.world->world());  // segment_space.h
 ///     space.set_segment(segment);
 ///     const auto planner = make_segment_planner("interpolation");  // segment_planners.h
 ///     const SegmentPath path = planner->plan(space, {.seed = 7});

@@ -2,7 +2,7 @@
 #include <locograph/planners/offline/stance/experience.h>
 #include <locograph/planners/offline/stance/guided_planner.h>
 #include <locograph/planners/offline/stance/guided_tree.h>
-#include <locograph/planners/offline/stance/plan_stances.h>
+#include <locograph/planners/offline/stance/stance_search.h>
 #include <locograph/planners/offline/stance/stance_tree.h>
 
 #include <algorithm>
@@ -34,17 +34,22 @@ constexpr double kUsualShare = 0.7;
 /// Of its reach: how far apart contacts of an end effector are that count as roughly the same.
 constexpr double kRoughShare = 0.3;
 
-class GuidedSearch {
+class GuidedSearch final : public StanceSearch {
  public:
-  GuidedSearch(StanceSpace& space, const StancePlannerOptions& options, StancePlan& result)
-      : space_(space),
-        result_(result),
-        kept_{{space, options, result}, {space, options, result}},
+  GuidedSearch(const Task& task, const StancePlannerOptions& options)
+      : StanceSearch(task, options),
+        kept_{{space_, options, result_}, {space_, options, result_}},
         random_(options.seed),
-        experience_(space) {}
+        experience_(space_) {}
 
-  /// Appends the way to the goal; false if there is none.
-  bool reach(const Footing& goal, StancePath& path) {
+ private:
+  using Tree = GuidedTree;
+  using Node = GuidedTree::Node;
+  using Move = GuidedTree::Move;
+  using Transition = StanceSpace::Expected;
+  using Chain = std::vector<Transition>;
+
+  bool reach(const Footing& goal, StancePath& path) override {
     goal_ = goal;
     goal_posture_.reset();
     double most = kFirstTree;
@@ -65,13 +70,6 @@ class GuidedSearch {
     }
     return false;
   }
-
- private:
-  using Tree = GuidedTree;
-  using Node = GuidedTree::Node;
-  using Move = GuidedTree::Move;
-  using Transition = StanceSpace::Expected;
-  using Chain = std::vector<Transition>;
 
   double moves_to_go(int effector, int place, const Eigen::Vector3d& at) const {
     const int wanted = (*aim_)[static_cast<std::size_t>(effector)];
@@ -100,7 +98,7 @@ class GuidedSearch {
     ++result_.vertices_in_tree;
     ++own_->crowds[roughly(node.footing)];
     kept().add(node.footing, parent);
-    if (!own_->backwards) note_best(result_, space_, node.footing, goal_);
+    if (!own_->backwards) note_best(node.footing, goal_);
     choose_aim(node);
     if (!other_->known.contains(node.footing)) push_moves(number);
     return number;
@@ -523,8 +521,6 @@ class GuidedSearch {
     }
   }
 
-  StanceSpace& space_;
-  StancePlan& result_;
   StanceTree kept_[2];  ///< of each of trees_
   std::mt19937_64 random_;
   Experience experience_;
@@ -552,9 +548,9 @@ const std::string& GuidedPlanner::name() const {
   return own;
 }
 
-StancePlan GuidedPlanner::plan(const StanceProblem& problem,
-                               const StancePlannerOptions& options) const {
-  return plan_with<GuidedSearch>(problem, options);
+std::unique_ptr<StanceSearch> GuidedPlanner::begin(const Task& task,
+                                                   const StancePlannerOptions& options) const {
+  return std::make_unique<GuidedSearch>(task, options);
 }
 
 }  // namespace locograph

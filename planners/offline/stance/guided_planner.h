@@ -15,7 +15,8 @@ namespace locograph {
 class GuidedPlanner final : public StancePlanner {
  public:
   const std::string& name() const override;
-  StancePlan plan(const StanceProblem& problem, const StancePlannerOptions& options) const override;
+  std::unique_ptr<StanceSearch> begin(const Task& task,
+                                      const StancePlannerOptions& options) const override;
 };
 
 }  // namespace locograph

@@ -9,8 +9,8 @@ namespace locograph {
 namespace {
 
 /// Stances, then how far the joints move [rad, m].
-std::pair<std::size_t, double> price_of(const StanceProblem& problem, const StancePlan& plan) {
-  const Eigen::Index first = problem.robot->robot->base_configuration_size();
+std::pair<std::size_t, double> price_of(const Task& task, const StancePlan& plan) {
+  const Eigen::Index first = task.robot->robot->base_configuration_size();
   double moved = 0.0;
   for (std::size_t i = 1; i < plan.configurations.size(); ++i) {
     const Eigen::VectorXd step = plan.configurations[i] - plan.configurations[i - 1];
@@ -30,7 +30,7 @@ void add_effort(const StancePlan& spent, StancePlan& plan) {
 
 }  // namespace
 
-int improve_stances(const StancePlanner& planner, const StanceProblem& problem,
+int improve_stances(const StancePlanner& planner, const Task& task,
                     const StancePlannerOptions& options, int threads, StancePlan& plan) {
   if (!options.deadline.exists() && options.stop == nullptr) {
     throw Error("plans are to be improved without end", "a deadline, or a flag that stops it");
@@ -38,7 +38,7 @@ int improve_stances(const StancePlanner& planner, const StanceProblem& problem,
   const Stopwatch watch;
   ThreadPool pool(threads);
   std::vector<StancePlan> others(static_cast<std::size_t>(threads));
-  auto best = price_of(problem, plan);
+  auto best = price_of(task, plan);
   int better = 0;
   for (std::uint64_t tried = 1; plan.success && !options.ended();
        tried += static_cast<std::uint64_t>(threads)) {
@@ -46,10 +46,10 @@ int improve_stances(const StancePlanner& planner, const StanceProblem& problem,
       StancePlannerOptions other = options;
       other.threads = 1;
       other.seed += 0x9e3779b97f4a7c15ULL * (tried + static_cast<std::uint64_t>(i));
-      others[static_cast<std::size_t>(i)] = planner.plan(problem, other);
+      others[static_cast<std::size_t>(i)] = planner.plan(task, other);
     });
     for (StancePlan& other : others) {
-      const auto price = price_of(problem, other);
+      const auto price = price_of(task, other);
       const bool found = other.success && price < best;
       add_effort(found ? plan : other, found ? other : plan);
       if (!found) continue;

@@ -2,8 +2,8 @@
 /// Uses the time that is left: plans again with other seeds and keeps the best.
 ///
 ///     options.deadline = Deadline::after(5.0);
-///     StancePlan plan = planner->plan(problem, options);
-///     const int better = improve_stances(*planner, problem, options, 2, plan);
+///     StancePlan plan = planner->plan(task, options);
+///     const int better = improve_stances(*planner, task, options, 2, plan);
 
 #include <locograph/planners/offline/stance/stance_planner.h>
 
@@ -14,7 +14,7 @@ namespace locograph {
 /// configuration (sum of the angles). Counts and times are those of all plans together. Returns how
 /// often a better one was found. Throws Error where neither deadline nor stop is given. A plan
 /// without success is left alone.
-int improve_stances(const StancePlanner& planner, const StanceProblem& problem,
+int improve_stances(const StancePlanner& planner, const Task& task,
                     const StancePlannerOptions& options, int threads, StancePlan& plan);
 
 }  // namespace locograph

@@ -5,7 +5,7 @@ namespace locograph {
 
 JudgedPath judge_path(StanceSpace& space, const Judge& judge, StancePath& path) {
   JudgedPath judged;
-  const CheckOptions& options = space.problem().check;
+  const CheckOptions& options = space.task().check;
   constexpr int kMostMended = 20;
   for (int mended = 0;; ++mended) {
     hold_wheels(space, path);
@@ -14,7 +14,7 @@ JudgedPath judge_path(StanceSpace& space, const Judge& judge, StancePath& path) 
     const std::vector<const Violation*> violated = judged.report.violated();
     const std::size_t at =
         violated.empty() ? 0 : static_cast<std::size_t>(violated.front()->at_vertex);
-    if (at == 0 || at >= path.footings.size()) return judged;  // the start is the problem's own
+    if (at == 0 || at >= path.footings.size()) return judged;  // the start is the task's own
     const Footing &from = path.footings[at - 1], &to = path.footings[at];
     space.count_failure(changed_effector(from, to), "judge: " + violated.front()->constraint);
     bool better = false;

@@ -1,6 +1,6 @@
 #include <locograph/common/uniform.h>
-#include <locograph/planners/offline/stance/plan_stances.h>
 #include <locograph/planners/offline/stance/rrt_planner.h>
+#include <locograph/planners/offline/stance/stance_search.h>
 #include <locograph/planners/offline/stance/stance_tree.h>
 
 #include <algorithm>
@@ -58,13 +58,13 @@ Eigen::AlignedBox3d box_of_search(const World& world, const Eigen::Vector3d& cen
   return box.clamp(Eigen::AlignedBox3d(centre - far, centre + far));
 }
 
-class RrtSearch {
+class RrtSearch final : public StanceSearch {
  public:
-  RrtSearch(StanceSpace& space, const StancePlannerOptions& options, StancePlan& result)
-      : space_(space), result_(result), tree_(space, options, result), random_(options.seed) {}
+  RrtSearch(const Task& task, const StancePlannerOptions& options)
+      : StanceSearch(task, options), tree_(space_, options, result_), random_(options.seed) {}
 
-  /// Appends the way to the goal; false if there is none.
-  bool reach(const Footing& goal, StancePath& path) {
+ private:
+  bool reach(const Footing& goal, StancePath& path) override {
     begin(goal, path.footings.back(), path.configurations.back());
     if (vertices_.front().footing == goal) return true;
     for (int idle = 0; idle < kMostIdle && !space_.ended();) {
@@ -80,7 +80,6 @@ class RrtSearch {
     return false;
   }
 
- private:
   void begin(const Footing& goal, const Footing& start, const Eigen::VectorXd& q) {
     goal_ = goal;
     fewest_ = std::max(1, std::min(contacts_of(start), contacts_of(goal)) - 1);
@@ -98,7 +97,7 @@ class RrtSearch {
     for (const Eigen::Vector3d& position : positions) {
       centre += position / static_cast<double>(positions.size());
     }
-    box_ = box_of_search(space_.problem().world, centre);
+    box_ = box_of_search(space_.task().world->world(), centre);
   }
 
   Vertex& vertex(int number) { return vertices_[static_cast<std::size_t>(number)]; }
@@ -162,7 +161,7 @@ class RrtSearch {
   int expand(int number, const Target& target) {
     static const double wear = std::exp2(-1.0 / kHalvedAfter);
     vertex(number).weight *= wear;
-    Footing to = next(vertex(number), target);
+    Footing to = footing_after(vertex(number), target);
     if (known_.contains(to)) return -1;
     const Footing from = vertex(number).footing;
     std::size_t& tries = tries_[joined(from, to)];
@@ -179,7 +178,7 @@ class RrtSearch {
   }
 
   /// The vertex's footing itself where no contact is in reach.
-  Footing next(const Vertex& from, const Target& target) {
+  Footing footing_after(const Vertex& from, const Target& target) {
     const std::size_t k = static_cast<std::size_t>(target.effector);
     if (from.footing[k] != kFree) return without(from.footing, target.effector);
     return with(from.footing, target.effector,
@@ -213,7 +212,7 @@ class RrtSearch {
       aims_.push_back(added);  // not in the goal: to be lifted again
     }
     known_.insert(footing);
-    note_best(result_, space_, footing, goal_);
+    note_best(footing, goal_);
     tree_.add(footing, parent);
     vertices_.push_back({std::move(footing), std::move(q), parent, added, std::move(positions)});
     ++result_.vertices_in_tree;
@@ -231,8 +230,6 @@ class RrtSearch {
     }
   }
 
-  StanceSpace& space_;
-  StancePlan& result_;
   StanceTree tree_;
   std::mt19937_64 random_;
   Footing goal_;
@@ -252,9 +249,9 @@ const std::string& RrtPlanner::name() const {
   return own;
 }
 
-StancePlan RrtPlanner::plan(const StanceProblem& problem,
-                            const StancePlannerOptions& options) const {
-  return plan_with<RrtSearch>(problem, options);
+std::unique_ptr<StanceSearch> RrtPlanner::begin(const Task& task,
+                                                const StancePlannerOptions& options) const {
+  return std::make_unique<RrtSearch>(task, options);
 }
 
 }  // namespace locograph

@@ -2,7 +2,7 @@
 /// The planner "rrt": the published one, a random tree in contact space.
 ///
 ///     const auto planner = make_stance_planner("rrt");
-///     const StancePlan plan = planner->plan(problem, {.seed = 7});
+///     const StancePlan plan = planner->plan(task, {.seed = 7});
 ///
 /// Rossini et al., "Loco-Manipulation Planning for Legged Robots: Offline and Online Strategies",
 /// after Ferrari et al. 2023. Other than there, transitions are those of stance_space.h, the last
@@ -21,7 +21,8 @@ namespace locograph {
 class RrtPlanner final : public StancePlanner {
  public:
   const std::string& name() const override;
-  StancePlan plan(const StanceProblem& problem, const StancePlannerOptions& options) const override;
+  std::unique_ptr<StanceSearch> begin(const Task& task,
+                                      const StancePlannerOptions& options) const override;
 };
 
 }  // namespace locograph

@@ -4,7 +4,6 @@
 #include <locograph/planners/plan/plan_edges.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/surface_distance/places_parameter.h>
-#include <locograph/world/distance_view.h>
 
 #include <utility>
 
@@ -29,46 +28,43 @@ StanceWrenches wrenches_of(const Judge& judge, const Eigen::VectorXd& configurat
 
 }  // namespace
 
-std::vector<int> add_task(Graph& graph, const Scenario& scenario, const StanceProblem& problem,
-                          const std::vector<Stance>& stances, const TaskPlanKind& kind) {
-  graph.parameters().set(kRobotNumber, problem.robot);
-  graph.parameters().set(
-      kWorldNumber,
-      std::make_shared<const WorldParameter>(std::make_shared<const WorldSnapshot>(
-          problem.world, 0.0, WorldFiles{.map = scenario.map, .obstacles = scenario.obstacles})));
+std::vector<int> add_task(Graph& graph, const Task& task, const std::vector<Stance>& stances,
+                          const TaskPlanKind& kind) {
+  graph.parameters().set(kRobotNumber, task.robot);
+  graph.parameters().set(kWorldNumber, std::make_shared<const WorldParameter>(task.world));
   graph.parameters().set(kPlacesNumber, std::make_shared<const PlacesParameter>(
-                                            problem.robot, kRobotNumber, problem.world));
+                                            task.robot, kRobotNumber, task.world->world()));
   const auto origin = std::make_shared<ScenarioParameter>();
-  origin->scenario = scenario.source;
+  origin->scenario = task.scenario;
   graph.parameters().set(kScenarioNumber, origin);
-  std::vector<int> numbers = add_stances(graph, problem.robot, stances);
+  std::vector<int> numbers = add_stances(graph, task.robot, stances);
   const auto format = std::make_shared<PlanParameter>();
   format->stances_only = kind.stances_only;
   format->incomplete = kind.incomplete;
-  format->moves = problem.moves;
+  format->moves = task.moves;
   graph.parameters().replace(kPlanNumber, format);
   return numbers;
 }
 
-Graph stance_graph(const Scenario& scenario, const StanceProblem& problem, const StancePlan& plan) {
+Graph stance_graph(const Task& task, const StancePlan& plan) {
   Graph graph;
-  const std::vector<int> numbers = add_task(graph, scenario, problem, plan.stances,
-                                            {.stances_only = true, .incomplete = !plan.success});
+  const std::vector<int> numbers =
+      add_task(graph, task, plan.stances, {.stances_only = true, .incomplete = !plan.success});
 
   Motion motion{.time_s = {},
                 .configurations = plan.configurations,
                 .stances = plan.stances,
                 .stance_from = {}};
   std::vector<StanceWrenches> wrenches;
-  const Judge judge(problem.robot->robot, problem.world);
+  const Judge judge(task.robot->robot, task.world);
   for (std::size_t i = 0; i < plan.configurations.size(); ++i) {
     motion.time_s.push_back(static_cast<double>(i));
     motion.stance_from.push_back(static_cast<int>(i));
     wrenches.push_back(
-        wrenches_of(judge, plan.configurations[i], bearing_stance(plan, i), problem.check));
+        wrenches_of(judge, plan.configurations[i], bearing_stance(plan, i), task.check));
   }
   add_configurations(graph, motion, numbers);
-  add_plan_edges(graph, motion_edges(problem.check), wrenches);
+  add_plan_edges(graph, motion_edges(task.check), wrenches);
   return graph;
 }
 

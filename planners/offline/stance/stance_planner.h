@@ -2,134 +2,36 @@
 /// Finds how a robot gets from one stance to others: a sequence of stances, one contact more or
 /// less from each to the next, and a configuration for each change that is feasible for both.
 ///
-///     const StanceProblem problem = stance_problem(scenario).problem;
+///     const Task task = started_task(scenario).task;
 ///     const auto planner = make_stance_planner("guided");         // stance_planners.h
-///     const StancePlan plan = planner->plan(problem, {.seed = 7});
+///     const StancePlan plan = planner->plan(task, {.seed = 7});
 ///     if (!plan.success) std::cerr << plan.reason;
 ///
 /// The first offline stage of Rossini et al., "Loco-Manipulation Planning for Legged Robots:
-/// Offline and Online Strategies", whose S_σ and S_q it gives; wrenches are those of the judge's
-/// certificates. Planners are chosen by name (stance_planners.h).
+/// Offline and Online Strategies", whose S_σ and S_q it gives. Planners are chosen by name
+/// (stance_planners.h).
 ///
 /// What is found is judged (check/judge.h): success means judged feasible. Deterministic for a seed
 /// but for the deadline, whatever the number of threads.
 
-#include <locograph/check/check_report.h>
-#include <locograph/check/motion.h>
-#include <locograph/common/deadline.h>
-#include <locograph/plugins/configuration/plan_parameters.h>
-#include <locograph/plugins/configuration/robot_parameters.h>
-#include <locograph/world/world.h>
+#include <locograph/planners/offline/stance/stance_search.h>
 
-#include <Eigen/Core>
-#include <atomic>
-#include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
-#include <vector>
 
 namespace locograph {
-
-struct StanceProblem {
-  std::shared_ptr<const RobotParameter> robot;
-  World world;
-  std::vector<EndEffector> end_effectors;
-  Stance start;
-  Eigen::VectorXd start_configuration;  ///< feasible for the start
-  std::vector<Stance> goals;            ///< reached one after the other
-  CheckOptions check;                   ///< what the judge is asked
-  ContactMoves moves;                   ///< how start and goals differ from the scenario's
-};
-
-/// One change of stance that a planner asked for, and what came of it.
-struct TransitionAttempt {
-  Stance from, to;
-  Eigen::VectorXd start;  ///< the configuration it was looked for from
-  int restarts = 0;       ///< at most
-  bool found = false;
-  double seconds = 0.0;  ///< that the search waited; of little meaning with several threads
-};
-
-struct StancePlannerOptions {
-  std::uint64_t seed = 0;
-  Deadline deadline;
-  const std::atomic<bool>* stop = nullptr;  ///< set, as by Ctrl-C: the search ends; may be null
-  /// That a search may use, the caller's included; a plan that ends before the deadline does not
-  /// depend on it. `rrt` takes them only to shorten its way.
-  int threads = 1;
-  double grid_m = 0.05;  ///< between places of contacts on a surface
-  /// How far an end effector gets in one move, as a part of its chain's length.
-  double reach = 0.7;
-  /// Transitions that may be tried for each goal; 0: no end but the deadline.
-  int max_transitions = 20000;
-  /// Told of every transition of the search and of shortening, in their order, by the thread that
-  /// plans; may be empty.
-  std::function<void(const TransitionAttempt&)> observe = nullptr;
-  bool keep_tree = false;  ///< StancePlan::tree is filled
-  /// Asked of each way to a goal that the judge takes: stances and configurations from the start,
-  /// and the number of changes that were taken before. It may put other configurations in the place
-  /// of those behind them, as good for the same changes, which the plan then has. 0: it will do;
-  /// else the number of a change that will not, which no later way has. By the thread that plans;
-  /// may be empty.
-  std::function<std::size_t(const std::vector<Stance>&, std::vector<Eigen::VectorXd>&,
-                            std::size_t first)>
-      accept = nullptr;
-
-  bool stopped() const { return stop != nullptr && *stop; }
-  bool ended() const { return deadline.passed() || stopped(); }
-
-  /// Throws Error naming the option that is out of range.
-  void validate() const;
-};
-
-/// How often something was in the way of a transition.
-struct StanceFailure {
-  std::string end_effector;  ///< that was to move
-  std::string what;          ///< name of a TransitionFailure, or of the judge's constraint
-  int count = 0;
-};
-
-/// A stance that the search tried to come to.
-struct StanceTreeNode {
-  Stance stance;
-  int parent = -1;  ///< an earlier node; -1: a tree begins here
-  bool found = false;
-  bool on_way = false;  ///< to a goal, before moves were left out of that way
-};
-
-struct StancePlan {
-  bool success = false;
-  std::string reason;
-  /// σ_0 … σ_N, and the configurations: the start, then that of each change, N + 1 in all.
-  /// Without success as far as it got: to the goals before the one that was not reached.
-  std::vector<Stance> stances;
-  std::vector<Eigen::VectorXd> configurations;
-  int goals_reached = 0;
-  int best_contacts = 0;  ///< of the goal that was not reached: most of its contacts in one stance
-  Stance best;            ///< the stance that has them
-  int vertices_in_tree = 0, iterations = 0;
-  int transitions = 0, transitions_found = 0;
-  std::vector<StanceFailure> failures;  ///< the most frequent first
-  std::vector<StanceTreeNode> tree;     ///< in the order of trying, one tree after the other
-  CheckReport report;                   ///< of the judge
-  /// transitions_s: that the search worked on transitions or waited for them.
-  double transitions_s = 0.0, judge_s = 0.0, total_s = 0.0;
-};
-
-/// Stances and as many configurations as a motion that holds still, one vertex a second: what the
-/// judge is asked.
-Motion stances_motion(std::vector<Stance> stances, std::vector<Eigen::VectorXd> configurations);
-Motion stances_motion(const StancePlan& plan);
 
 class StancePlanner {
  public:
   virtual ~StancePlanner() = default;
   virtual const std::string& name() const = 0;
-  /// Throws Error for stances that are not sound, and for a goal contact of an unknown end
+  /// A search that hands out one way after the other. The task must outlive it. Throws Error for
+  /// options out of range, for stances that are not sound, and for a goal contact of an unknown end
   /// effector.
-  virtual StancePlan plan(const StanceProblem& problem,
-                          const StancePlannerOptions& options) const = 0;
+  virtual std::unique_ptr<StanceSearch> begin(const Task& task,
+                                              const StancePlannerOptions& options) const = 0;
+  /// The first way to each goal. Throws Error as begin() does.
+  StancePlan plan(const Task& task, const StancePlannerOptions& options) const;
 };
 
 }  // namespace locograph

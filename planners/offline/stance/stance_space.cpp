@@ -87,16 +87,16 @@ double chain_length(const Robot& robot, const EndEffector& effector) {
 
 }  // namespace
 
-StanceSpace::StanceSpace(const StanceProblem& problem, const StancePlannerOptions& options)
-    : problem_(problem),
+StanceSpace::StanceSpace(const Task& task, const StancePlannerOptions& options)
+    : task_(task),
       options_(options),
-      regions_(problem.robot->robot->total_mass()),
-      solver_(problem, regions_),
-      state_(*problem.robot->robot),
-      surfaces_(bounds_of(problem.world.surfaces)) {
-  for (const EndEffector& effector : problem.end_effectors) {
-    require_sound_effector(*problem.robot->robot, effector);
-    reach_m_.push_back(options.reach * chain_length(*problem.robot->robot, effector));
+      regions_(task.robot->robot->total_mass()),
+      solver_(task, regions_),
+      state_(*task.robot->robot),
+      surfaces_(bounds_of(task.world->world().surfaces)) {
+  for (const EndEffector& effector : task.end_effectors()) {
+    require_sound_effector(*task.robot->robot, effector);
+    reach_m_.push_back(options.reach * chain_length(*task.robot->robot, effector));
   }
 }
 
@@ -126,12 +126,12 @@ std::vector<int> StanceSpace::surfaces_at(const Contact& contact) const {
 double StanceSpace::friction_at(const Contact& contact) const {
   double friction = contact.effector.friction;
   for (const int s : surfaces_at(contact)) {
-    const Surface& surface = problem_.world.surfaces[static_cast<std::size_t>(s)];
+    const Surface& surface = task_.world->world().surfaces[static_cast<std::size_t>(s)];
     if (surface.friction > 0.0 && lies_in(surface, contact)) {
       friction = std::min(friction, surface.friction);
     }
   }
-  for (const Bar& bar : problem_.world.bars) {
+  for (const Bar& bar : task_.world->world().bars) {
     const Eigen::Vector3d way = bar.to - bar.from;
     const Eigen::Vector3d off = contact.position - bar.from;
     const double away = (off - way * (way.dot(off) / way.squaredNorm())).norm();
@@ -153,7 +153,7 @@ std::vector<Eigen::Vector2d> StanceSpace::area_on_surfaces(const Contact& contac
     all.insert(all.end(), part.begin(), part.end());
   };
   for (const int s : surfaces_at(contact)) {
-    const Surface& surface = problem_.world.surfaces[static_cast<std::size_t>(s)];
+    const Surface& surface = task_.world->world().surfaces[static_cast<std::size_t>(s)];
     if (!lies_in(surface, contact)) continue;
     const double x = sole.half_x_m, y = sole.half_y_m;
     std::vector<Eigen::Vector2d> part = {{x, y}, {-x, y}, {-x, -y}, {x, -y}};
@@ -168,22 +168,22 @@ std::vector<Eigen::Vector2d> StanceSpace::area_on_surfaces(const Contact& contac
     }
     if (area(part) > kNoArea_m2) add(part);
   }
-  for (const Bar& bar : problem_.world.bars) {
+  for (const Bar& bar : task_.world->world().bars) {
     if (gap_to_bar_m(bar, standing) <= limits::kClosed_m) add(line_on_bar(bar, standing));
   }
   return all;
 }
 
 Footing StanceSpace::footing(const Stance& stance) {
-  Footing footing(problem_.end_effectors.size(), kFree);
+  Footing footing(task_.end_effectors().size(), kFree);
   for (const Contact& contact : stance.contacts) {
     const auto found =
-        std::find_if(problem_.end_effectors.begin(), problem_.end_effectors.end(),
+        std::find_if(task_.end_effectors().begin(), task_.end_effectors().end(),
                      [&](const EndEffector& effector) { return effector.name == contact.name(); });
-    if (found == problem_.end_effectors.end()) {
+    if (found == task_.end_effectors().end()) {
       throw Error("a contact of the unknown end effector " + contact.name(), "a known one");
     }
-    const int effector = static_cast<int>(found - problem_.end_effectors.begin());
+    const int effector = static_cast<int>(found - task_.end_effectors().begin());
     footing[static_cast<std::size_t>(effector)] = intern(effector, contact);
   }
   return footing;
@@ -195,13 +195,13 @@ Stance StanceSpace::stance(const Footing& footing) const {
     if (number == kFree) continue;
     stance.contacts.push_back(place(number).bearing.contact);
     const int effector = place(number).effector;
-    stance.contacts.back().effector = problem_.end_effectors[static_cast<std::size_t>(effector)];
+    stance.contacts.back().effector = task_.end_effectors()[static_cast<std::size_t>(effector)];
   }
   return stance;
 }
 
 Eigen::Vector3d StanceSpace::position(int effector, const Eigen::VectorXd& q) {
-  const EndEffector& of = problem_.end_effectors[static_cast<std::size_t>(effector)];
+  const EndEffector& of = task_.end_effectors()[static_cast<std::size_t>(effector)];
   state_.update(q.data());
   return state_.world_from_link(state_.robot().link_index(of.link)) * of.point;
 }
@@ -210,11 +210,12 @@ std::vector<int> StanceSpace::places_near(int effector, const Eigen::Vector3d& p
                                           double reach_m) {
   std::vector<int> places;
   for (const int s : surfaces_.touching(box_around(point, reach_m))) {
-    const Surface& surface = problem_.world.surfaces[static_cast<std::size_t>(s)];
+    const Surface& surface = task_.world->world().surfaces[static_cast<std::size_t>(s)];
     places_on(effector, surface, point, reach_m, places);
   }
-  for (const Bar& bar : problem_.world.bars) places_on(effector, bar, point, reach_m, places);
-  if (options_.accept) std::erase_if(places, [this](int number) { return !has_room(number); });
+  for (const Bar& bar : task_.world->world().bars) places_on(effector, bar, point, reach_m, places);
+  if (options_.approachable_only)
+    std::erase_if(places, [this](int number) { return !has_room(number); });
   return places;
 }
 
@@ -230,7 +231,7 @@ bool StanceSpace::has_room(int number) {
   for (double off = kApproachStep_m; off < kApproach_m + kQuantum; off += kApproachStep_m) {
     const Eigen::Vector3d middle = contact.position + (radius_m + off) * normal;
     for (const int s : surfaces_.touching(box_around(middle, radius_m))) {
-      const Surface& surface = problem_.world.surfaces[static_cast<std::size_t>(s)];
+      const Surface& surface = task_.world->world().surfaces[static_cast<std::size_t>(s)];
       if (distance_to(surface, middle) < radius_m) return found->second = false;
     }
   }
@@ -239,7 +240,7 @@ bool StanceSpace::has_room(int number) {
 
 void StanceSpace::places_on(int effector, const Surface& surface, const Eigen::Vector3d& point,
                             double reach_m, std::vector<int>& places) {
-  const EndEffector& of = problem_.end_effectors[static_cast<std::size_t>(effector)];
+  const EndEffector& of = task_.end_effectors()[static_cast<std::size_t>(effector)];
   const ContactKindEntry& kind = contact_kind_entry(of.kind);
   if (!kind.touches_surfaces) return;
   const Eigen::Isometry3d& pose = surface.world_from_surface;
@@ -277,7 +278,7 @@ void StanceSpace::places_on(int effector, const Surface& surface, const Eigen::V
 
 void StanceSpace::places_on(int effector, const Bar& bar, const Eigen::Vector3d& point,
                             double reach_m, std::vector<int>& places) {
-  const EndEffector& of = problem_.end_effectors[static_cast<std::size_t>(effector)];
+  const EndEffector& of = task_.end_effectors()[static_cast<std::size_t>(effector)];
   const ContactKindEntry& kind = contact_kind_entry(of.kind);
   if (kind.bar_touch == BarTouch::kNone) return;
   const double length = (bar.to - bar.from).norm();
@@ -332,15 +333,26 @@ TransitionTask StanceSpace::task_of(const Footing& from, const Footing& to,
   return task;
 }
 
-StanceSpace::Attempt StanceSpace::change(const TransitionTask& task) {
-  const Stopwatch watch;
+StanceSpace::Attempt StanceSpace::solve(const TransitionTask& task) {
   std::optional<TransitionResult> ahead;
   if (ahead_) ahead = ahead_->take(task);
-  Attempt attempt = attempt_of(ahead ? std::move(*ahead) : solver_.solve(task));
+  return attempt_of(ahead ? std::move(*ahead) : solver_.solve(task));
+}
+
+StanceSpace::Attempt StanceSpace::change(const TransitionTask& task) {
+  const Stopwatch watch;
+  Attempt attempt = solve(task);
   ++transitions;
   if (attempt.found) ++transitions_found;
   transitions_s += watch.seconds();
   return attempt;
+}
+
+void StanceSpace::tell(const Footing& from, const Footing& to, const Eigen::VectorXd& start,
+                       int restarts, bool found, double seconds) const {
+  if (options_.observe) {
+    options_.observe({stance(from), stance(to), start, restarts, found, seconds});
+  }
 }
 
 StanceSpace::Attempt StanceSpace::stand(const Stance& stance, const Eigen::VectorXd& start,
@@ -358,9 +370,7 @@ StanceSpace::Attempt StanceSpace::try_transition(const Footing& from, const Foot
   if (refused_.contains(joined(from, to))) return {};
   const Stopwatch watch;
   Attempt attempt = change(task_of(from, to, start, options_.seed, {.restarts = restarts}));
-  if (options_.observe) {
-    options_.observe({stance(from), stance(to), start, restarts, attempt.found, watch.seconds()});
-  }
+  tell(from, to, start, restarts, attempt.found, watch.seconds());
   if (!attempt.found) {
     count_failure(changed_effector(from, to), transition_failure_name(attempt.failure));
   }
@@ -378,7 +388,15 @@ StanceSpace::Attempt StanceSpace::try_nearby(const Footing& from, const Footing&
                                              const Eigen::VectorXd& start) {
   TransitionTask task = task_of(from, to, start, options_.seed, {});
   task.preferred = start;
-  return change(task);
+  return solve(task);
+}
+
+StanceSpace::Attempt StanceSpace::try_again(const Footing& from, const Footing& to,
+                                            const Eigen::VectorXd& start) {
+  const Stopwatch watch;
+  Attempt attempt = solve(task_of(from, to, start, options_.seed, {}));
+  tell(from, to, start, 0, attempt.found, watch.seconds());
+  return attempt;
 }
 
 void StanceSpace::expect(const std::vector<std::vector<Expected>>& chains) {
@@ -417,7 +435,7 @@ std::vector<StanceFailure> StanceSpace::failures() const {
   std::vector<StanceFailure> all;
   for (const auto& [key, count] : failures_) {
     all.push_back(
-        {problem_.end_effectors[static_cast<std::size_t>(key.first)].name, key.second, count});
+        {task_.end_effectors()[static_cast<std::size_t>(key.first)].name, key.second, count});
   }
   std::stable_sort(all.begin(), all.end(),
                    [](const auto& a, const auto& b) { return a.count > b.count; });

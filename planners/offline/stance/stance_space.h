@@ -2,16 +2,17 @@
 /// What stance planners search in: places that end effectors may touch, stances made of them, and
 /// the transitions between these.
 ///
-///     StanceSpace space(problem, options);
-///     const Footing start = space.footing(problem.start);
+///     StanceSpace space(task, options);
+///     const Footing start = space.footing(task.start);
 ///     const Footing lifted = without(start, 0);
 ///     const StanceSpace::Attempt attempt = space.try_transition(start, lifted, q, 0);
 ///
 /// A place is an end effector's contact at one point of the world; places that are equal are one.
 
 #include <locograph/planners/offline/stance/footing.h>
-#include <locograph/planners/offline/stance/stance_planner.h>
+#include <locograph/planners/offline/stance/stance_plan.h>
 #include <locograph/planners/offline/stance/transition_ahead.h>
+#include <locograph/planners/task/task.h>
 #include <locograph/world/box_tree.h>
 
 #include <algorithm>
@@ -42,22 +43,23 @@ class StanceSpace {
     int restarts = 0;
   };
 
-  StanceSpace(const StanceProblem& problem, const StancePlannerOptions& options);
+  StanceSpace(const Task& task, const StancePlannerOptions& options);
 
-  const StanceProblem& problem() const { return problem_; }
-  int effectors() const { return static_cast<int>(problem_.end_effectors.size()); }
+  const Task& task() const { return task_; }
+  int effectors() const { return static_cast<int>(task_.end_effectors().size()); }
   const Place& place(int number) const { return places_[static_cast<std::size_t>(number)]; }
   double reach_m(int effector) const { return reach_m_[static_cast<std::size_t>(effector)]; }
 
   /// Throws Error for a contact of an unknown end effector.
   Footing footing(const Stance& stance);
   Stance stance(const Footing& footing) const;
+  /// Its contacts with what they can bear where they are.
+  std::vector<BearingContact> bearing_contacts(const Footing& footing) const;
 
   /// Where the end effector's point is in a configuration [m, world].
   Eigen::Vector3d position(int effector, const Eigen::VectorXd& q);
   /// Places of the end effector on surfaces and bars that are no further than `reach` from a point,
-  /// in the order of the surfaces. Where motions are asked for (StancePlannerOptions::accept), only
-  /// those that a ball can come to along their normals: none in a gap as wide as itself.
+  /// in the order of the surfaces. See StancePlannerOptions::approachable_only.
   std::vector<int> places_near(int effector, const Eigen::Vector3d& point, double reach_m);
 
   /// From one footing to the next, which has one contact more or less: what is closed are the
@@ -66,8 +68,11 @@ class StanceSpace {
                          int restarts);
   /// The same again, and nothing of it kept: with wider margins.
   Attempt try_harder(const Footing& from, const Footing& to, const Eigen::VectorXd& start);
-  /// A posture for the same as near `start` as can be; nothing of it is kept.
+  /// Another posture for a transition that was found before: as near `start` as can be; nothing of
+  /// it is kept, and it does not count.
   Attempt try_nearby(const Footing& from, const Footing& to, const Eigen::VectorXd& start);
+  /// Likewise as try_transition() finds it, and observed as that is.
+  Attempt try_again(const Footing& from, const Footing& to, const Eigen::VectorXd& start);
   /// A posture in one stance, near `start`; further attempts have other seeds and wider margins.
   Attempt stand(const Stance& stance, const Eigen::VectorXd& start, int attempt);
   /// The transition is not to be found again: the judge refused it.
@@ -82,7 +87,7 @@ class StanceSpace {
   /// What was expected before will not be asked for any more.
   void expect_nothing();
 
-  /// From here on transitions count for the next goal; plan_stances calls it.
+  /// From here on transitions count for the next goal; StanceSearch calls it.
   void begin_goal() { began_ = transitions; }
   /// How many transitions may still be tried for this goal, below 0 where shortening and mending
   /// took more; the largest int: any number.
@@ -112,15 +117,19 @@ class StanceSpace {
                  std::vector<int>& places);
   std::vector<Eigen::Vector2d> area_on_surfaces(const Contact& contact) const;
   double friction_at(const Contact& contact) const;
-  std::vector<BearingContact> bearing_contacts(const Footing& footing) const;
   TransitionTask task_of(const Footing& from, const Footing& to, const Eigen::VectorXd& start,
                          std::uint64_t seed, const TransitionOptions& options) const;
+  Attempt solve(const TransitionTask& task);
+  /// Counts.
   Attempt change(const TransitionTask& task);
+  /// See StancePlannerOptions::observe.
+  void tell(const Footing& from, const Footing& to, const Eigen::VectorXd& start, int restarts,
+            bool found, double seconds) const;
 
   /// What is expected further ahead is hardly ever asked for.
   static constexpr int kMostThreads = 8;
 
-  const StanceProblem& problem_;
+  const Task& task_;
   const StancePlannerOptions& options_;
   BalanceRegions regions_;
   TaskSolver solver_;

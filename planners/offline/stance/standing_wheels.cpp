@@ -12,11 +12,11 @@ struct StandingWheel {
   Wheel wheel;
 };
 
-std::vector<StandingWheel> wheels_that_turn(const StanceProblem& problem) {
+std::vector<StandingWheel> wheels_that_turn(const Task& task) {
   std::vector<StandingWheel> wheels;
-  for (std::size_t e = 0; e < problem.end_effectors.size(); ++e) {
-    if (problem.end_effectors[e].kind != ContactKind::kWheel) continue;
-    Wheel wheel = wheel_of(*problem.robot->robot, problem.end_effectors[e]);
+  for (std::size_t e = 0; e < task.end_effectors().size(); ++e) {
+    if (task.end_effectors()[e].kind != ContactKind::kWheel) continue;
+    Wheel wheel = wheel_of(*task.robot->robot, task.end_effectors()[e]);
     if (wheel.joint >= 0) wheels.push_back({e, std::move(wheel)});
   }
   return wheels;
@@ -25,8 +25,8 @@ std::vector<StandingWheel> wheels_that_turn(const StanceProblem& problem) {
 }  // namespace
 
 void hold_wheels(const StanceSpace& space, StancePath& path, std::size_t first) {
-  const Robot& robot = *space.problem().robot->robot;
-  const std::vector<StandingWheel> wheels = wheels_that_turn(space.problem());
+  const Robot& robot = *space.task().robot->robot;
+  const std::vector<StandingWheel> wheels = wheels_that_turn(space.task());
   if (wheels.empty()) return;
   RobotState before(robot), after(robot);
   for (std::size_t i = first; i < path.footings.size(); ++i) {

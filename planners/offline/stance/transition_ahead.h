@@ -5,8 +5,8 @@
 ///
 ///     TransitionAhead ahead(solver, 1);
 ///     ahead.expect({{likeliest}, {lift, put}});
-///     std::optional<TransitionResult> result = ahead.take(task);
-///     if (!result) result = solver.solve(task);
+///     std::optional<TransitionResult> result = ahead.take(transition);
+///     if (!result) result = solver.solve(transition);
 
 #include <locograph/planners/offline/stance/transition_task.h>
 

@@ -33,11 +33,11 @@ const BalanceRegion& BalanceRegions::of(const Footing& footing,
   return regions_.emplace(footing, std::move(region)).first->second;
 }
 
-TaskSolver::TaskSolver(const StanceProblem& problem, BalanceRegions& regions)
-    : problem_(problem),
+TaskSolver::TaskSolver(const Task& task, BalanceRegions& regions)
+    : task_(task),
       regions_(regions),
-      solver_(problem.robot, problem.world),
-      state_(*problem.robot->robot) {}
+      solver_(task.robot, task.world->world()),
+      state_(*task.robot->robot) {}
 
 TransitionResult TaskSolver::solve(const TransitionTask& task) {
   TransitionProblem problem;
@@ -45,16 +45,16 @@ TransitionResult TaskSolver::solve(const TransitionTask& task) {
   problem.held = task.held;
   problem.balance = &regions_.of(task.smaller, task.bearing);
   problem.start = task.start;
-  problem.preferred = task.preferred.size() > 0 ? task.preferred : problem_.start_configuration;
+  problem.preferred = task.preferred.size() > 0 ? task.preferred : task_.start_configuration;
   problem.seed = task.seed;
   TransitionResult result = solver_.solve(problem, task.options);
-  if (result.found && problem_.check.enforce_torque_limits) ease_torques(task, problem, result);
+  if (result.found && task_.check.enforce_torque_limits) ease_torques(task, problem, result);
   return result;
 }
 
 void TaskSolver::ease_torques(const TransitionTask& task, TransitionProblem& problem,
                               TransitionResult& result) {
-  TorqueProgramme torques(state_.robot(), task.bearing, problem_.check.effort_scale, kRegionMargin);
+  TorqueProgramme torques(state_.robot(), task.bearing, task_.check.effort_scale, kRegionMargin);
   state_.update(result.configuration.data());
   Eigen::VectorXd gradient;
   if (torques.solve(state_, gradient) <= 1.0 - task.options.torque_margin) return;

@@ -2,14 +2,14 @@
 /// A transition as a value, and who works it out, on any thread.
 ///
 ///     BalanceRegions regions(mass_kg);
-///     TaskSolver solver(problem, regions);       // one for each thread
-///     const TransitionResult result = solver.solve(task);
+///     TaskSolver solver(task, regions);       // one for each thread
+///     const TransitionResult result = solver.solve(transition);
 ///
 /// The outcome depends on the task alone, bit for bit: not on what was solved before.
 
 #include <locograph/planners/offline/stance/footing.h>
-#include <locograph/planners/offline/stance/stance_planner.h>
 #include <locograph/planners/offline/stance/transition_solver.h>
+#include <locograph/planners/task/task.h>
 
 #include <mutex>
 #include <unordered_map>
@@ -24,7 +24,7 @@ struct TransitionTask {
   std::vector<Contact> held = {};            ///< of the smaller one
   std::vector<BearingContact> bearing = {};  ///< of the smaller one
   Eigen::VectorXd start = {};
-  Eigen::VectorXd preferred = {};  ///< empty: where the problem starts
+  Eigen::VectorXd preferred = {};  ///< empty: where the task starts
   std::uint64_t seed = 0;
   TransitionOptions options = {};
 };
@@ -48,7 +48,7 @@ class BalanceRegions {
 /// Keeps references to both arguments. Copies are for other threads.
 class TaskSolver {
  public:
-  TaskSolver(const StanceProblem& problem, BalanceRegions& regions);
+  TaskSolver(const Task& task, BalanceRegions& regions);
 
   /// Throws Error for contacts that are not sound.
   TransitionResult solve(const TransitionTask& task);
@@ -57,7 +57,7 @@ class TaskSolver {
   void ease_torques(const TransitionTask& task, TransitionProblem& problem,
                     TransitionResult& result);
 
-  const StanceProblem& problem_;
+  const Task& task_;
   BalanceRegions& regions_;
   TransitionSolver solver_;
   RobotState state_;

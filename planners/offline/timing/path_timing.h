@@ -1,7 +1,7 @@
 #pragma once
 /// The fastest motion along a path, from rest to rest, and what it is at any time.
 ///
-///     TimingLimits limits = timing_limits(robot, scenario.limits);
+///     TimingLimits limits = timing_limits(robot, task.check);
 ///     PathTiming timing(robot, waypoints, limits, {.smoothing_s = 0.05});
 ///     if (timing.feasible()) TimedPath motion = timing.sampled(0.01);
 ///

@@ -222,7 +222,7 @@ void check_limits(const Robot& robot, const TimingLimits& limits) {
   check_positive(limits.base_angular_rad_s, "turning of the base");
 }
 
-TimingLimits timing_limits(const Robot& robot, const MotionLimits& limits) {
+TimingLimits timing_limits(const Robot& robot, const CheckOptions& limits) {
   const auto or_none = [](double limit) { return limit > 0.0 ? limit : kNoLimit; };
   TimingLimits result;
   result.velocity.setConstant(robot.tangent_size(), kNoLimit);

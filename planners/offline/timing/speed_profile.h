@@ -1,7 +1,7 @@
 #pragma once
 /// The fastest speeds along a path: time-optimal path parametrisation by reachability analysis.
 ///
-///     TimingLimits limits = timing_limits(robot, scenario.limits);
+///     TimingLimits limits = timing_limits(robot, task.check);
 ///     std::optional<SpeedProfile> profile = fastest_profile(path, limits);
 ///
 /// Pham & Pham 2018, "A new approach to time-optimal path parameterization based on reachability
@@ -16,8 +16,8 @@
 /// ends, which are the unknowns of the linear programmes: polygons, clipped. For base and rows,
 /// which are no quadratics, this holds but for terms of third order in the step of the grid.
 
+#include <locograph/check/check_report.h>
 #include <locograph/planners/offline/timing/path_spline.h>
-#include <locograph/planners/scenario/scenario.h>
 
 #include <functional>
 #include <optional>
@@ -32,8 +32,8 @@ struct TimingLimits {
   double base_angular_rad_s = std::numeric_limits<double>::infinity();  ///< the same
 };
 
-/// Joint velocities of the URDF, the rest as the judge asks it of a scenario's motion.
-TimingLimits timing_limits(const Robot& robot, const MotionLimits& limits);
+/// Joint velocities of the URDF, the rest as the judge asks it.
+TimingLimits timing_limits(const Robot& robot, const CheckOptions& limits);
 
 /// a u + b x <= c, row by row, of one point of a path. A torque is M q' u + (M q'' + C(q, q') q') x
 /// + g, so that its limit makes two rows.

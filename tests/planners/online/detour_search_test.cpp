@@ -42,7 +42,7 @@ class Search : public testing::Test {
     }
   }
 
-  Graph graph_ = plan_wheeled_drive(centauro_drive());
+  Graph graph_ = planned_drive(centauro_drive());
   Plan plan_ = plan_of(graph_);
   std::vector<Eigen::VectorXd> all_;
   std::vector<const double*> window_;

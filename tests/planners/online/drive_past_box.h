@@ -15,7 +15,7 @@
 
 namespace locograph {
 
-inline Graph drive() { return plan_wheeled_drive(centauro_drive()); }
+inline Graph drive() { return planned_drive(centauro_drive()); }
 
 inline Obstacle box_ahead() { return box("box", {2.0, 0.0, 0.25}, {0.5, 0.5, 0.5}); }
 

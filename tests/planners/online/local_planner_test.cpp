@@ -86,8 +86,8 @@ TEST(LocalPlanner, RestoresTheWeightsItRaised) {
 }
 
 TEST(LocalPlanner, CompilesTheSameWindowForAShortAndALongPlanAndKeepsItsPattern) {
-  Graph short_plan = plan_wheeled_drive(centauro_drive(4.0, 0.0, 50));
-  Graph long_plan = plan_wheeled_drive(centauro_drive(160.0, 0.0, 2000));
+  Graph short_plan = planned_drive(centauro_drive(4.0, 0.0, 50));
+  Graph long_plan = planned_drive(centauro_drive(160.0, 0.0, 2000));
   LocalPlanner near(short_plan, {}), far(long_plan, {});
   near.cycle(0);
   far.cycle(0);

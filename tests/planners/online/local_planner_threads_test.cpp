@@ -13,7 +13,7 @@ namespace local_planner_threads_test {
 constexpr int kCycles = test::kSanitized ? 3 : 10;
 
 /// A short drive, so that a cycle takes little time.
-Graph short_drive() { return plan_wheeled_drive(centauro_drive(1.2, 0.0, 16)); }
+Graph short_drive() { return planned_drive(centauro_drive(1.2, 0.0, 16)); }
 
 LocalPlannerOptions short_window() {
   LocalPlannerOptions options;

@@ -54,13 +54,13 @@ TEST(WalkPlan, LeavesAPlanInAnEmptyWorldAsItIs) {
   const Surroundings nothing, empty_map{{}, std::make_shared<octomap::OcTree>(0.05)};
   for (const Surroundings& surroundings : {nothing, empty_map}) {
     for (const double curvature : {0.0, 0.3}) {
-      Graph graph = plan_wheeled_drive(centauro_drive(4.0, curvature));
+      Graph graph = planned_drive(centauro_drive(4.0, curvature));
       const WalkReport report = walk_in(graph, surroundings);
       EXPECT_TRUE(report.success) << report.reason;
       EXPECT_EQ(report.cycles.size(), 49u);
       EXPECT_EQ(report.feasible_cycles, 49);
       EXPECT_EQ(report.dof, 30);
-      expect_same(graph, plan_wheeled_drive(centauro_drive(4.0, curvature)), 1e-3);
+      expect_same(graph, planned_drive(centauro_drive(4.0, curvature)), 1e-3);
     }
   }
 }

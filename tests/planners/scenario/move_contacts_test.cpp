@@ -1,7 +1,7 @@
 // Contacts moved at random on what they lie on, and tasks made of them.
 #include <gtest/gtest.h>
 #include <locograph/check/judge.h>
-#include <locograph/planners/offline/stance/stance_problem.h>
+#include <locograph/planners/offline/stance/started_task.h>
 #include <locograph/planners/scenario/contact_place.h>
 #include <locograph/planners/scenario/move_contacts.h>
 
@@ -178,9 +178,9 @@ double furthest_m(const Stance& a, Stance b) {
 TEST(MovedTask, HasOtherContactsOnTheSameSurfacesAndAStartThatStands) {
   constexpr double kFar_m = 0.02;
   const Scenario scenario = test::changed_scenario("standing_up", {});
-  const StanceProblem given = stance_problem(scenario).problem;
-  const StartedProblem started = stance_problem(scenario, {.most_m = kFar_m, .seed = 3});
-  const StanceProblem& task = started.problem;
+  const Task given = started_task(scenario).task;
+  const StartedTask started = started_task(scenario, {.most_m = kFar_m, .seed = 3});
+  const Task& task = started.task;
   EXPECT_GE(task.moves.draws, 1);
   ASSERT_EQ(task.goals.size(), given.goals.size());
   std::vector<std::pair<Stance, Stance>> stances = {{task.start, given.start}};
@@ -191,7 +191,7 @@ TEST(MovedTask, HasOtherContactsOnTheSameSurfacesAndAStartThatStands) {
     EXPECT_GT(furthest_m(after, before), 1e-4);
     EXPECT_LE(furthest_m(after, before), std::numbers::sqrt2 * kFar_m + 1e-9);
     for (const Contact& contact : after.contacts) {
-      EXPECT_TRUE(lies_on_something(task.world, contact)) << contact.name();
+      EXPECT_TRUE(lies_on_something(task.world->world(), contact)) << contact.name();
     }
   }
   const Judge judge(task.robot->robot, task.world);
@@ -201,9 +201,9 @@ TEST(MovedTask, HasOtherContactsOnTheSameSurfacesAndAStartThatStands) {
 
 TEST(MovedTask, IsTheSameForTheSameSeedOnly) {
   const Scenario scenario = test::changed_scenario("standing_up", {});
-  const StanceProblem task = stance_problem(scenario, {.most_m = 0.02, .seed = 4}).problem;
-  const StanceProblem again = stance_problem(scenario, {.most_m = 0.02, .seed = 4}).problem;
-  const StanceProblem other = stance_problem(scenario, {.most_m = 0.02, .seed = 5}).problem;
+  const Task task = started_task(scenario, {.most_m = 0.02, .seed = 4}).task;
+  const Task again = started_task(scenario, {.most_m = 0.02, .seed = 4}).task;
+  const Task other = started_task(scenario, {.most_m = 0.02, .seed = 5}).task;
   EXPECT_EQ(furthest_m(task.start, again.start), 0.0);
   EXPECT_EQ(furthest_m(task.goals[0], again.goals[0]), 0.0);
   EXPECT_EQ(task.start_configuration, again.start_configuration);

@@ -1,9 +1,9 @@
 #include <locograph/check/judge.h>
-#include <locograph/planners/offline/stance/stance_problem.h>
 #include <locograph/planners/offline/stance/stance_space.h>
+#include <locograph/planners/offline/stance/started_task.h>
 #include <locograph/planners/posture/posture_solver.h>
 #include <locograph/planners/scenario/contact_place.h>
-#include <locograph/planners/scenario/task_stances.h>
+#include <locograph/planners/task/task_stances.h>
 
 #include <algorithm>
 #include <cmath>
@@ -49,32 +49,12 @@ Eigen::VectorXd given_configuration(const Scenario& scenario, const Robot& robot
   return q;
 }
 
-/// The scenario's task as it says it, without a start configuration.
-StanceProblem problem_of(const Scenario& scenario, const Deadline& deadline) {
-  StanceProblem problem;
-  problem.robot =
-      std::make_shared<const RobotParameter>(scenario.urdf, scenario.srdf, scenario.robot);
-  problem.robot->robot->require_collision_shapes();
-  problem.world = world_of(scenario, deadline);
-  problem.end_effectors = scenario.end_effectors;
-  TaskStances task = task_stances(scenario, problem.world);
-  problem.start = std::move(task.start);
-  problem.goals = std::move(task.goals);
-  problem.check.known = scenario.end_effectors;
-  problem.check.enforce_torque_limits = scenario.enforce_torque_limits;
-  problem.check.effort_scale = scenario.effort_scale;
-  problem.check.base_linear_m_s = scenario.limits.base_linear_m_s;
-  problem.check.base_angular_rad_s = scenario.limits.base_angular_rad_s;
-  problem.check.joint_acceleration_rad_s2 = scenario.limits.joint_acceleration_rad_s2;
-  return problem;
-}
-
-void require_sound_goals(const Scenario& scenario, const StanceProblem& problem) {
-  for (std::size_t g = 0; g < problem.goals.size(); ++g) {
+void require_sound_goals(const Scenario& scenario, const Task& task) {
+  for (std::size_t g = 0; g < task.goals.size(); ++g) {
     blame_line(scenario, scenario.contacts->goal_lines[g], [&] {
-      require_sound_stance(*problem.robot->robot, problem.goals[g]);
-      for (const Contact& contact : problem.goals[g].contacts) {
-        if (lies_on_something(problem.world, contact)) continue;
+      require_sound_stance(*task.robot->robot, task.goals[g]);
+      for (const Contact& contact : task.goals[g].contacts) {
+        if (lies_on_something(task.world->world(), contact)) continue;
         throw Error("the contact of " + contact.name() + " touches nothing",
                     "one on a surface or a bar of the environment");
       }
@@ -85,30 +65,30 @@ void require_sound_goals(const Scenario& scenario, const StanceProblem& problem)
 /// Finds a configuration that stands at the start, the given one if it does. Returns why there is
 /// none; empty: found.
 std::string find_start(const Judge& judge, const Eigen::VectorXd& given, const Deadline& deadline,
-                       StartedProblem& started) {
-  StanceProblem& problem = started.problem;
-  problem.start_configuration = given;
-  const CheckReport as_given = judge.check(given, problem.start, problem.check);
+                       StartedTask& started) {
+  Task& task = started.task;
+  task.start_configuration = given;
+  const CheckReport as_given = judge.check(given, task.start, task.check);
   if (as_given.feasible) return "";
   const StancePlannerOptions options;
-  StanceSpace space(problem, options);
+  StanceSpace space(task, options);
   std::string reason;
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
     if (attempt > 0) deadline.require();
-    const StanceSpace::Attempt found = space.stand(problem.start, given, attempt);
+    const StanceSpace::Attempt found = space.stand(task.start, given, attempt);
     if (!found.found) {
       if (reason.empty()) reason = found.reason;
       continue;
     }
-    const CheckReport report = judge.check(found.configuration, problem.start, problem.check);
+    const CheckReport report = judge.check(found.configuration, task.start, task.check);
     if (!report.feasible) {
       reason = violation_text(report.worst());
       continue;
     }
-    problem.start_configuration = found.configuration;
+    task.start_configuration = found.configuration;
     started.moved_base_m = (found.configuration.head<3>() - given.head<3>()).norm();
     started.moved_joint_rad = (found.configuration - given)
-                                  .tail(problem.robot->robot->active_joint_count())
+                                  .tail(task.robot->robot->active_joint_count())
                                   .cwiseAbs()
                                   .maxCoeff();
     return "";
@@ -118,41 +98,40 @@ std::string find_start(const Judge& judge, const Eigen::VectorXd& given, const D
 
 }  // namespace
 
-StartedProblem stance_problem(const Scenario& scenario, const ContactMoves& moves,
-                              const Deadline& deadline) {
+StartedTask started_task(const Scenario& scenario, const ContactMoves& moves,
+                         const Deadline& deadline) {
   if (!scenario.contacts)
     throw Error(scenario.source, 0, "no <start> and <goal>", "a contact task");
   const int start_line = scenario.contacts->start_line;
-  StartedProblem started;
-  StanceProblem& problem = started.problem;
-  problem = problem_of(scenario, deadline);
-  const Robot& robot = *problem.robot->robot;
-  require_camera_links(scenario, robot);
+  StartedTask started;
+  Task& task = started.task;
+  task = task_of(scenario, deadline);
+  const Robot& robot = *task.robot->robot;
   for (std::size_t e = 0; e < scenario.end_effectors.size(); ++e) {
     blame_line(scenario, scenario.end_effector_lines[e],
                [&] { require_sound_effector(robot, scenario.end_effectors[e]); });
   }
-  require_sound_goals(scenario, problem);
-  blame_line(scenario, start_line, [&] { require_sound_stance(robot, problem.start); });
+  require_sound_goals(scenario, task);
+  blame_line(scenario, start_line, [&] { require_sound_stance(robot, task.start); });
 
   const bool moved = moves.most_m > 0.0;
-  problem.moves = moves;
-  problem.moves.draws = 1;
+  task.moves = moves;
+  task.moves.draws = 1;
   if (moved) {
-    problem.goals = task_stances(scenario, problem.world, moves).goals;
-    require_sound_goals(scenario, problem);
+    task.goals = task_stances(scenario, task.world->world(), moves).goals;
+    require_sound_goals(scenario, task);
   }
-  const Judge judge(problem.robot->robot, problem.world);
-  for (;; ++problem.moves.draws) {
+  const Judge judge(task.robot->robot, task.world);
+  for (;; ++task.moves.draws) {
     Eigen::VectorXd given;
-    if (moved) problem.start = task_stances(scenario, problem.world, problem.moves).start;
+    if (moved) task.start = task_stances(scenario, task.world->world(), task.moves).start;
     blame_line(scenario, start_line, [&] {
-      require_sound_stance(robot, problem.start);
-      given = given_configuration(scenario, robot, problem.start);
+      require_sound_stance(robot, task.start);
+      given = given_configuration(scenario, robot, task.start);
     });
     const std::string reason = find_start(judge, given, deadline, started);
     if (reason.empty()) return started;
-    if (moved && problem.moves.draws < kMostDraws) continue;
+    if (moved && task.moves.draws < kMostDraws) continue;
     throw Error(scenario.source, start_line, "no configuration stands at the start: " + reason,
                 "contacts that can be held");
   }

@@ -1,17 +1,17 @@
 #pragma once
-/// A scenario's contact task as a stance planner takes it.
+/// A scenario's contact task with a configuration that stands at its start: what stance planners
+/// begin with.
 ///
 ///     const Scenario scenario = load_scenario("ladder_climbing", data_folder);
-///     const StanceProblem problem = stance_problem(scenario).problem;
-///     const StanceProblem similar = stance_problem(scenario, {.most_m = 0.05, .seed = 3}).problem;
+///     const Task task = started_task(scenario).task;
+///     const Task similar = started_task(scenario, {.most_m = 0.05, .seed = 3}).task;
 
-#include <locograph/planners/offline/stance/stance_planner.h>
-#include <locograph/planners/scenario/scenario.h>
+#include <locograph/planners/task/task.h>
 
 namespace locograph {
 
-struct StartedProblem {
-  StanceProblem problem;
+struct StartedTask {
+  Task task;
   /// How far the start configuration is from the scenario's [m, rad]; 0: as given.
   double moved_base_m = 0.0, moved_joint_rad = 0.0;
 };
@@ -27,7 +27,7 @@ struct StartedProblem {
 /// there is no task; goals are not, whether they can be reached or not.
 ///
 /// Throws OutOfTime when the deadline passes before there is a start.
-StartedProblem stance_problem(const Scenario& scenario, const ContactMoves& moves = {},
-                              const Deadline& deadline = {});
+StartedTask started_task(const Scenario& scenario, const ContactMoves& moves = {},
+                         const Deadline& deadline = {});
 
 }  // namespace locograph

@@ -1,6 +1,6 @@
 #include <locograph/planners/scenario/move_contacts.h>
 #include <locograph/planners/scenario/snap_to_places.h>
-#include <locograph/planners/scenario/task_stances.h>
+#include <locograph/planners/task/task_stances.h>
 
 #include <random>
 #include <string>
