@@ -32,6 +32,7 @@ class Deadline {
                                       std::chrono::duration<double>(std::max(seconds, 0.0)));
     return deadline;
   }
+  bool operator==(const Deadline&) const = default;
   bool exists() const { return at_.has_value(); }
   bool passed() const { return at_ && Clock::now() >= *at_; }
   /// Throws OutOfTime when it has passed.

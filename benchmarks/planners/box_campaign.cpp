@@ -70,7 +70,7 @@ class Campaign {
   Campaign()
       : task_(task_of(load_scenario(LOCOGRAPH_SOURCE_DIR "/planners/scenarios/centauro_drive.xml",
                                     LOCOGRAPH_SOURCE_DIR))),
-        motion_(*plan_wheeled_drive(task_)) {
+        motion_(plan_wheeled_drive(task_).motion) {
     check_.known = task_.end_effectors();
   }
 

@@ -80,7 +80,7 @@ std::vector<Crossing> crossings(int count) {
 CrossingResult run_crossing(const Scenario& scenario, const Crossing& crossing,
                             const CrossingOptions& options) {
   const Task task = task_of(scenario);
-  Graph graph = *drive_graph(task, *plan_wheeled_drive(task));
+  Graph graph = *drive_graph(task, plan_wheeled_drive(task).motion);
   LocalPlanner planner(graph, options.planner);
   const Plan& plan = planner.plan();
   const double meets_at_s = crossing.x_m / scenario.drive->speed_m_s + crossing.delay_s;

@@ -43,7 +43,7 @@ Honest drive(std::mt19937_64& random) {
   Honest honest{.name = "drive",
                 .robot = task.robot->robot,
                 .world = task.world,
-                .motion = *plan_wheeled_drive(task),
+                .motion = plan_wheeled_drive(task).motion,
                 .options = {}};
   honest.options.known = task.end_effectors();
   honest.options.base_linear_m_s = task.check.base_linear_m_s;

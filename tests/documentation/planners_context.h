@@ -93,7 +93,7 @@ inline Task drive_task(double distance_m, int configurations) {
 }
 inline Graph drive(double distance_m, int configurations) {
   const Task task = drive_task(distance_m, configurations);
-  return *drive_graph(task, *plan_wheeled_drive(task));
+  return *drive_graph(task, plan_wheeled_drive(task).motion);
 }
 inline std::vector<Eigen::VectorXd> configurations_of(const Graph& graph, const Plan& plan) {
   return motion_of(graph, plan).configurations;
@@ -223,7 +223,7 @@ struct Context {
 namespace offline_drive_drive_graph_h {
 struct Context {
   const Task task = drive_task(0.32, 5);
-  const Motion motion = *plan_wheeled_drive(task);
+  const Motion motion = plan_wheeled_drive(task).motion;
 };
 }  // namespace offline_drive_drive_graph_h
 namespace offline_drive_wheel_motion_h {
