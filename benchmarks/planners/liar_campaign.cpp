@@ -63,7 +63,7 @@ class Postures {
       const test::ContactSet set = sets_.draw();
       const PostureProblem problem{set.stance, placed_at(robot_.model(), robot_.home, set.stance)};
       const PostureResult found = solver_.solve(problem);
-      if (!found.success) continue;
+      if (!found.success()) continue;
       Honest honest{.name = robot_.name,
                     .robot = robot_.robot->robot,
                     .world = posture_world(),

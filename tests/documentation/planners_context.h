@@ -568,6 +568,12 @@ struct Context {
   Context() { write_example_file("standing.xml", kStanding); }
 };
 }  // namespace scenario_contacts_file_h
+namespace answer_planner_answer_h {
+struct Context : StepContext {
+  const PostureSolver solver{task.robot};
+  const PostureProblem problem = {.stance = stance, .preferred = q};
+};
+}  // namespace answer_planner_answer_h
 namespace posture_posture_graph_h {
 struct Context : StepContext {
   const std::shared_ptr<const RobotParameter>& robot = task.robot;

@@ -1,0 +1,76 @@
+// Every planner ends when it is told to, and says so in the same words.
+#include <gtest/gtest.h>
+#include <locograph/planners/answer/planner_answer.h>
+#include <locograph/planners/posture/posture_solver.h>
+
+#include "planners/planned_drive.h"
+#include "planners/stance_tasks.h"
+
+namespace locograph::test {
+namespace {
+
+/// plan: a planner that the termination it is given ends; returns its answer.
+template <class Plan>
+void expect_ends(const Plan& plan) {
+  const PlannerAnswer late = plan(Termination{.deadline = Deadline::after(0.0)});
+  EXPECT_EQ(late.status, PlannerStatus::kDeadline) << late.reason;
+  EXPECT_FALSE(late.success());
+  EXPECT_NE(late.reason.find("the time allowed is used up (allow more)"), std::string::npos)
+      << late.reason;
+  const std::atomic<bool> stop = true;
+  const PlannerAnswer stopped = plan(Termination{.stop = &stop});
+  EXPECT_EQ(stopped.status, PlannerStatus::kStopped) << stopped.reason;
+  EXPECT_NE(stopped.reason.find("interrupted (start again for an answer)"), std::string::npos)
+      << stopped.reason;
+}
+
+/// The same for a planner that iterates, after one iteration.
+template <class Plan>
+void expect_counts(const Plan& plan) {
+  const auto answer = plan(Termination{.max_iterations = 1});
+  EXPECT_EQ(answer.status, PlannerStatus::kNotFound) << answer.reason;
+  EXPECT_NE(answer.reason.find("the iterations allowed are used up (allow more)"),
+            std::string::npos)
+      << answer.reason;
+  EXPECT_EQ(answer.statistics.iterations, 1);
+}
+
+TEST(PlannerStatus, HasANameOfItsOwn) {
+  EXPECT_EQ(planner_status_name(PlannerStatus::kSolved), "solved");
+  EXPECT_EQ(planner_status_name(PlannerStatus::kInfeasible), "infeasible");
+  EXPECT_EQ(planner_status_name(PlannerStatus::kNotFound), "not_found");
+  EXPECT_EQ(planner_status_name(PlannerStatus::kDeadline), "deadline");
+  EXPECT_EQ(planner_status_name(PlannerStatus::kStopped), "stopped");
+}
+
+TEST(PlannerAnswer, IsNoneWhileNothingEndsTheJob) {
+  EXPECT_FALSE(end_by({}, 1000));
+  EXPECT_FALSE(end_by({.max_iterations = 3}, 2));
+  EXPECT_TRUE(end_by({.max_iterations = 3}, 3));
+}
+
+TEST(PlannerAnswer, OfPostures) {
+  const Task task = stance_task("slanted_wall");
+  const PostureSolver solver(task.robot);
+  PostureProblem problem{.stance = task.start, .preferred = task.start_configuration};
+  problem.preferred[2] += 0.5;  // m: it takes some iterations
+  const auto solve = [&](const Termination& termination) {
+    return solver.solve(problem, {.termination = termination});
+  };
+  expect_ends(solve);
+  expect_counts(solve);
+}
+
+TEST(PlannerAnswer, OfDrives) {
+  const Task task = task_of(centauro_drive(1.0, 0.0, 5));
+  const auto plan = [&](const Termination& termination) {
+    return plan_wheeled_drive(task, {.termination = termination});
+  };
+  expect_ends(plan);
+  const DrivePlan whole = plan({});
+  EXPECT_EQ(whole.status, PlannerStatus::kSolved);
+  EXPECT_GT(whole.statistics.total_s, 0.0);
+}
+
+}  // namespace
+}  // namespace locograph::test
