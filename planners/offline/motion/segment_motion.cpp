@@ -243,11 +243,11 @@ bool SegmentMover::time(const PathSpline& path, std::span<const BearingContact> 
   std::optional<PathTiming> timing(std::in_place, path, limits_, options,
                                    balance.along(path, limits_));
   // Where rows leave nothing, which is for rounding only: slowly, as the judge will say.
-  if (!timing->feasible()) {
+  if (!timing->answer().success()) {
     timing.emplace(path, limits_, options);
     slower *= kSlowly;
   }
-  if (!timing->feasible()) return false;
+  if (!timing->answer().success()) return false;
   const double duration_s = slower * timing->duration_s();
   const auto steps_in = [&](double seconds) {
     return std::max(2, static_cast<int>(std::ceil(seconds / options_.step_s)));

@@ -1,6 +1,7 @@
 // Every planner ends when it is told to, and says so in the same words.
 #include <gtest/gtest.h>
 #include <locograph/planners/answer/planner_answer.h>
+#include <locograph/planners/offline/timing/path_timing.h>
 #include <locograph/planners/posture/posture_solver.h>
 
 #include "planners/planned_drive.h"
@@ -70,6 +71,25 @@ TEST(PlannerAnswer, OfDrives) {
   const DrivePlan whole = plan({});
   EXPECT_EQ(whole.status, PlannerStatus::kSolved);
   EXPECT_GT(whole.statistics.total_s, 0.0);
+}
+
+TEST(PlannerAnswer, OfTimings) {
+  const Task task = stance_task("slanted_wall");
+  const Robot& robot = *task.robot->robot;
+  Eigen::VectorXd to = task.start_configuration;
+  to[7] += 0.1;  // rad
+  const TimingLimits limits = timing_limits(robot, {.joint_acceleration_rad_s2 = 10.0});
+  struct Timed : PlannerAnswer {
+    PlannerStatistics statistics = {};
+  };
+  const auto time = [&](const Termination& termination) {
+    const PathTiming timing(robot, {task.start_configuration, to}, limits,
+                            {.termination = termination});
+    return Timed{timing.answer(), timing.statistics()};
+  };
+  expect_ends(time);
+  expect_counts(time);
+  EXPECT_EQ(time({}).status, PlannerStatus::kSolved);
 }
 
 }  // namespace
