@@ -126,7 +126,7 @@ Json by_planner_json(const std::vector<SegmentRecord>& segments) {
     for (const SegmentRecord& segment : segments) {
       if (segment.planner != name) continue;
       ++count;
-      seconds += segment.seconds;
+      seconds += segment.path_s;
     }
     all[name] = {{"count", count}, {"seconds", seconds}};
   }

@@ -33,6 +33,12 @@ struct Termination {
   int left_of(int most, int iterations) const {
     return max_iterations > 0 ? std::clamp(max_iterations - iterations, 0, most) : most;
   }
+  /// What is left of it, not used up, after some iterations.
+  Termination after(int iterations) const {
+    Termination rest = *this;
+    if (max_iterations > 0) rest.max_iterations -= iterations;
+    return rest;
+  }
 
   /// Throws Error naming what is out of range.
   void validate() const { check_option(max_iterations >= 0, "max_iterations", "0 or more"); }

@@ -29,6 +29,8 @@ TEST(Termination, LeavesAPartOfAJobWhatIsLeftOfTheCount) {
   EXPECT_EQ(counted.left_of(60, 10), 60);
   EXPECT_EQ(counted.left_of(60, 70), 30);
   EXPECT_EQ(counted.left_of(60, 200), 0);
+  EXPECT_EQ(counted.after(70).max_iterations, 30);
+  EXPECT_EQ(Termination().after(70), Termination());
 }
 
 TEST(Termination, RefusesANegativeCount) {

@@ -357,15 +357,15 @@ TEST(SegmentMoverTest, TheSamePathAtAnotherPace) {
   SegmentMover mover(task, options);
   const std::vector<BearingContact> bearing = {{step->segment.held[0]}};
   const SegmentMotion fast = mover.move(step->segment, bearing, 0, 1, {});
-  ASSERT_TRUE(fast.found) << fast.reason;
+  ASSERT_TRUE(fast.success()) << fast.reason;
   SegmentMotion slow = fast;
   mover.retime(step->segment, bearing, {.slower = 2.0}, slow);
-  ASSERT_TRUE(slow.found);
+  ASSERT_TRUE(slow.success());
   EXPECT_NEAR(slow.duration_s, 2.0 * fast.duration_s, 1e-9);
   EXPECT_NEAR(slow.length, fast.length, 1e-2 * fast.length);
   SegmentMotion fine = fast;
   mover.retime(step->segment, bearing, {.finer = true}, fine);
-  ASSERT_TRUE(fine.found);
+  ASSERT_TRUE(fine.success());
   for (const SegmentMotion* motion : {&slow, &fine}) {
     EXPECT_EQ(motion->planner, fast.planner);
     EXPECT_EQ(motion->configurations.front(), step->segment.from);

@@ -87,7 +87,7 @@ class MotionSearch {
     motion = {};
     plan_.segments.clear();
     double time_s = 0.0;
-    for (std::size_t j = 0; j < ways_.size() && ways_[j]->motion.found; ++j) {
+    for (std::size_t j = 0; j < ways_.size() && ways_[j]->motion.success(); ++j) {
       const SegmentMotion& way = ways_[j]->motion;
       SegmentRecord record;
       record.stance = static_cast<int>(j);
@@ -104,8 +104,8 @@ class MotionSearch {
       record.last = static_cast<int>(motion.configurations.size());
       record.duration_s = way.duration_s;
       record.planner = way.planner;
-      record.seconds = way.path_s;
-      record.timing_s = way.timing_s;
+      record.path_s = way.statistics.path_s;
+      record.timing_s = way.statistics.timing_s;
       record.length = way.length;
       record.straight = way.straight;
       record.clear_m = way.clear_m;
@@ -162,7 +162,7 @@ class MotionSearch {
 
   bool found_at(const StancePath& path, std::size_t j) {
     ways_[j] = &solved(path, j);
-    return ways_[j]->motion.found;
+    return ways_[j]->motion.success();
   }
 
   Solved& solved(const StancePath& path, std::size_t j) {
@@ -187,7 +187,8 @@ class MotionSearch {
   void move(Solved& solved) {
     SegmentOptions asked;
     asked.seed = stances_.seed;
-    asked.deadline = stances_.deadline;
+    asked.termination.deadline = stances_.deadline;
+    asked.termination.stop = stances_.stop;
     if (!all_planners_) asked.max_states = kFewStates;
     solved.motion = {};
     on_segment(solved, [&](const Segment& segment, std::span<const BearingContact> bearing) {
@@ -227,11 +228,11 @@ class MotionSearch {
     segment.reached = besides(solved.after, solved.held);
     segment.from = solved.from;
     segment.to = solved.to;
-    plan_.whole_body_s -= solved.motion.path_s;
-    plan_.timing_s -= solved.motion.timing_s;
+    plan_.whole_body_s -= solved.motion.statistics.path_s;
+    plan_.timing_s -= solved.motion.statistics.timing_s;
     f(segment, bearing);
-    plan_.whole_body_s += solved.motion.path_s;
-    plan_.timing_s += solved.motion.timing_s;
+    plan_.whole_body_s += solved.motion.statistics.path_s;
+    plan_.timing_s += solved.motion.statistics.timing_s;
   }
 
   /// Planners of segments that are tried: another way through other stances is cheaper than the
@@ -318,8 +319,8 @@ class MotionSearch {
         solved.slowed = 0;
         if (solved.planner < allowed()) move(solved);
       }
-      if (solved.planner >= allowed() || !solved.motion.found) {
-        solved.motion.found = false;
+      if (solved.planner >= allowed() || !solved.motion.success()) {
+        solved.motion.status = PlannerStatus::kNotFound;
         solved.motion.reason = "refused: " + violation_text(report.worst());
         return false;
       }

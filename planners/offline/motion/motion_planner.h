@@ -28,8 +28,8 @@ struct SegmentRecord {
   int stance = 0;           ///< of Motion::stances
   int first = 0, last = 0;  ///< vertices of the motion
   double duration_s = 0.0;
-  std::string planner;   ///< that solved it
-  double seconds = 0.0;  ///< all planners that tried
+  std::string planner;  ///< that solved it
+  double path_s = 0.0;  ///< all planners that tried
   double timing_s = 0.0;
   double length = 0.0,
          straight = 0.0;          ///< of the path and of the straight way, SegmentSpace::distance

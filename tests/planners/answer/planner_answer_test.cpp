@@ -1,11 +1,13 @@
 // Every planner ends when it is told to, and says so in the same words.
 #include <gtest/gtest.h>
 #include <locograph/planners/answer/planner_answer.h>
+#include <locograph/planners/offline/motion/segment_motion.h>
+#include <locograph/planners/offline/motion/segment_planners.h>
 #include <locograph/planners/offline/timing/path_timing.h>
 #include <locograph/planners/posture/posture_solver.h>
 
 #include "planners/planned_drive.h"
-#include "planners/stance_tasks.h"
+#include "planners/segment_problems.h"
 
 namespace locograph::test {
 namespace {
@@ -90,6 +92,34 @@ TEST(PlannerAnswer, OfTimings) {
   expect_ends(time);
   expect_counts(time);
   EXPECT_EQ(time({}).status, PlannerStatus::kSolved);
+}
+
+TEST(PlannerAnswer, OfPathsOfSegments) {
+  const auto problem = segment_problem("board");
+  SegmentSpace space(problem->robot, problem->world);
+  space.set_segment(problem->segment);
+  for (const std::string& name : segment_planner_names()) {
+    SCOPED_TRACE(name);
+    const auto planner = make_segment_planner(name);
+    const auto plan = [&](const Termination& termination) {
+      return planner->plan(space, {.termination = termination});
+    };
+    expect_ends(plan);
+    if (name == "optimisation") expect_counts(plan);
+    EXPECT_THROW(planner->plan(space, {.max_states = 0}), Error);
+  }
+}
+
+TEST(PlannerAnswer, OfMotionsOfSegments) {
+  const Task task = stance_task("slanted_wall");
+  const auto problem = segment_problem("board");
+  const MotionOptions options;
+  SegmentMover mover(task, options);
+  std::vector<BearingContact> bearing;
+  for (const Contact& contact : problem->segment.held) bearing.push_back({contact});
+  expect_ends([&](const Termination& termination) {
+    return mover.move(problem->segment, bearing, 0, mover.planners(), {.termination = termination});
+  });
 }
 
 }  // namespace
