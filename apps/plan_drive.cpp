@@ -60,7 +60,7 @@ ExitCode plan_drive(const Scenario& scenario, const PlanOptions& options, const 
   {
     Progress progress("planning " + options.scenario);
     JobControl job;
-    if (options.timeout_s > 0.0) job.termination.deadline = Deadline::after(options.timeout_s);
+    job.termination.deadline = Deadline::of_limit(options.timeout_s);
     job.report = [&](std::string_view what, double fraction) {
       progress.show(fraction, [&] { return std::string(what); });
     };

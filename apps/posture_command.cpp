@@ -157,9 +157,7 @@ ExitCode posture(const CommandOptions& options) {
   solving.max_restarts = options.restarts;
   solving.enforce_torque_limits = solving.check.enforce_torque_limits =
       options.torques == "enforce";
-  if (options.deadline_ms > 0.0) {
-    solving.termination.deadline = Deadline::after(1e-3 * options.deadline_ms);
-  }
+  solving.termination.deadline = Deadline::of_limit(1e-3 * options.deadline_ms);
   solving.termination.stop = &stop_flag();
   const FinishOnSignal finish;
   const PostureResult result = about(files.urdf, [&] { return solver.solve(problem, solving); });

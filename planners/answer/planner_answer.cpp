@@ -12,7 +12,7 @@ const std::string& planner_status_name(PlannerStatus status) {
 
 std::optional<PlannerAnswer> end_by(const Termination& termination, int iterations) {
   if (termination.stopped()) {
-    return PlannerAnswer{PlannerStatus::kStopped, "interrupted (start again for an answer)"};
+    return PlannerAnswer{PlannerStatus::kStopped, "interrupted (start again to go on)"};
   }
   if (termination.deadline.passed()) {
     return PlannerAnswer{PlannerStatus::kDeadline, "the time allowed is used up (allow more)"};

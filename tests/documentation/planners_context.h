@@ -452,7 +452,7 @@ struct Context {
 }  // namespace online_standard_proposals_h
 namespace online_proposal_schedule_h {
 struct Context : WindowContext {
-  const Deadline deadline;
+  const Termination termination;
   Proposal::Answer answer = Proposal::Answer::kNone;
   std::vector<Eigen::VectorXd> candidate;
 };
@@ -483,8 +483,8 @@ struct Context : DriveContext {
 namespace online_window_solver_h {
 struct Context : WindowContext {
   Incumbent incumbent;
-  const Deadline deadline;
-  CycleReport report;
+  const Termination termination;
+  WindowStatistics statistics;
 };
 }  // namespace online_window_solver_h
 namespace online_window_cause_h {

@@ -4,9 +4,10 @@
 #include <locograph/planners/offline/motion/segment_motion.h>
 #include <locograph/planners/offline/motion/segment_planners.h>
 #include <locograph/planners/offline/timing/path_timing.h>
+#include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/posture/posture_solver.h>
 
-#include "planners/planned_drive.h"
+#include "planners/online/drive_past_box.h"
 #include "planners/segment_problems.h"
 
 namespace locograph::test {
@@ -23,7 +24,7 @@ void expect_ends(const Plan& plan) {
   const std::atomic<bool> stop = true;
   const PlannerAnswer stopped = plan(Termination{.stop = &stop});
   EXPECT_EQ(stopped.status, PlannerStatus::kStopped) << stopped.reason;
-  EXPECT_NE(stopped.reason.find("interrupted (start again for an answer)"), std::string::npos)
+  EXPECT_NE(stopped.reason.find("interrupted (start again to go on)"), std::string::npos)
       << stopped.reason;
 }
 
@@ -120,6 +121,27 @@ TEST(PlannerAnswer, OfMotionsOfSegments) {
   expect_ends([&](const Termination& termination) {
     return mover.move(problem->segment, bearing, 0, mover.planners(), {.termination = termination});
   });
+}
+
+TEST(PlannerAnswer, OfWindows) {
+  const auto cycle = [](const Termination& termination) {
+    Graph graph = drive();
+    LocalPlanner planner(graph, {});
+    planner.show(seeing({box("rock", {0.5, 0.0, 0.5}, {3.0, 3.0, 1.0})}));  // nowhere to go
+    return planner.cycle(0, termination);
+  };
+  expect_ends(cycle);
+  expect_counts(cycle);
+  EXPECT_EQ(cycle({}).status, PlannerStatus::kNotFound);
+}
+
+TEST(PlannerAnswer, OfWalks) {
+  const auto walk = [](const Termination& termination) {
+    Graph graph = drive();
+    return walk_plan(graph, {}, {.termination = termination});
+  };
+  expect_ends(walk);
+  expect_counts(walk);
 }
 
 }  // namespace
