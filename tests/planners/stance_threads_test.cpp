@@ -177,14 +177,14 @@ TEST_F(TransitionsAhead, AreThoseThatANewSolverFindsWhateverWasSolvedBefore) {
     BalanceRegions regions(task_.robot->robot->total_mass());
     const TransitionResult fresh = TaskSolver(task_, regions).solve(asked);
     const TransitionResult used = solver_.solve(asked);
-    EXPECT_EQ(used.found, fresh.found);
+    EXPECT_EQ(used.success(), fresh.success());
     EXPECT_EQ(used.failure, fresh.failure);
-    EXPECT_EQ(used.iterations, fresh.iterations);
+    EXPECT_EQ(used.statistics.iterations, fresh.statistics.iterations);
     EXPECT_TRUE(same_bits(used.configuration, fresh.configuration)) << "lifted " << lifted;
     TransitionAhead ahead(solver_, 1);
     const std::optional<TransitionResult> given = taken(ahead, {asked}, asked);
     ASSERT_TRUE(given.has_value());
-    EXPECT_EQ(given->found, fresh.found);
+    EXPECT_EQ(given->success(), fresh.success());
     EXPECT_TRUE(same_bits(given->configuration, fresh.configuration)) << "lifted " << lifted;
   }
 }
@@ -210,7 +210,7 @@ TEST_F(TransitionsAhead, AreGivenOnceAndForTheirExactArgumentsOnly) {
 
 TEST_F(TransitionsAhead, GoOnFromWhatWasFound) {
   int lifted = 0;
-  while (!solver_.solve(task(lifted)).found) ++lifted;
+  while (!solver_.solve(task(lifted)).success()) ++lifted;
   TransitionTask put = task(lifted, 2);
   put.start = solver_.solve(task(lifted)).configuration;
   const TransitionResult expected = solver_.solve(put);

@@ -123,6 +123,25 @@ TEST(PlannerAnswer, OfMotionsOfSegments) {
   });
 }
 
+TEST(PlannerAnswer, OfTransitions) {
+  const Task task = stance_task("slanted_wall");
+  const Stance& stance = task.start;
+  Stance out_of_reach = stance;
+  out_of_reach.contacts[0].position.x() += 5.0;
+  TransitionSolver solver(task.robot, task.world);
+  TransitionProblem problem{.closed = out_of_reach.contacts,
+                            .start = task.start_configuration,
+                            .preferred = task.start_configuration};
+  const auto solve = [&](const Termination& termination) {
+    return solver.solve(problem, {.restarts = 3, .termination = termination});
+  };
+  expect_ends(solve);
+  expect_counts(solve);
+  const BalanceRegion nowhere;
+  problem.balance = &nowhere;
+  EXPECT_EQ(solve({}).status, PlannerStatus::kInfeasible);
+}
+
 TEST(PlannerAnswer, OfWindows) {
   const auto cycle = [](const Termination& termination) {
     Graph graph = drive();
