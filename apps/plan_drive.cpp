@@ -33,7 +33,7 @@ Planned plan_and_judge(const Scenario& scenario, const PlanOptions& options,
   const DrivePlan drive = plan_wheeled_drive(*task, job);
   if (drive.success()) planned.graph = drive_graph(*task, drive.motion, job);
   planned.whole_body_s = watch.lap();
-  planned.answer = planned.graph ? drive : end_by(job.termination).value();
+  planned.answer = planned.graph ? PlannerAnswer(drive) : end_by(job.termination).value();
   if (!planned.graph) return planned;
   const Motion& motion = drive.motion;
   planned.links_without_collision = task->robot->robot->links_without_collision();

@@ -3,8 +3,8 @@
 ///
 ///     const Task task = task_of(load_scenario("centauro_drive", data_folder));
 ///     const DrivePlan plan = plan_wheeled_drive(task);
-///     if (plan.success()) write_graph(*drive_graph(task, plan.motion), "plan.g2o");  //
-///     drive_graph.h
+///     if (plan.success())
+///       write_graph(*drive_graph(task, plan.motion), "plan.g2o");          // drive_graph.h
 ///
 /// The base follows the path at constant height, from rest to rest: at the drive's speed but for
 /// whole steps at both ends, in which it speeds up and brakes by at most 0.5 m/s^2. Each wheel is

@@ -128,7 +128,7 @@ class MotionSearch {
 
  private:
   std::size_t refuse(std::size_t segment) {
-    ++plan_.refused_segments;
+    ++plan_.statistics.refused_segments;
     refused_reason_ = ways_[segment]->motion.reason;
     return segment + 1;
   }
@@ -187,8 +187,8 @@ class MotionSearch {
   void move(Solved& solved) {
     SegmentOptions asked;
     asked.seed = stances_.seed;
-    asked.termination.deadline = stances_.deadline;
-    asked.termination.stop = stances_.stop;
+    asked.termination = stances_.termination;
+    asked.termination.max_iterations = 0;  // is of stances
     if (!all_planners_) asked.max_states = kFewStates;
     solved.motion = {};
     on_segment(solved, [&](const Segment& segment, std::span<const BearingContact> bearing) {
@@ -228,17 +228,17 @@ class MotionSearch {
     segment.reached = besides(solved.after, solved.held);
     segment.from = solved.from;
     segment.to = solved.to;
-    plan_.whole_body_s -= solved.motion.statistics.path_s;
-    plan_.timing_s -= solved.motion.statistics.timing_s;
+    plan_.statistics.path_s -= solved.motion.statistics.path_s;
+    plan_.statistics.timing_s -= solved.motion.statistics.timing_s;
     f(segment, bearing);
-    plan_.whole_body_s += solved.motion.statistics.path_s;
-    plan_.timing_s += solved.motion.statistics.timing_s;
+    plan_.statistics.path_s += solved.motion.statistics.path_s;
+    plan_.statistics.timing_s += solved.motion.statistics.timing_s;
   }
 
   /// Planners of segments that are tried: another way through other stances is cheaper than the
   /// dear ones, as long as there are others.
   std::size_t allowed() const {
-    const std::size_t refused = static_cast<std::size_t>(plan_.refused_segments);
+    const std::size_t refused = static_cast<std::size_t>(plan_.statistics.refused_segments);
     const std::size_t some = 1 + refused / kRefusedForMore;
     return all_planners_ ? mover_.planners() : std::min(some, mover_.planners());
   }
@@ -253,7 +253,7 @@ class MotionSearch {
       };
     }
     CheckReport report = judge_.check(motion, asked);
-    plan_.judge_s += watch.seconds();
+    plan_.statistics.judge_s += watch.seconds();
     return report;
   }
 
@@ -343,6 +343,7 @@ class MotionSearch {
 
 MotionPlan plan_motion(const Task& task, const StancePlannerOptions& stances,
                        const MotionOptions& options) {
+  options.validate();
   const Stopwatch watch;
   MotionPlan plan;
   StancePlannerOptions asked = stances;
@@ -361,9 +362,9 @@ MotionPlan plan_motion(const Task& task, const StancePlannerOptions& stances,
     }
   }
   plan.stances = search->result();
-  plan.success = plan.stances.success;
+  plan.status = plan.stances.status;
   plan.reason = plan.stances.reason;
-  if (!plan.success) {
+  if (!plan.success()) {
     if (!motions.refused_reason().empty()) {
       plan.reason += "; the last motion that was not found: " + motions.refused_reason();
     }
@@ -371,7 +372,8 @@ MotionPlan plan_motion(const Task& task, const StancePlannerOptions& stances,
     motions.keep(search->taken().changes());
     motions.assemble(search->taken());
   }
-  plan.total_s = watch.seconds();
+  plan.statistics.iterations = plan.stances.statistics.iterations;
+  plan.statistics.total_s = watch.seconds();
   return plan;
 }
 

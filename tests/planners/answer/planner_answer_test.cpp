@@ -1,8 +1,10 @@
 // Every planner ends when it is told to, and says so in the same words.
 #include <gtest/gtest.h>
 #include <locograph/planners/answer/planner_answer.h>
+#include <locograph/planners/offline/motion/motion_planner.h>
 #include <locograph/planners/offline/motion/segment_motion.h>
 #include <locograph/planners/offline/motion/segment_planners.h>
+#include <locograph/planners/offline/stance/stance_planners.h>
 #include <locograph/planners/offline/timing/path_timing.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/posture/posture_solver.h>
@@ -140,6 +142,29 @@ TEST(PlannerAnswer, OfTransitions) {
   const BalanceRegion nowhere;
   problem.balance = &nowhere;
   EXPECT_EQ(solve({}).status, PlannerStatus::kInfeasible);
+}
+
+TEST(PlannerAnswer, OfStances) {
+  const Task task = stance_task("standing_up");
+  for (const std::string& name : stance_planner_names()) {
+    SCOPED_TRACE(name);
+    const auto planner = make_stance_planner(name);
+    const auto plan = [&](const Termination& termination) {
+      return planner->plan(task, {.termination = termination});
+    };
+    expect_ends(plan);
+    expect_counts(plan);
+  }
+}
+
+TEST(PlannerAnswer, OfWholeMotions) {
+  const Task task = stance_task("standing_up");
+  const auto plan = [&](const Termination& termination) {
+    return plan_motion(task, {.termination = termination});
+  };
+  expect_ends(plan);
+  expect_counts(plan);
+  EXPECT_THROW(plan_motion(task, {}, {.step_s = 0.0}), Error);
 }
 
 TEST(PlannerAnswer, OfWindows) {
