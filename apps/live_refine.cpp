@@ -45,8 +45,8 @@ Json cycle_json(const PlanFile& file, const CycleReport& cycle) {
           {"executed", cycle.executed},
           {"window", cycle.window},
           {"configurations", std::move(configurations)},
-          {"feasible", cycle.feasible},
-          {"cycle_time", cycle.time_total},
+          {"feasible", cycle.success()},
+          {"cycle_time", cycle.statistics.total_s},
           {"violation", violation_json(cycle)}};
 }
 
@@ -65,12 +65,13 @@ void run(const LiveJob& job, LiveChannel& channel) {
   options.on_cycle = [&](const CycleReport& cycle) {
     send(channel, cycle_json(file, cycle));
     const double step_s = time_of(file, cycle.executed + 1) - time_of(file, cycle.executed);
-    if (!channel.wait(std::max(0.0, step_s / job.speed - cycle.time_total))) throw ChannelClosed();
+    if (!channel.wait(std::max(0.0, step_s / job.speed - cycle.statistics.total_s)))
+      throw ChannelClosed();
   };
   const WalkReport report = walk_plan(
       file.graph, [&seen](int executed) { return executed == 0 ? seen : nullptr; }, options);
   send(channel, {{"type", "end"},
-                 {"success", report.success},
+                 {"success", report.success()},
                  {"reason", report.reason},
                  {"left", report.configurations}});
 }

@@ -45,7 +45,7 @@ StancePlannerOptions stance_options(const PlanOptions& options) {
   asked.max_transitions = options.max_transitions;
   asked.keep_tree = !options.tree.empty();
   asked.threads = std::min(options.threads, processor_count());
-  if (options.timeout_s > 0.0) asked.deadline = Deadline::after(options.timeout_s);
+  asked.termination.deadline = Deadline::of_limit(options.timeout_s);
   return asked;
 }
 
@@ -68,7 +68,7 @@ void plan_stances_only(const PlanOptions& options, const StancePlannerOptions& a
   if (options.improve) {
     plan.improved = improve_stances(*planner, task, asked, asked.threads, stances);
   }
-  plan.motion.success = stances.success;
+  plan.motion.status = stances.status;
   plan.motion.reason = stances.reason;
   plan.graph = stance_graph(task, stances);
 }
@@ -90,14 +90,16 @@ ContactTaskPlan plan_of_task(const Scenario& scenario, const PlanOptions& option
   std::optional<Progress> progress("preparing " + options.scenario);
   StancePlannerOptions asked = stance_options(options);
   try {
-    plan.started = asked_task(scenario, options, asked.deadline);
-  } catch (const OutOfTime& late) {
-    plan.motion.reason = std::string("before the search began, ") + late.what();
+    plan.started = asked_task(scenario, options, asked.termination.deadline);
+  } catch (const OutOfTime&) {
+    const PlannerAnswer end = end_by(asked.termination).value();
+    plan.motion.status = end.status;
+    plan.motion.reason = "before the search began, " + end.reason;
     plan.total_s = total.seconds();
     return plan;
   }
   finish.emplace();
-  asked.stop = &stop_flag();
+  asked.termination.stop = &stop_flag();
   progress.emplace("planning " + options.scenario);
   if (options.stances_only) {
     plan_stances_only(options, asked, plan);
@@ -126,7 +128,7 @@ Json by_planner_json(const std::vector<SegmentRecord>& segments) {
     for (const SegmentRecord& segment : segments) {
       if (segment.planner != name) continue;
       ++count;
-      seconds += segment.seconds;
+      seconds += segment.path_s;
     }
     all[name] = {{"count", count}, {"seconds", seconds}};
   }
@@ -161,16 +163,16 @@ double duration_s(const Motion& motion) {
 
 /// The parts of a whole plan do not overlap: the stance planner waits while its way is moved along.
 Json time_json(const PlanOptions& options, const ContactTaskPlan& plan) {
-  const MotionPlan& motion = plan.motion;
-  const StancePlan& stances = plan.stances();
+  const MotionStatistics& motion = plan.motion.statistics;
+  const StanceStatistics& stances = plan.stances().statistics;
   double stances_s = stances.total_s, judge_s = stances.judge_s;
   if (!options.stances_only) {
     judge_s += motion.judge_s;
-    stances_s = std::max(0.0, stances_s - motion.whole_body_s - motion.timing_s - judge_s);
+    stances_s = std::max(0.0, stances_s - motion.path_s - motion.timing_s - judge_s);
   }
   return {{"stance_planner", stances_s},
           {"transitions", stances.transitions_s},
-          {"whole_body", motion.whole_body_s},
+          {"whole_body", motion.path_s},
           {"timing", motion.timing_s},
           {"judge", judge_s},
           {"total", plan.total_s}};
@@ -179,21 +181,23 @@ Json time_json(const PlanOptions& options, const ContactTaskPlan& plan) {
 Json answer_json(const PlanOptions& options, const ContactTaskPlan& plan) {
   const MotionPlan& motion = plan.motion;
   const StancePlan& stances = plan.stances();
+  const StanceStatistics& statistics = stances.statistics;
   const StartedTask& started = plan.started;
   Json json = {
-      {"success", motion.success},
+      {"success", motion.success()},
+      {"status", planner_status_name(motion.status)},
       {"reason", motion.reason},
       {"seed", options.seed},
       {"planner", options.planner},
       {"stances", stances.stances.size()},
-      {"vertices_in_tree", stances.vertices_in_tree},
-      {"iterations", stances.iterations},
+      {"vertices_in_tree", statistics.vertices_in_tree},
+      {"iterations", statistics.iterations},
       {"configurations",
        options.stances_only ? stances.configurations.size() : motion.motion.configurations.size()},
       {"duration_s", duration_s(motion.motion)},
       {"segments", motion.segments.size()},
       {"goals_reached", stances.goals_reached},
-      {"transitions", {{"tried", stances.transitions}, {"found", stances.transitions_found}}},
+      {"transitions", {{"tried", statistics.transitions}, {"found", statistics.transitions_found}}},
       {"start_moved", {{"base_m", started.moved_base_m}, {"joint_rad", started.moved_joint_rad}}},
       {"failures", failures_json(stances)},
       {"links_without_collision", plan.links_without_collision()},
@@ -203,14 +207,14 @@ Json answer_json(const PlanOptions& options, const ContactTaskPlan& plan) {
     json["segments_by_planner"] = by_planner_json(motion.segments);
     json["path_ratio"] = path_ratio_json(motion.segments);
     json["swing_clearance"] = swing_clearance_json(motion.segments);
-    json["refused_segments"] = motion.refused_segments;
+    json["refused_segments"] = motion.statistics.refused_segments;
   }
   if (options.improve) json["improved"] = plan.improved;
   if (options.move_contacts_m > 0.0) {
     json["moved_contacts"] = {{"up_to_m", options.move_contacts_m},
                               {"start_draws", started.task.moves.draws}};
   }
-  if (!motion.success) {
+  if (!motion.success()) {
     json["best"] = {{"stances", stances.stances.size()},
                     {"goal_contacts_reached", stances.best_contacts}};
   }
@@ -245,7 +249,7 @@ std::string answer_text(const std::string& scenario, const PlanOptions& options,
             short_number(started.moved_base_m) + " m and " + short_number(started.moved_joint_rad) +
             " rad away\n" + scenario + ": ";
   }
-  text += plan.motion.success ? "" : "no plan: " + plan.motion.reason + "; so far ";
+  text += plan.motion.success() ? "" : "no plan: " + plan.motion.reason + "; so far ";
   text += counted(json["stances"], "stance", "stances") + ", " +
           counted(json["transitions"]["tried"], "transition", "transitions") + " tried, ";
   if (!options.stances_only) {
@@ -277,7 +281,7 @@ ExitCode plan_contact_task(const Scenario& scenario, const PlanOptions& options)
   } else {
     print_text(answer_text(scenario.name, options, plan, json));
   }
-  return plan.motion.success ? kDone : kNo;
+  return plan.motion.success() ? kDone : kNo;
 }
 
 }  // namespace locograph

@@ -18,35 +18,38 @@ namespace {
 
 /// What became of a scenario.
 struct Planned {
-  std::optional<Graph> graph;  ///< nothing: out of time
+  PlannerAnswer answer = {};
+  std::optional<Graph> graph = {};  ///< nothing: it ended before
   std::size_t configurations = 0;
   double duration_s = 0.0, whole_body_s = 0.0, judge_s = 0.0;
-  bool success = false;
-  std::string reason = "the time allowed is used up";
-  std::vector<std::string> links_without_collision;
+  std::vector<std::string> links_without_collision = {};
 };
 
 Planned plan_and_judge(const Scenario& scenario, const PlanOptions& options,
                        const JobControl& job) {
   Planned planned;
   Stopwatch watch;
-  const auto task = std::make_shared<const Task>(task_of(scenario, job.deadline));
-  const std::optional<Motion> motion = plan_wheeled_drive(*task, job);
-  if (motion) planned.graph = drive_graph(*task, *motion, job);
+  const auto task = std::make_shared<const Task>(task_of(scenario, job.termination.deadline));
+  const DrivePlan drive = plan_wheeled_drive(*task, job);
+  if (drive.success()) planned.graph = drive_graph(*task, drive.motion, job);
   planned.whole_body_s = watch.lap();
+  planned.answer = planned.graph ? PlannerAnswer(drive) : end_by(job.termination).value();
   if (!planned.graph) return planned;
+  const Motion& motion = drive.motion;
   planned.links_without_collision = task->robot->robot->links_without_collision();
-  planned.configurations = motion->configurations.size();
-  planned.duration_s = motion->time_s.back() - motion->time_s.front();
+  planned.configurations = motion.configurations.size();
+  planned.duration_s = motion.time_s.back() - motion.time_s.front();
   Judging judging = judging_of(task);
   if (!options.torques.empty()) {
     judging.options.enforce_torque_limits = options.torques == "enforce";
   }
-  const std::optional<CheckReport> report = judged(*motion, judging, job);
+  const std::optional<CheckReport> report = judged(motion, judging, job);
   planned.judge_s = watch.lap();
-  if (!report || job.deadline.passed()) return planned;
-  planned.success = report->feasible;
-  planned.reason = report->feasible ? "planned" : "refused: " + violation_text(report->worst());
+  if (const auto end = end_by(job.termination)) {
+    planned.answer = *end;
+  } else if (!report->feasible) {
+    planned.answer = {PlannerStatus::kNotFound, "refused: " + violation_text(report->worst())};
+  }
   return planned;
 }
 
@@ -57,30 +60,31 @@ ExitCode plan_drive(const Scenario& scenario, const PlanOptions& options, const 
   {
     Progress progress("planning " + options.scenario);
     JobControl job;
-    if (options.timeout_s > 0.0) job.deadline = Deadline::after(options.timeout_s);
+    job.termination.deadline = Deadline::of_limit(options.timeout_s);
     job.report = [&](std::string_view what, double fraction) {
       progress.show(fraction, [&] { return std::string(what); });
     };
     try {
       planned = plan_and_judge(scenario, options, job);
     } catch (const OutOfTime&) {
-      planned = {};
+      planned = {.answer = end_by(job.termination).value()};
     }
   }
-  if (planned.success) {
+  if (planned.answer.success()) {
     const Progress progress("writing " + options.output);
     write_graph(*planned.graph, options.output);
   }
   const Json json = {
-      {"success", planned.success},
-      {"reason", planned.reason},
+      {"success", planned.answer.success()},
+      {"status", planner_status_name(planned.answer.status)},
+      {"reason", planned.answer.reason},
       {"seed", options.seed},
       {"stances", 1},
       {"vertices_in_tree", 0},
       {"iterations", 0},
       {"configurations", planned.configurations},
       {"duration_s", planned.duration_s},
-      {"segments", planned.success ? 1 : 0},
+      {"segments", planned.answer.success() ? 1 : 0},
       {"links_without_collision", planned.links_without_collision},
       {"time",
        {{"stance_planner", 0.0},
@@ -92,16 +96,16 @@ ExitCode plan_drive(const Scenario& scenario, const PlanOptions& options, const 
   };
   if (options.json) {
     print_result(json, true);
-  } else if (planned.success) {
+  } else if (planned.answer.success()) {
     print_text(
         scenario.name + ": " + counted(json["configurations"], "configuration", "configurations") +
         " in " + short_number(json["duration_s"]) + " s, planned in " +
         short_number(total.seconds()) + " s\n" + shapeless_text(planned.links_without_collision) +
         "written: " + options.output + '\n');
   } else {
-    print_text(scenario.name + ": no plan: " + planned.reason + '\n');
+    print_text(scenario.name + ": no plan: " + planned.answer.reason + '\n');
   }
-  return planned.success ? kDone : kNo;
+  return planned.answer.success() ? kDone : kNo;
 }
 
 }  // namespace locograph

@@ -82,8 +82,9 @@ Json result_json(const Robot& robot, const PostureProblem& problem, const Postur
     violations.push_back(violation_json(v));
   }
   const CheckReport& report = result.report;
-  return {{"success", result.success},
-          {"reason", result.success ? "found" : result.reason},
+  return {{"success", result.success()},
+          {"status", planner_status_name(result.status)},
+          {"reason", result.reason},
           {"robot", robot.name()},
           {"seed", options.seed},
           {"base", numbers(result.configuration.head(robot.base_configuration_size()))},
@@ -95,29 +96,29 @@ Json result_json(const Robot& robot, const PostureProblem& problem, const Postur
           {"limiting", report.balance ? Json(report.balance->limiting) : Json(nullptr)},
           {"trusted", report.trusted},
           {"links_without_collision", robot.links_without_collision()},
-          {"restarts", result.restarts},
-          {"iterations", result.iterations},
+          {"restarts", result.statistics.restarts},
+          {"iterations", result.statistics.iterations},
           {"time",
            {{"load", load_s},
-            {"build", result.build_s},
-            {"optimise", result.optimise_s},
-            {"geometry", result.geometry_s},
-            {"balance", result.balance_s},
-            {"solve", result.total_s},
+            {"build", result.statistics.build_s},
+            {"optimise", result.statistics.optimise_s},
+            {"geometry", result.statistics.geometry_s},
+            {"balance", result.statistics.balance_s},
+            {"solve", result.statistics.total_s},
             {"total", total_s}}}};
 }
 
 void print_summary(const Robot& robot, const PostureResult& result, const CommandOptions& options) {
   std::string text = robot.name() + ": ";
-  if (!result.success) {
-    text += result.reason + " (" + counted(result.restarts, "restart", "restarts") + ", " +
-            short_number(1e3 * result.total_s) + " ms)\n";
+  if (!result.success()) {
+    text += result.reason + " (" + counted(result.statistics.restarts, "restart", "restarts") +
+            ", " + short_number(1e3 * result.statistics.total_s) + " ms)\n";
     print_text(text);
     return;
   }
   const BalanceCertificate& balance = result.report.balance.value();
-  text += "posture found in " + short_number(1e3 * result.total_s) + " ms, " +
-          counted(result.restarts, "restart", "restarts") + "; balance margin " +
+  text += "posture found in " + short_number(1e3 * result.statistics.total_s) + " ms, " +
+          counted(result.statistics.restarts, "restart", "restarts") + "; balance margin " +
           short_number(balance.margin) + " (" + balance.limiting + "), torques up to " +
           short_number(100.0 * result.report.max_torque_ratio.value_or(0.0)) +
           " % of their limits\n" + shapeless_text(robot.links_without_collision());
@@ -156,11 +157,11 @@ ExitCode posture(const CommandOptions& options) {
   solving.max_restarts = options.restarts;
   solving.enforce_torque_limits = solving.check.enforce_torque_limits =
       options.torques == "enforce";
-  if (options.deadline_ms > 0.0) solving.deadline = Deadline::after(1e-3 * options.deadline_ms);
-  solving.stop = &stop_flag();
+  solving.termination.deadline = Deadline::of_limit(1e-3 * options.deadline_ms);
+  solving.termination.stop = &stop_flag();
   const FinishOnSignal finish;
   const PostureResult result = about(files.urdf, [&] { return solver.solve(problem, solving); });
-  if (result.success && !options.output.empty()) {
+  if (result.success() && !options.output.empty()) {
     write_graph(solver.graph(problem, result, solving), options.output);
   }
   progress.reset();
@@ -169,7 +170,7 @@ ExitCode posture(const CommandOptions& options) {
   } else {
     print_summary(model, result, options);
   }
-  return result.success ? kDone : kNo;
+  return result.success() ? kDone : kNo;
 }
 
 }  // namespace

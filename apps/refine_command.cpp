@@ -39,12 +39,15 @@ Json over_cycles(const WalkReport& report, F&& figure) {
 
 Json phases_json(const WalkReport& report) {
   return {
-      {"compile", over_cycles(report, [](const CycleReport& c) { return c.time_compile; })},
-      {"linearise", over_cycles(report, [](const CycleReport& c) { return c.time_linearise; })},
-      {"solve", over_cycles(report, [](const CycleReport& c) { return c.time_solve; })},
-      {"evaluate", over_cycles(report, [](const CycleReport& c) { return c.time_evaluate; })},
-      {"detour", over_cycles(report, [](const CycleReport& c) { return c.time_detour; })},
-      {"check", over_cycles(report, [](const CycleReport& c) { return c.time_check; })},
+      {"compile", over_cycles(report, [](const CycleReport& c) { return c.statistics.compile_s; })},
+      {"linearise",
+       over_cycles(report, [](const CycleReport& c) { return c.statistics.linearise_s; })},
+      {"solve", over_cycles(report, [](const CycleReport& c) { return c.statistics.solve_s; })},
+      {"evaluate",
+       over_cycles(report, [](const CycleReport& c) { return c.statistics.evaluate_s; })},
+      {"detour",
+       over_cycles(report, [](const CycleReport& c) { return c.statistics.proposals_s; })},
+      {"check", over_cycles(report, [](const CycleReport& c) { return c.statistics.check_s; })},
   };
 }
 
@@ -53,12 +56,13 @@ Json report_json(const WalkReport& report, const CommandOptions& options, double
   int iterations = 0, detours = 0;
   Json cycle_times = Json::array();
   for (const CycleReport& cycle : report.cycles) {
-    cycle_times.push_back(cycle.time_total);
-    iterations += cycle.iterations;
+    cycle_times.push_back(cycle.statistics.total_s);
+    iterations += cycle.statistics.iterations;
     detours += cycle.detour ? 1 : 0;
   }
   return {
-      {"success", report.success},
+      {"success", report.success()},
+      {"status", planner_status_name(report.status)},
       {"reason", report.reason},
       {"cycles", report.cycles.size()},
       {"horizon", options.horizon},
@@ -70,12 +74,14 @@ Json report_json(const WalkReport& report, const CommandOptions& options, double
       {"goal_angle_rad", report.goal_angle_rad},
       {"short_of_goal_m", report.short_of_goal_m},
       {"iterations", iterations},
-      {"constraints", report.cycles.empty() ? 0 : report.cycles.front().constraints},
+      {"constraints", report.cycles.empty() ? 0 : report.cycles.front().statistics.constraints},
       {"detours_searched", detours},
-      {"cycle_time", over_cycles(report, [](const CycleReport& c) { return c.time_total; })},
+      {"cycle_time",
+       over_cycles(report, [](const CycleReport& c) { return c.statistics.total_s; })},
       {"iteration_time",
-       over_cycles(report, [](const CycleReport& c) { return c.time_iteration; })},
-      {"optimize_time", over_cycles(report, [](const CycleReport& c) { return c.time_optimise; })},
+       over_cycles(report, [](const CycleReport& c) { return c.statistics.iteration_s; })},
+      {"optimize_time",
+       over_cycles(report, [](const CycleReport& c) { return c.statistics.optimise_s; })},
       {"map_update_time", statistics_json(report.map_update_s)},
       {"verify_time", statistics_json(report.verify_s)},
       {"phases", phases_json(report)},
@@ -90,13 +96,13 @@ Json report_json(const WalkReport& report, const CommandOptions& options, double
 double require_feasible(const PlanFile& file, const std::shared_ptr<const Task>& task,
                         WalkReport& report) {
   const Stopwatch watch;
-  if (!report.success) return 0.0;
+  if (!report.success()) return 0.0;
   const Plan plan = plan_of(file.graph);
   const Judging judging =
       judging_of(file.graph, plan, {.task = task, .data_folder = data_folder()});
   const CheckReport check = judged(file.graph, plan, judging);
   if (!check.feasible) {
-    report.success = false;
+    report.status = PlannerStatus::kNotFound;
     report.reason = "refused: " + violation_text(check.worst());
   }
   return watch.seconds();
@@ -118,11 +124,11 @@ ExitCode refine_plan(const CommandOptions& options) {
                options.json);
   WalkOptions walk_options;
   walk_options.planner.horizon = options.horizon;
-  walk_options.planner.deadline_s = 1e-3 * options.deadline_ms;
+  walk_options.cycle_deadline_s = 1e-3 * options.deadline_ms;
   walk_options.goal_tolerance_m = options.goal_tolerance_m;
   walk_options.goal_tolerance_rad = options.goal_tolerance_rad;
-  walk_options.planner.validate();
-  walk_options.stop = &stop_flag();
+  walk_options.validate();
+  walk_options.termination.stop = &stop_flag();
   std::optional<Progress> progress("reading " + options.input);
   PlanFile file = load_plan(options.input, options.plugins);
   if (!file.plan.world) throw Error(file.name, 0, "the plan has no world", "a PARAMS_WORLD line");
@@ -152,7 +158,7 @@ ExitCode refine_plan(const CommandOptions& options) {
   const Json json = report_json(report, options, field_s, judge_s);
   if (options.json) {
     print_result(json, true);
-    return report.success ? kDone : kNo;
+    return report.success() ? kDone : kNo;
   }
   const auto ms = [&json](const char* which) {
     return short_number(1e3 * json["cycle_time"][which].get<double>());
@@ -160,12 +166,12 @@ ExitCode refine_plan(const CommandOptions& options) {
   print_text(options.input + ": " + counted(report.feasible_cycles, "cycle", "cycles") + " of " +
              std::to_string(report.cycles.size()) + " feasible, horizon " +
              std::to_string(options.horizon) + ", " + std::to_string(report.dof) +
-             " degrees of freedom\n" + (report.success ? "" : "not refined: ") + report.reason +
+             " degrees of freedom\n" + (report.success() ? "" : "not refined: ") + report.reason +
              "\ncycle time " + ms("p50") + " ms (p95 " + ms("p95") + ", max " + ms("max") +
              ")\nends " + short_number(report.goal_distance_m) + " m and " +
              short_number(report.goal_angle_rad) +
              " rad from the goal\nwritten: " + options.output + '\n');
-  return report.success ? kDone : kNo;
+  return report.success() ? kDone : kNo;
 }
 
 }  // namespace

@@ -145,7 +145,7 @@ BalanceOptions BalanceWorker::options_for(const Spot& spot) {
 
 double BalanceWorker::judge(const Spot& spot, BalanceFindings::List* findings,
                             StanceWrenches* wrenches) {
-  context_.go_on("judging balance", spot.vertex);
+  context_.begin_work("judging balance", spot.vertex);
   sampler_.link_poses(spot.vertex, spot.fraction, poses_);
   BalanceOptions options = options_for(spot);
   bool torques = spot.at_rest || spot.fraction == 0.0 || spot.fraction == 1.0;

@@ -47,10 +47,12 @@ struct CheckContext {
   int samples = 0;  ///< looked at so far
   mutable std::mutex asking = {};
 
-  /// To be called before each piece of work, by any thread. what: the part of the check.
-  void go_on(const char* what, int vertex) const {
+  /// To be called before each piece of work, by any thread. part: of the check. Throws
+  /// CheckStopped.
+  void begin_work(const char* part, int vertex) const {
     const std::lock_guard<std::mutex> lock(asking);
-    if (!job.go_on(what, std::size_t(vertex), vertices())) throw CheckStopped();
+    job.report_progress(part, std::size_t(vertex), vertices());
+    if (job.termination.ended()) throw CheckStopped();
   }
   std::size_t vertices() const { return motion.configurations.size(); }
   /// Null: not known.

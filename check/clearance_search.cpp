@@ -51,7 +51,7 @@ void ClearanceSearch::add(std::size_t channel, CollisionWorld::Closest closest, 
 
 ClearanceSearch::Sample ClearanceSearch::sample(int vertex, double fraction,
                                                 const JudgedStance* stance) {
-  context_.go_on(self_ ? "judging self-collisions" : "judging distances", vertex);
+  context_.begin_work(self_ ? "judging self-collisions" : "judging distances", vertex);
   Sample sample;
   sample.fraction = fraction;
   sampler_.link_poses(vertex, standing_ ? 0.0 : fraction, sample.world_from_link);

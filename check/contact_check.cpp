@@ -113,7 +113,7 @@ void ContactCheck::run() {
   LinkPoses poses, before;
   for (std::size_t i = 0; i < context_.vertices(); ++i) {
     const int vertex = int(i);
-    context_.go_on("judging contacts", vertex);
+    context_.begin_work("judging contacts", vertex);
     if (!context_.usable.vertices[i]) {
       begin(nullptr, {vertex, 0.0, poses, motion.configurations[i]});
       continue;

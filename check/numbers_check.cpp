@@ -72,7 +72,7 @@ void NumbersCheck::run() {
 }
 
 void NumbersCheck::check_numbers(int vertex) {
-  context_.go_on("judging numbers", vertex);
+  context_.begin_work("judging numbers", vertex);
   const Eigen::VectorXd& q = context_.motion.configurations[std::size_t(vertex)];
   const Eigen::Vector3d nowhere = Eigen::Vector3d::Zero();
   const long missing = std::abs(long(q.size()) - long(robot_.configuration_size()));
@@ -113,7 +113,7 @@ void NumbersCheck::check_joint_limits(int vertex, double fraction, const Eigen::
 }
 
 void NumbersCheck::check_step(int vertex) {
-  context_.go_on("judging steps", vertex);
+  context_.begin_work("judging steps", vertex);
   const Eigen::Vector3d nowhere = Eigen::Vector3d::Zero();
   const double duration = time(vertex + 1) - time(vertex);
   time_order_.add(duration, vertex, time(vertex), nowhere,

@@ -32,6 +32,9 @@ class Deadline {
                                       std::chrono::duration<double>(std::max(seconds, 0.0)));
     return deadline;
   }
+  /// Of a limit as users give it: 0 seconds is none.
+  static Deadline of_limit(double seconds) { return seconds > 0.0 ? after(seconds) : Deadline(); }
+  bool operator==(const Deadline&) const = default;
   bool exists() const { return at_.has_value(); }
   bool passed() const { return at_ && Clock::now() >= *at_; }
   /// Throws OutOfTime when it has passed.

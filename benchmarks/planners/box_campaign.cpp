@@ -69,7 +69,7 @@ class Campaign {
   Campaign()
       : task_(task_of(load_scenario(LOCOGRAPH_SOURCE_DIR "/planners/scenarios/centauro_drive.xml",
                                     LOCOGRAPH_SOURCE_DIR))),
-        motion_(*plan_wheeled_drive(task_)) {
+        motion_(plan_wheeled_drive(task_).motion) {
     check_.known = task_.end_effectors();
   }
 
@@ -100,7 +100,7 @@ class Campaign {
     const CheckReport after = judge.check(refined, check_);
 
     std::vector<double> times;
-    for (const CycleReport& cycle : report.cycles) times.push_back(cycle.time_total);
+    for (const CycleReport& cycle : report.cycles) times.push_back(cycle.statistics.total_s);
     std::sort(times.begin(), times.end());
     const auto percentile_ms = [&times](double p) {
       return 1e3 * times[static_cast<std::size_t>(std::ceil(p * times.size())) - 1];
@@ -110,7 +110,7 @@ class Campaign {
       if (v.violated) violated.push_back({{"constraint", v.constraint}, {"worst", v.worst}});
     }
     const double final_x = refined.configurations.back()[0];
-    const bool passed = report.success && after.feasible &&
+    const bool passed = report.success() && after.feasible &&
                         std::abs(final_x - motion_.configurations.back()[0]) <= 0.3;
     return {
         {"x", scene.x},
@@ -120,7 +120,7 @@ class Campaign {
         {"wall", scene.wall},
         {"gap", scene.gap},
         {"original_feasible", before.feasible},
-        {"refine_success", report.success},
+        {"refine_success", report.success()},
         {"reason", report.reason},
         {"configurations", report.configurations},
         {"feasible_cycles", report.feasible_cycles},

@@ -65,7 +65,7 @@ int main(int argc, char** argv) {
   app.add_option("EVERY", options.every, "Judge every n-th window").positive();
   app.add_option("DEADLINE_MS", deadline_ms, "Of a cycle; 0: none").not_negative();
   return locograph::run_benchmark(app, argc, argv, [&] {
-    options.planner.deadline_s = 1e-3 * deadline_ms;
+    options.cycle_deadline_s = 1e-3 * deadline_ms;
     locograph::run(cases, options);
   });
 }

@@ -80,7 +80,7 @@ std::vector<Crossing> crossings(int count) {
 CrossingResult run_crossing(const Scenario& scenario, const Crossing& crossing,
                             const CrossingOptions& options) {
   const Task task = task_of(scenario);
-  Graph graph = *drive_graph(task, *plan_wheeled_drive(task));
+  Graph graph = *drive_graph(task, plan_wheeled_drive(task).motion);
   LocalPlanner planner(graph, options.planner);
   const Plan& plan = planner.plan();
   const double meets_at_s = crossing.x_m / scenario.drive->speed_m_s + crossing.delay_s;
@@ -95,14 +95,15 @@ CrossingResult run_crossing(const Scenario& scenario, const Crossing& crossing,
 
   CrossingResult result;
   for (int executed = 0; executed + 1 < planner.plan_size(); ++executed) {
-    const CycleReport cycle = planner.cycle(executed);
+    const CycleReport cycle =
+        planner.cycle(executed, {.deadline = Deadline::of_limit(options.cycle_deadline_s)});
     if (executed % options.every == 0) {
       const CheckReport judged = judge.check(window_of(graph, plan, cycle), check);
       ++result.windows;
-      result.called_feasible += cycle.feasible ? 1 : 0;
+      result.called_feasible += cycle.success() ? 1 : 0;
       result.judged_feasible += judged.feasible ? 1 : 0;
-      result.agreed_feasible += cycle.feasible && judged.feasible ? 1 : 0;
-      if (cycle.feasible && !judged.feasible) {
+      result.agreed_feasible += cycle.success() && judged.feasible ? 1 : 0;
+      if (cycle.success() && !judged.feasible) {
         ++result.wrongly_feasible;
         if (result.refused.empty()) result.refused = first_refusal(judged);
       }

@@ -40,7 +40,8 @@ struct CrossingResult {
 
 struct CrossingOptions {
   LocalPlannerOptions planner;
-  int every = 1;  ///< how many cycles from one window that is judged to the next
+  double cycle_deadline_s = 0.0;  ///< 0: none
+  int every = 1;                  ///< how many cycles from one window that is judged to the next
 };
 
 CrossingResult run_crossing(const Scenario& scenario, const Crossing& crossing,

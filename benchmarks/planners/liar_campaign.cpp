@@ -43,7 +43,7 @@ Honest drive(std::mt19937_64& random) {
   Honest honest{.name = "drive",
                 .robot = task.robot->robot,
                 .world = task.world->world(),
-                .motion = *plan_wheeled_drive(task),
+                .motion = plan_wheeled_drive(task).motion,
                 .options = {}};
   honest.options.known = task.end_effectors();
   honest.options.base_linear_m_s = task.check.base_linear_m_s;
@@ -63,7 +63,7 @@ class Postures {
       const test::ContactSet set = sets_.draw();
       const PostureProblem problem{set.stance, placed_at(robot_.model(), robot_.home, set.stance)};
       const PostureResult found = solver_.solve(problem);
-      if (!found.success) continue;
+      if (!found.success()) continue;
       Honest honest{.name = robot_.name,
                     .robot = robot_.robot->robot,
                     .world = posture_world(),

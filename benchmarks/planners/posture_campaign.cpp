@@ -38,15 +38,15 @@ struct Tally {
 
   void add(const PostureResult& result) {
     ++sets;
-    solved += result.success;
-    (result.success ? solved_s : failed_s).push_back(result.total_s);
-    restarts += result.restarts;
-    iterations += result.iterations;
-    if (result.success) {
-      build_s.push_back(result.build_s);
-      optimise_s.push_back(result.optimise_s);
-      geometry_s.push_back(result.geometry_s);
-      balance_s.push_back(result.balance_s);
+    solved += result.success();
+    (result.success() ? solved_s : failed_s).push_back(result.statistics.total_s);
+    restarts += result.statistics.restarts;
+    iterations += result.statistics.iterations;
+    if (result.success()) {
+      build_s.push_back(result.statistics.build_s);
+      optimise_s.push_back(result.statistics.optimise_s);
+      geometry_s.push_back(result.statistics.geometry_s);
+      balance_s.push_back(result.statistics.balance_s);
     } else {
       const std::string worst = result.report.worst().constraint;
       failures[worst] = failures.value(worst, 0) + 1;
@@ -84,7 +84,8 @@ Json campaign(const std::string& name, int wanted, std::uint64_t seed, PostureOp
     const PostureResult result =
         solver.solve({set.stance, placed_at(robot.model(), robot.home, set.stance)}, options);
     // The judgement once more, by a judge of our own and all of it.
-    if (result.success && !judge.check(result.configuration, set.stance, options.check).feasible) {
+    if (result.success() &&
+        !judge.check(result.configuration, set.stance, options.check).feasible) {
       throw Error("a posture was accepted that the check refuses");
     }
     (feasible ? known : unknown).add(result);

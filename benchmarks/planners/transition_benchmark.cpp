@@ -64,7 +64,7 @@ std::vector<Recorded> recorded(const Task& task, const TransitionsAsked& asked) 
   std::vector<Recorded> all;
   std::atomic<bool> enough = false;
   StancePlannerOptions options;
-  options.stop = &enough;
+  options.termination.stop = &enough;
   options.observe = [&](const TransitionAttempt& attempt) {
     if (all.size() < wanted) all.push_back({options.seed, attempt});
     enough = all.size() >= wanted;

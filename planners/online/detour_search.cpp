@@ -67,7 +67,7 @@ void DetourSearch::fill_obstacle_costs(const double* configuration, const WorldD
 std::vector<double> DetourSearch::find(int first_index, const std::vector<const double*>& plan,
                                        const std::vector<double>& time_s,
                                        const WorldDistance& world, double start_offset,
-                                       double start_slope, const Deadline& deadline) {
+                                       double start_slope, const Termination& termination) {
   const int steps = static_cast<int>(plan.size());
   const int offsets = 2 * half_ + 1, states = offsets * slopes_, steepest = options_.steepest;
   const double grid2 = options_.grid_m * options_.grid_m;
@@ -76,7 +76,7 @@ std::vector<double> DetourSearch::find(int first_index, const std::vector<const 
   for (int k = 0; k < steps; ++k) {
     std::vector<double>& costs = obstacle_[first_index + k];
     if (!costs.empty()) continue;
-    if (added && deadline.passed()) return {};
+    if (added && termination.ended()) return {};
     costs.resize(offsets);
     fill_obstacle_costs(plan[k], world, time_s[k], costs.data());
     added = true;

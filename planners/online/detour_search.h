@@ -13,7 +13,7 @@
 /// on a grid, Δ²o at most one grid step: the global optimum of that one-dimensional problem, left
 /// and right alike.
 
-#include <locograph/common/deadline.h>
+#include <locograph/common/termination.h>
 #include <locograph/plugins/configuration/robot_parameters.h>
 #include <locograph/robots/robot_state.h>
 
@@ -40,12 +40,13 @@ class DetourSearch {
   /// plan: the configurations of the window as planned. start_offset and start_slope: how far the
   /// executed configuration is to the left of its place in the plan, and how much that changed in
   /// the last step [m]. first: index in the plan of the window's first configuration. Returns an
-  /// offset for each configuration; none when the deadline passes. The costs of obstacles that have
-  /// been worked out by then are kept for the next call, by index in the plan: every call works out
-  /// those of at least one more configuration.
+  /// offset for each configuration; none when the termination ends it. The costs of obstacles that
+  /// have been worked out by then are kept for the next call, by index in the plan: every call
+  /// works out those of at least one more configuration.
   std::vector<double> find(int first, const std::vector<const double*>& plan,
                            const std::vector<double>& time_s, const WorldDistance& world,
-                           double start_offset, double start_slope, const Deadline& deadline = {});
+                           double start_offset, double start_slope,
+                           const Termination& termination = {});
 
   /// The world or the plan has changed: the costs that were kept do not hold any more.
   void forget();

@@ -1,5 +1,6 @@
 #include <locograph/common/error.h>
 #include <locograph/planners/online/local_planner.h>
+#include <locograph/planners/online/window_cause.h>
 
 #include <utility>
 
@@ -14,7 +15,6 @@ Horizon horizon_of(const LocalPlannerOptions& options) {
 
 void LocalPlannerOptions::validate() const {
   horizon_of(*this).validate();
-  if (!(deadline_s >= 0.0)) throw Error("the deadline is negative", "0 (none) or more");
   solver.validate();
   if (proposal_pause < 0) throw Error("proposal_pause is negative", "0 or more");
 }
@@ -54,23 +54,27 @@ void LocalPlanner::take_shown() {
   proposals_.world_changed();
 }
 
-CycleReport LocalPlanner::cycle(int executed) {
+CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
   if (executed < 0 || executed + 1 >= plan_size()) {
     throw Error("executed configuration " + std::to_string(executed),
                 "0 to " + std::to_string(plan_size() - 2));
   }
+  termination.validate();
   CycleReport report;
   report.executed = executed;
   const Stopwatch watch;
-  const Deadline deadline =
-      options_.deadline_s > 0.0 ? Deadline::after(options_.deadline_s) : Deadline();
   begin(report);
-  const bool cut_short = improve(report, deadline);
+  const bool cut_short = improve(report, termination);
   keep_unfinished(cut_short);
   hand_out_best();
   describe_best(report);
-  report.time_total = watch.seconds();
-  report.deadline_missed = options_.deadline_s > 0.0 && report.time_total > options_.deadline_s;
+  const auto end = end_by(termination, report.statistics.iterations);
+  if (cut_short && end && !report.success()) {
+    report.status = end->status;
+    report.reason += "; " + end->reason;
+  }
+  report.statistics.total_s = watch.seconds();
+  report.deadline_missed = termination.deadline.passed();
   return report;
 }
 
@@ -83,34 +87,36 @@ void LocalPlanner::begin(CycleReport& report) {
   solver_.compile(window_);
   solver_.load_state();
   report.window = window_.steps();
-  report.constraints = static_cast<int>(solver_.problem().constraints().size());
-  report.time_compile = watch.seconds();
+  report.statistics.constraints = static_cast<int>(solver_.problem().constraints().size());
+  report.statistics.compile_s = watch.seconds();
 }
 
 /// Optimises, asks proposals and raises constraints, as far as there is need and time. Returns
-/// whether the deadline cut the last of it short.
-bool LocalPlanner::improve(CycleReport& report, const Deadline& deadline) {
+/// whether the termination cut the last of it short.
+bool LocalPlanner::improve(CycleReport& report, const Termination& termination) {
   using Start = WindowSolver::Start;
   const WindowQuality& best = incumbent_.best().quality;
   const bool continued = load_unfinished();
   bool cut_short = false;
   if (proposals_.due()) {
     solver_.offer_state(incumbent_);
-    cut_short = try_proposals(report, deadline);
+    cut_short = try_proposals(report, termination);
   } else {
     const Start start = continued ? Start::kCandidate : Start::kIncumbent;
-    cut_short = solver_.optimise(start, incumbent_, deadline, report).cut_short;
+    cut_short = solver_.optimise(start, incumbent_, termination, report.statistics).cut_short;
     // It may take some cycles more.
     if (cut_short && continued) proposals_.pause_after(report.executed);
     proposals_.set_due(cut_short && !continued && !best.feasible());
   }
   if (cut_short) return true;
   hand_out_best();
-  if (!report.detour && wants_proposals(continued) && !deadline.passed()) {
-    cut_short = try_proposals(report, deadline);
+  const int& iterations = report.statistics.iterations;
+  if (!report.detour && wants_proposals(continued) && !termination.ended(iterations)) {
+    cut_short = try_proposals(report, termination);
   }
-  if (!cut_short && !best.feasible() && options_.solver.max_rounds > 0 && !deadline.passed()) {
-    cut_short = solver_.raise_constraints(incumbent_, deadline, report).cut_short;
+  if (!cut_short && !best.feasible() && options_.solver.max_rounds > 0 &&
+      !termination.ended(iterations)) {
+    cut_short = solver_.raise_constraints(incumbent_, termination, report.statistics).cut_short;
     proposals_.pause_after(report.executed);
   }
   return cut_short;
@@ -133,21 +139,21 @@ bool LocalPlanner::wants_proposals(bool continued) const {
   return !proposals_.paused_at(window_.executed()) || !(continued || feasible);
 }
 
-/// Asks each of the proposals, and optimises from their candidates. Returns whether the deadline
-/// cut one of them short.
-bool LocalPlanner::try_proposals(CycleReport& report, const Deadline& deadline) {
+/// Asks each of the proposals, and optimises from their candidates. Returns whether the
+/// termination cut one of them short.
+bool LocalPlanner::try_proposals(CycleReport& report, const Termination& termination) {
   bool better = false;
   for (int asked = 0; asked < proposals_.size(); ++asked) {
     report.detour = true;
     const Stopwatch watch;
-    const Proposal::Answer answer = proposals_.ask(plan_, window_, deadline, candidate_);
+    const Proposal::Answer answer = proposals_.ask(plan_, window_, termination, candidate_);
     if (answer == Proposal::Answer::kFound) plan_.overwrite(window_.first(), candidate_);
     solver_.load_state();
-    report.time_detour += watch.seconds();
+    report.statistics.proposals_s += watch.seconds();
     if (answer == Proposal::Answer::kUnfinished) return true;
     if (answer == Proposal::Answer::kNone) continue;
-    const WindowSolver::Run run =
-        solver_.optimise(WindowSolver::Start::kCandidate, incumbent_, deadline, report);
+    const WindowSolver::Run run = solver_.optimise(WindowSolver::Start::kCandidate, incumbent_,
+                                                   termination, report.statistics);
     if (run.cut_short) {
       proposals_.pause_after(report.executed);
       return true;
@@ -174,13 +180,18 @@ void LocalPlanner::hand_out_best() {
 
 void LocalPlanner::describe_best(CycleReport& report) const {
   const WindowQuality& best = incumbent_.best().quality;
-  report.feasible = best.feasible();
   report.feasible_steps = best.feasible_steps;
   // Only the next step has to hold now; later cycles can still mend the rest.
   report.next_feasible = best.feasible_steps >= 1;
-  if (report.feasible) return;
+  if (best.feasible()) {
+    report.status = PlannerStatus::kSolved;
+    report.reason = "feasible";
+    return;
+  }
   report.violation = solver_.describe(best.first);
   report.violated_at = report.executed + best.feasible_steps + 1;
+  const int slot = plan_.slot(report.violated_at);
+  report.reason = violated_text(*report.violation, plan_.graph().vertex_record(slot).id);
 }
 
 }  // namespace locograph

@@ -15,8 +15,8 @@
 ///
 /// Constraints are whatever the edges of the graph say (core/violations.h), those of plug-ins too.
 /// The graph is only given a window that is better than the one it had (incumbent.h), also when the
-/// deadline ends the cycle; the next cycle then continues from the unfinished window. A cycle ends
-/// at most one iteration after its deadline. Constraints that cannot be met are reported, with
+/// termination ends the cycle; the next cycle then continues from the unfinished window. A cycle
+/// ends at most one iteration after that. Constraints that cannot be met are reported, with
 /// place and size; no window that violates one is reported as feasible.
 ///
 /// Time and memory of a cycle depend on H, not on the length of the plan.
@@ -33,14 +33,14 @@
 namespace locograph {
 
 struct LocalPlannerOptions {
-  int horizon = 20;         ///< H
-  double horizon_s = 0.0;   ///< above 0 it counts instead, see Horizon::seconds
-  double deadline_s = 0.0;  ///< for one cycle; 0: none
+  int horizon = 20;        ///< H
+  double horizon_s = 0.0;  ///< above 0 it counts instead, see Horizon::seconds
   WindowSolverOptions solver;
   std::vector<ProposalFactory> proposals = standard_proposals();
   double blocked_m = 0.05;  ///< behind the plan at the end of the window: ask proposals
   int proposal_pause = 4;   ///< cycles to wait after proposals that did not help at once
 
+  /// Throws Error naming the option that is out of range.
   void validate() const;
 };
 
@@ -56,7 +56,7 @@ class LocalPlanner {
   void show(std::shared_ptr<const WorldSnapshot> world);
 
   /// executed: index in the plan of the configuration the robot is at.
-  CycleReport cycle(int executed);
+  CycleReport cycle(int executed, const Termination& termination = {});
 
   int plan_size() const { return plan_.size(); }
   const Plan& plan() const { return plan_.plan(); }
@@ -69,10 +69,10 @@ class LocalPlanner {
  private:
   void take_shown();
   void begin(CycleReport& report);
-  bool improve(CycleReport& report, const Deadline& deadline);
+  bool improve(CycleReport& report, const Termination& termination);
   bool load_unfinished();
   bool wants_proposals(bool continued) const;
-  bool try_proposals(CycleReport& report, const Deadline& deadline);
+  bool try_proposals(CycleReport& report, const Termination& termination);
   void keep_unfinished(bool cut_short);
   void hand_out_best();
   void describe_best(CycleReport& report) const;

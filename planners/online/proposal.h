@@ -3,7 +3,7 @@
 /// it begins; a proposal may jump, for instance to the other side of an obstacle.
 ///
 ///     struct AsPlanned : Proposal {
-///       Answer search(const OnlinePlan& online, const Window& window, const Deadline&,
+///       Answer search(const OnlinePlan& online, const Window& window, const Termination&,
 ///                     std::vector<Eigen::VectorXd>& candidate) override {
 ///         candidate.assign(online.planned().begin() + window.first(),
 ///                          online.planned().begin() + window.end());
@@ -19,7 +19,7 @@
 /// is better than the best window so far. doc/window_proposals.md tells how to add one to the
 /// standard proposals.
 
-#include <locograph/common/deadline.h>
+#include <locograph/common/termination.h>
 #include <locograph/planners/online/window.h>
 
 #include <Eigen/Core>
@@ -34,19 +34,20 @@ class Proposal {
   enum class Answer {
     kFound,       ///< the candidate is complete
     kNone,        ///< there is nothing to propose for this window
-    kUnfinished,  ///< the deadline passed first: the next cycle begins with this proposal
+    kUnfinished,  ///< the termination ended it: the next cycle begins with this proposal
   };
 
   virtual ~Proposal() = default;
 
-  /// One slice of the search. Returns soon after the deadline has passed; intermediate results are
+  /// One slice of the search. Returns soon after the termination ends it; intermediate results are
   /// kept for the next call, whose window has moved on by then. Every call makes some progress,
-  /// also after the deadline. kUnfinished is for searches that the deadline ended.
+  /// also after that. kUnfinished is for searches that the termination ended.
   ///
   /// candidate: on kFound the configurations of the window in their order; those that are fixed in
   /// the plan are ignored. Read planned configurations, fixed ones, and those up to the executed
   /// one: free configurations of the window are in no defined place during the call.
-  virtual Answer search(const OnlinePlan& plan, const Window& window, const Deadline& deadline,
+  virtual Answer search(const OnlinePlan& plan, const Window& window,
+                        const Termination& termination,
                         std::vector<Eigen::VectorXd>& candidate) = 0;
 
   /// The world has changed: intermediate results about it do not hold any more.

@@ -28,9 +28,9 @@ ProposalSchedule::ProposalSchedule(const std::vector<ProposalFactory>& factories
 }
 
 Proposal::Answer ProposalSchedule::ask(const OnlinePlan& plan, const Window& window,
-                                       const Deadline& deadline,
+                                       const Termination& termination,
                                        std::vector<Eigen::VectorXd>& candidate) {
-  const Proposal::Answer answer = proposals_[next_]->search(plan, window, deadline, candidate);
+  const Proposal::Answer answer = proposals_[next_]->search(plan, window, termination, candidate);
   if (answer == Proposal::Answer::kFound) require_fit(candidate, plan, window);
   due_ = answer == Proposal::Answer::kUnfinished;
   if (!due_) next_ = (next_ + 1) % proposals_.size();

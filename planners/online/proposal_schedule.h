@@ -3,12 +3,12 @@
 ///
 ///     ProposalSchedule schedule(standard_proposals(), online, 4);
 ///     if (!schedule.paused_at(executed)) {
-///       answer = schedule.ask(online, window, deadline, candidate);
+///       answer = schedule.ask(online, window, termination, candidate);
 ///       if (answer == Proposal::Answer::kNone) schedule.pause_after(executed);
 ///     }
 ///
-/// They take turns. One that the deadline interrupts stays next and is due: the next cycle begins
-/// with it.
+/// They take turns. One that the termination interrupts stays next and is due: the next cycle
+/// begins with it.
 
 #include <locograph/planners/online/proposal.h>
 
@@ -27,7 +27,7 @@ class ProposalSchedule {
 
   /// Asks the next one; there must be one. Throws Error for a candidate that does not fit the
   /// window.
-  Proposal::Answer ask(const OnlinePlan& plan, const Window& window, const Deadline& deadline,
+  Proposal::Answer ask(const OnlinePlan& plan, const Window& window, const Termination& termination,
                        std::vector<Eigen::VectorXd>& candidate);
 
   /// Whether a cycle is to begin with proposals.

@@ -12,9 +12,9 @@ class SidewaysDetour final : public Proposal {
   SidewaysDetour(const OnlinePlan& plan, const DetourOptions& options)
       : search_(plan.plan().robot, options) {}
 
-  Answer search(const OnlinePlan& plan, const Window& window, const Deadline& deadline,
+  Answer search(const OnlinePlan& plan, const Window& window, const Termination& termination,
                 std::vector<Eigen::VectorXd>& candidate) override {
-    const std::vector<double> offsets = find_offsets(plan, window, deadline);
+    const std::vector<double> offsets = find_offsets(plan, window, termination);
     if (offsets.empty()) return Answer::kUnfinished;
     move_sideways(plan, window, offsets, candidate);
     roll_wheels(plan, window, candidate);
@@ -25,7 +25,7 @@ class SidewaysDetour final : public Proposal {
 
  private:
   std::vector<double> find_offsets(const OnlinePlan& plan, const Window& window,
-                                   const Deadline& deadline) {
+                                   const Termination& termination) {
     std::vector<const double*> planned;
     std::vector<double> times;
     for (int i = window.first(); i < window.end(); ++i) {
@@ -40,7 +40,7 @@ class SidewaysDetour final : public Proposal {
     const double start = offset_of(executed);
     const double slope = executed > 0 ? start - offset_of(executed - 1) : 0.0;
     return search_.find(window.first(), planned, times, plan.world().distance(), start, slope,
-                        deadline);
+                        termination);
   }
 
   static void move_sideways(const OnlinePlan& plan, const Window& window,

@@ -10,16 +10,6 @@
 namespace locograph {
 namespace {
 
-/// A violation that the local planner could not mend.
-std::string describe(const ConstraintViolation& violation, int vertex) {
-  std::ostringstream text;
-  text << constraint_name(violation.tag);
-  if (!violation.label.name.empty()) text << " (" << violation.label.name << ")";
-  text << " violated by " << violation.amount << (violation.label.unit.empty() ? "" : " ")
-       << violation.label.unit << " at vertex " << vertex;
-  return text.str();
-}
-
 /// The first violation for which the judge refused.
 std::string describe(const CheckReport& check) {
   std::ostringstream text;
@@ -59,36 +49,44 @@ class Walk {
       faster_.push_back(inside ? ratio(curve.slope(i), careful_slope(model_, planned_, i)) : 0.0);
     }
     report_.dof = model_.tangent_size();
-    report_.success = true;
+    report_.status = PlannerStatus::kSolved;
     report_.reason = "every configuration is feasible";
     report_.configurations = planner_.plan_size();
   }
 
   WalkReport run(const WorldAt& world_at) {
-    for (int executed = 0; executed + 1 < planner_.plan_size(); ++executed) {
-      if (options_.stop != nullptr && *options_.stop) {
-        end_at(executed, "interrupted");
-        return std::move(report_);
-      }
-      if (!step(executed, world_at)) return std::move(report_);
-    }
-    arrive();
+    const Stopwatch watch;
+    if (walk(world_at)) arrive();
+    report_.statistics.iterations = static_cast<int>(report_.cycles.size());
+    report_.statistics.total_s = watch.seconds();
     return std::move(report_);
   }
 
  private:
+  /// Whether every step could be taken.
+  bool walk(const WorldAt& world_at) {
+    for (int executed = 0; executed + 1 < planner_.plan_size(); ++executed) {
+      if (const auto end = end_by(options_.termination, executed)) {
+        end_at(executed, *end);
+        return false;
+      }
+      if (!step(executed, world_at)) return false;
+    }
+    return true;
+  }
+
   bool step(int executed, const WorldAt& world_at) {
     const Stopwatch watch;
     if (auto world = world_at ? world_at(executed) : nullptr) planner_.show(std::move(world));
     report_.map_update_s.push_back(watch.seconds());
-    const CycleReport cycle = planner_.cycle(executed);
+    const CycleReport cycle =
+        planner_.cycle(executed, {.deadline = Deadline::of_limit(options_.cycle_deadline_s)});
     report_.cycles.push_back(cycle);
-    report_.feasible_cycles += cycle.feasible ? 1 : 0;
+    report_.feasible_cycles += cycle.success() ? 1 : 0;
     report_.deadline_misses += cycle.deadline_missed ? 1 : 0;
     if (options_.on_cycle) options_.on_cycle(cycle);
     if (!cycle.next_feasible) {
-      const int slot = planner_.plan().slots[static_cast<std::size_t>(cycle.violated_at)];
-      stop(executed, describe(*cycle.violation, graph_.vertex_record(slot).id));
+      stop(executed, cycle.reason);
       return false;
     }
     pass_through(executed + 1);
@@ -195,15 +193,16 @@ class Walk {
 
   void stop(int executed, const std::string& symptom) {
     const std::string cause = cause_after(executed);
-    end_at(executed, (cause.empty() ? "" : cause + "; what gave way is ") + symptom);
+    end_at(executed, {PlannerStatus::kNotFound,
+                      (cause.empty() ? "" : cause + "; what gave way is ") + symptom});
   }
 
   /// The rest of the plan is removed, and the robot comes to rest: where it is, or earlier.
-  void end_at(int arrived, const std::string& why) {
+  void end_at(int arrived, const PlannerAnswer& why) {
     const int executed = come_to_rest(arrived);
     measure_goal(executed);
-    report_.success = false;
-    report_.reason = "stopped at configuration " + std::to_string(executed) + ": " + why +
+    report_.status = why.status;
+    report_.reason = "stopped at configuration " + std::to_string(executed) + ": " + why.reason +
                      "; after " + std::to_string(executed) + " of " +
                      std::to_string(planner_.plan_size() - 1) + " steps, " + goal_text() +
                      " from the goal";
@@ -224,7 +223,7 @@ class Walk {
       }
       return;
     }
-    report_.success = false;
+    report_.status = PlannerStatus::kNotFound;
     mark_incomplete(graph_);
     const bool blocked = report_.short_of_goal_m > options_.goal_tolerance_m;
     report_.reason = std::string(blocked ? "blocked" : "beside the goal") +
@@ -248,9 +247,16 @@ void require_tolerance(double tolerance) {
 
 }  // namespace
 
+void WalkOptions::validate() const {
+  planner.validate();
+  require_tolerance(goal_tolerance_m);
+  require_tolerance(goal_tolerance_rad);
+  if (!(cycle_deadline_s >= 0.0)) throw Error("the deadline is negative", "0 (none) or more");
+  termination.validate();
+}
+
 WalkReport walk_plan(Graph& graph, const WorldAt& world_at, const WalkOptions& options) {
-  require_tolerance(options.goal_tolerance_m);
-  require_tolerance(options.goal_tolerance_rad);
+  options.validate();
   return Walk(graph, options).run(world_at);
 }
 

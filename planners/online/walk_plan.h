@@ -16,30 +16,33 @@
 #include <locograph/check/motion.h>
 #include <locograph/planners/online/local_planner.h>
 
-#include <atomic>
 #include <functional>
 #include <memory>
 
 namespace locograph {
 
 struct WalkOptions {
-  LocalPlannerOptions planner;
+  LocalPlannerOptions planner = {};
   /// How far from where it was planned the last configuration's base may end, in any direction.
   /// A plan that ends further away than the judge takes for a goal (limits.h) is marked incomplete.
   double goal_tolerance_m = limits::kGoal_m;
   double goal_tolerance_rad = limits::kGoal_rad;
-  /// When it is set, as by Ctrl-C (stop_signals.h), the walk ends where it is; may be null.
-  const std::atomic<bool>* stop = nullptr;
+  double cycle_deadline_s = 0.0;  ///< for one cycle; 0: none
+  /// Of the walk, which ends between two cycles where the robot is.
+  Termination termination = {};
   /// Called after each cycle, e.g. to show progress; may be empty.
-  std::function<void(const CycleReport&)> on_cycle;
+  std::function<void(const CycleReport&)> on_cycle = {};
   /// The independent verdict on the motion from the executed configuration to the next, before it
   /// is executed: Judge::check() in the world as it is known. The motion begins some steps earlier:
   /// only now is it known how the robot accelerates between them, and slip of wheels counts over a
   /// stretch. May be empty: then the local planner alone decides.
-  std::function<CheckReport(const Motion&)> verify;
+  std::function<CheckReport(const Motion&)> verify = {};
+
+  /// Throws Error naming the option that is out of range.
+  void validate() const;
 };
 
-struct WalkReport {
+struct WalkReport : PlannerAnswer {
   std::vector<CycleReport> cycles;
   std::vector<double> map_update_s;  ///< time that showing the world took, for each cycle
   std::vector<double> verify_s;      ///< time that the verdict on each step took
@@ -50,8 +53,7 @@ struct WalkReport {
   double short_of_goal_m = 0.0;  ///< how far the last configuration is behind where it was planned
   /// From the base of the last configuration that is left to that of the plan's goal.
   double goal_distance_m = 0.0, goal_angle_rad = 0.0;
-  bool success = false;
-  std::string reason;
+  PlannerStatistics statistics;  ///< iterations: cycles
 };
 
 /// The world as it is seen when the robot is at configuration `executed`; null: nothing new.

@@ -73,6 +73,15 @@ std::string constraint_name(const std::string& tag) {
   return name;
 }
 
+std::string violated_text(const ConstraintViolation& violation, int vertex) {
+  std::ostringstream text;
+  text << constraint_name(violation.tag);
+  if (!violation.label.name.empty()) text << " (" << violation.label.name << ")";
+  text << " violated by " << violation.amount << (violation.label.unit.empty() ? "" : " ")
+       << violation.label.unit << " at vertex " << vertex;
+  return text.str();
+}
+
 std::optional<WindowCause> find_cause(const OnlinePlan& plan, int executed, int last) {
   Graph& graph = plan.graph();
   const AsPlanned as_planned(plan, executed + 1, last);

@@ -28,6 +28,9 @@ struct WindowCause {
 /// "obstacle_distance" for EDGE_OBSTACLE_DISTANCE.
 std::string constraint_name(const std::string& tag);
 
+/// One line about a constraint that is violated at a vertex.
+std::string violated_text(const ConstraintViolation& violation, int vertex);
+
 /// Looks at the configurations after `executed` up to `last` where they were planned. Nothing when
 /// they violate no constraint there, in the world as it is known now. The graph is left as it was.
 std::optional<WindowCause> find_cause(const OnlinePlan& plan, int executed, int last);

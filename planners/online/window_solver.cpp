@@ -25,6 +25,12 @@ OptimiserOptions optimiser_options(const WindowSolverOptions& options) {
   return result;
 }
 
+bool cut_short(const OptimiserResult& result, const Termination& termination,
+               const WindowStatistics& statistics) {
+  return result.reason == OptimiserResult::Reason::kDeadline || termination.stopped() ||
+         termination.used_up(statistics.iterations);
+}
+
 }  // namespace
 
 void WindowSolverOptions::validate() const {
@@ -132,20 +138,21 @@ bool WindowSolver::good_enough() const {
   return gained_little() && quality(optimiser_.result().final.robust).feasible();
 }
 
-void WindowSolver::add_statistics(CycleReport& report) const {
+void WindowSolver::add_statistics(WindowStatistics& statistics) const {
   const OptimiserResult& result = optimiser_.result();
-  report.iterations += result.iterations;
+  statistics.iterations += result.iterations;
   for (const IterationStatistics& step : result.statistics) {
-    report.time_linearise += step.time_linearise;
-    report.time_solve += step.time_solve;
-    report.time_evaluate += step.time_evaluate;
-    report.time_iteration =
-        std::max(report.time_iteration, step.time_linearise + step.time_solve + step.time_evaluate);
+    statistics.linearise_s += step.time_linearise;
+    statistics.solve_s += step.time_solve;
+    statistics.evaluate_s += step.time_evaluate;
+    statistics.iteration_s = std::max(statistics.iteration_s,
+                                      step.time_linearise + step.time_solve + step.time_evaluate);
   }
 }
 
 WindowSolver::Run WindowSolver::optimise(Start start, Incumbent& incumbent,
-                                         const Deadline& deadline, CycleReport& report) {
+                                         const Termination& termination,
+                                         WindowStatistics& statistics) {
   Stopwatch watch;
   double& lambda = start == Start::kIncumbent ? incumbent_lambda_ : candidate_lambda_;
   optimiser_.options().initial_lambda = lambda;
@@ -155,29 +162,36 @@ WindowSolver::Run WindowSolver::optimise(Start start, Incumbent& incumbent,
   run.better = incumbent.offer(quality(result.initial.robust), workspace_.state());
   // However little time there is, a cycle makes one step, or tries to.
   constexpr double kOneStep_s = 1e-4;
+  const Deadline& deadline = termination.deadline;
+  optimiser_.options().max_iterations =
+      termination.left_of(options_.max_iterations, statistics.iterations);
   optimiser_.options().deadline =
       first_iteration_ && deadline.passed() ? Deadline::after(kOneStep_s) : deadline;
   const bool more = optimiser_.iterate();
   first_iteration_ = false;
   optimiser_.options().deadline = deadline;
-  while (more && !good_enough() && optimiser_.iterate()) {
+  while (more && !good_enough() && !termination.stopped() && optimiser_.iterate()) {
   }
   learn(lambda);
-  run.cut_short = result.reason == OptimiserResult::Reason::kDeadline;
-  add_statistics(report);
-  report.time_optimise += watch.lap();
+  add_statistics(statistics);
+  run.cut_short = cut_short(result, termination, statistics);
+  statistics.optimise_s += watch.lap();
   workspace_.return_to_state();
   run.better = incumbent.offer(quality(result.final.robust), workspace_.state()) || run.better;
-  report.time_check += watch.lap();
+  statistics.check_s += watch.lap();
   return run;
 }
 
-WindowSolver::Run WindowSolver::raise_constraints(Incumbent& incumbent, const Deadline& deadline,
-                                                  CycleReport& report) {
+WindowSolver::Run WindowSolver::raise_constraints(Incumbent& incumbent,
+                                                  const Termination& termination,
+                                                  WindowStatistics& statistics) {
   const Stopwatch watch;
   ConstrainedOptions raising;
   raising.inner = optimiser_options(options_);
-  raising.inner.deadline = deadline;
+  raising.inner.deadline = termination.deadline;
+  raising.inner.on_iteration = [&, made = statistics.iterations](const OptimiserResult&) mutable {
+    return !termination.stopped() && !termination.used_up(++made);
+  };
   raising.inner.shorten_steps = true;
   // The first two rounds find the violations that do not come down by themselves.
   raising.max_rounds = options_.max_rounds + 2;
@@ -187,13 +201,13 @@ WindowSolver::Run WindowSolver::raise_constraints(Incumbent& incumbent, const De
   raising.max_penalty = options_.max_raise;
   workspace_.state() = incumbent.least_violating().state;
   const ConstrainedResult result = optimise_constrained(workspace_, raising, *linear_solver_, true);
-  report.iterations += result.iterations;
-  report.rounds = result.rounds;
+  statistics.iterations += result.iterations;
+  statistics.rounds = result.rounds;
   Run run;
-  run.cut_short = result.inner.reason == OptimiserResult::Reason::kDeadline;
+  run.cut_short = cut_short(result.inner, termination, statistics);
   run.better = incumbent.offer(quality(result.inner.final.robust), workspace_.state());
   keep_multipliers();
-  report.time_optimise += watch.seconds();
+  statistics.optimise_s += watch.seconds();
   return run;
 }
 

@@ -4,9 +4,9 @@
 ///     WindowSolver solver{WindowSolverOptions()};
 ///     solver.compile(window);
 ///     solver.load_state();
-///     solver.optimise(WindowSolver::Start::kIncumbent, incumbent, deadline, report);
+///     solver.optimise(WindowSolver::Start::kIncumbent, incumbent, termination, statistics);
 ///     const bool feasible = incumbent.best().quality.feasible();
-///     if (!feasible) solver.raise_constraints(incumbent, deadline, report);
+///     if (!feasible) solver.raise_constraints(incumbent, termination, statistics);
 ///     solver.store_state(incumbent.best().state);
 ///
 /// A run takes a few Levenberg-Marquardt steps from the state that was loaded, and offers its first
@@ -15,9 +15,8 @@
 /// is the damping λ.
 ///
 /// The structure of the compiled problem is kept while the window slides. A run ends at most one
-/// iteration after its deadline.
+/// iteration after the termination asks for it.
 
-#include <locograph/common/deadline.h>
 #include <locograph/core/augmented_lagrangian.h>
 #include <locograph/planners/online/cycle_report.h>
 #include <locograph/planners/online/incumbent.h>
@@ -46,7 +45,7 @@ class WindowSolver {
   enum class Start { kIncumbent, kCandidate };
   struct Run {
     bool better = false;     ///< one of its states is the incumbent's best now
-    bool cut_short = false;  ///< by the deadline
+    bool cut_short = false;  ///< by the termination
   };
 
   explicit WindowSolver(const WindowSolverOptions& options);
@@ -61,10 +60,12 @@ class WindowSolver {
 
   /// Evaluates the state and offers it as it is.
   void offer_state(Incumbent& incumbent);
-  /// Adds to the report's iterations and times, as does raise_constraints().
-  Run optimise(Start start, Incumbent& incumbent, const Deadline& deadline, CycleReport& report);
+  /// Adds to the iterations and seconds, as does raise_constraints().
+  Run optimise(Start start, Incumbent& incumbent, const Termination& termination,
+               WindowStatistics& statistics);
   /// Optimises again from the least violating window, however early it was seen.
-  Run raise_constraints(Incumbent& incumbent, const Deadline& deadline, CycleReport& report);
+  Run raise_constraints(Incumbent& incumbent, const Termination& termination,
+                        WindowStatistics& statistics);
   /// One iteration from the state, so that memory and the order of elimination are there.
   void prepare();
 
@@ -81,7 +82,7 @@ class WindowSolver {
   bool gained_little() const;
   bool good_enough() const;
   void learn(double& lambda);
-  void add_statistics(CycleReport& report) const;
+  void add_statistics(WindowStatistics& statistics) const;
 
   WindowSolverOptions options_;
   Problem problem_;

@@ -122,7 +122,8 @@ class PlanEdges {
     const bool any_apart = (apart.weights.array() > 0.0).any();
     const EdgeSweptObstacleDistance swept = swept_edge();
     for (std::size_t i = 0; i < ids_.size(); ++i) {
-      if (!job_.go_on("adding constraints", i, ids_.size())) return false;
+      job_.report_progress("adding constraints", i, ids_.size());
+      if (job_.termination.ended()) return false;
       add_to_configuration(i);
       if (any_apart) graph_.add_edge(apart, ids_[i]);
       add_surface_distance(i);
@@ -173,7 +174,8 @@ class PlanEdges {
     ConfigurationState state(plan_.robot);
     std::size_t seen = 0;
     for (const Eigen::VectorXd& q : configurations_) {
-      if (!job_.go_on("comparing links", seen++, configurations_.size())) break;
+      job_.report_progress("comparing links", seen++, configurations_.size());
+      if (job_.termination.ended()) break;
       state.update(q.data());
       edge.error(state, lack);
       edge.weights = (lack.array() > 0.0).select(0.0, edge.weights);
@@ -397,7 +399,8 @@ bool add_configurations(Graph& graph, const Motion& motion, const std::vector<in
   const auto robot = graph.parameters().get<RobotParameter>(kRobotNumber);
   const std::size_t count = motion.configurations.size();
   for (std::size_t i = 0; i < count; ++i) {
-    if (!job.go_on("placing configurations", i, count)) return false;
+    job.report_progress("placing configurations", i, count);
+    if (job.termination.ended()) return false;
     if (motion.stance_from[i] < 0) {
       throw Error("a step whose stance is not known", "a stance for each step");
     }

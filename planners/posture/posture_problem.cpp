@@ -4,6 +4,7 @@
 namespace locograph {
 
 void PostureOptions::validate() const {
+  termination.validate();
   check_option(max_restarts >= 0, "max_restarts", "0 or more");
   check_option(patience >= 1, "patience", "1 or more");
   check_option(max_iterations >= 1, "max_iterations", "1 or more");

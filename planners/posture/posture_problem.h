@@ -6,11 +6,10 @@
 ///     options.validate();
 
 #include <locograph/check/judge.h>
-#include <locograph/common/deadline.h>
+#include <locograph/common/termination.h>
 #include <locograph/robots/contact.h>
 
 #include <Eigen/Core>
-#include <atomic>
 #include <cstdint>
 #include <filesystem>
 
@@ -38,9 +37,7 @@ struct PostureOptions {
   int max_iterations = 60;  ///< of each attempt
   /// An attempt ends when this many iterations have not lowered its worst violation by a tenth.
   int patience = 6;
-  Deadline deadline;
-  /// When it is set, as by Ctrl-C (stop_signals.h), the search ends; may be null.
-  const std::atomic<bool>* stop = nullptr;
+  Termination termination = {};
   /// Limits the torques to the efforts of the URDF; false: the result tells them.
   bool enforce_torque_limits = true;
 

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <optional>
 #include <random>
 
 namespace locograph {
@@ -70,19 +71,20 @@ class Search {
   }
 
   PostureResult run() {
-    result_.build_s = watch_.seconds();
+    result_.statistics.build_s = watch_.seconds();
     Eigen::VectorXd start = problem_.preferred;
     for (;;) {
       attempt(start);
-      if (result_.success || result_.restarts >= options_.max_restarts ||
-          options_.deadline.passed() || stopped()) {
+      if (result_.success()) break;
+      const auto end = end_by(options_.termination, result_.statistics.iterations);
+      if (end || result_.statistics.restarts >= options_.max_restarts) {
+        explain(end);
         break;
       }
-      ++result_.restarts;
+      ++result_.statistics.restarts;
       start = perturbed();
     }
-    if (!result_.success) explain();
-    result_.total_s = watch_.seconds();
+    result_.statistics.total_s = watch_.seconds();
     return std::move(result_);
   }
 
@@ -97,14 +99,15 @@ class Search {
     lm.scale_by_diagonal = true;
     lm.initial_lambda = 1e-4;
     lm.refused_lambda = 1e-2;
-    lm.max_iterations = options_.max_iterations;
+    lm.max_iterations =
+        options_.termination.left_of(options_.max_iterations, result_.statistics.iterations);
     lm.gain = 1e-4;
-    lm.deadline = options_.deadline;
+    lm.deadline = options_.termination.deadline;
     lm.on_iteration = [&](const OptimiserResult&) {
       const double worst = watched_.worst(workspace_);
       closed = worst <= 1.0;
       worst_by_iteration.push_back(worst);
-      return !closed && !stopped() && !stalled(worst_by_iteration);
+      return !closed && !options_.termination.stopped() && !stalled(worst_by_iteration);
     };
     const Stopwatch watch;
     Optimiser optimiser(lm);
@@ -114,8 +117,8 @@ class Search {
     workspace_.evaluate(workspace_.state());
     const double worst = watched_.worst(workspace_);
     workspace_.store_state();
-    result_.optimise_s += watch.seconds();
-    result_.iterations += optimiser.result().iterations;
+    result_.statistics.optimise_s += watch.seconds();
+    result_.statistics.iterations += optimiser.result().iterations;
     violated_ = watched_.violated(workspace_);
     const bool best = worst < best_;
     if (best) {
@@ -126,15 +129,16 @@ class Search {
     CheckOptions asked = options_.check;
     asked.certify_only_if_rest_holds = true;
     CheckReport report = checked(posture_.configuration(), asked);
-    result_.success = report.feasible;
+    if (report.feasible) {
+      result_.status = PlannerStatus::kSolved;
+      result_.reason = "found";
+    }
     if (best || report.feasible) {
       result_.configuration = posture_.configuration();
       result_.report = std::move(report);
       checked_ = true;
     }
   }
-
-  bool stopped() const { return options_.stop != nullptr && *options_.stop; }
 
   /// The worst violation, in tolerances, has not come down by a tenth in a few iterations.
   bool stalled(const std::vector<double>& worst) const {
@@ -145,16 +149,18 @@ class Search {
 
   CheckReport checked(const Eigen::VectorXd& q, const CheckOptions& options) {
     CheckReport report = judge_.check(q, problem_.stance, options);
-    result_.geometry_s += report.geometry_s;
-    result_.balance_s += report.balance_s;
+    result_.statistics.geometry_s += report.geometry_s;
+    result_.statistics.balance_s += report.balance_s;
     return report;
   }
 
-  void explain() {
+  /// end: of the search, if the termination ended it.
+  void explain(const std::optional<PlannerAnswer>& end) {
     if (!checked_) result_.report = checked(result_.configuration, options_.check);
     result_.reason = "no posture found: " + violation_text(result_.report.worst());
-    if (options_.deadline.passed()) result_.reason += "; the time allowed is used up";
-    if (stopped()) result_.reason += "; interrupted";
+    if (!end) return;
+    result_.status = end->status;
+    result_.reason += "; " + end->reason;
   }
 
   /// The preferred configuration with what was violated moved at random, further from one restart
@@ -162,7 +168,7 @@ class Search {
   Eigen::VectorXd perturbed() {
     Eigen::VectorXd q = problem_.preferred;
     const int base = robot_.base_configuration_size();
-    const double reach = std::min(1.0, 0.25 * result_.restarts);
+    const double reach = std::min(1.0, 0.25 * result_.statistics.restarts);
     Eigen::VectorXd tangent = Eigen::VectorXd::Zero(robot_.tangent_size());
     if (violated_.base) {
       for (int i = 0; i < 3; ++i) tangent[i] = uniform(random_, -0.2, 0.2) * reach;

@@ -6,7 +6,7 @@
 ///     problem.stance = load_contacts("standing.xml", solver.robot());
 ///     problem.preferred = placed_at(solver.robot(), home, problem.stance);
 ///     PostureResult result = solver.solve(problem);
-///     if (!result.success) std::cerr << result.reason;
+///     if (!result.success()) std::cerr << result.reason;
 ///     else write_graph(solver.graph(problem, result), "standing.g2o");
 ///
 /// A posture is a small graph: one configuration, one VERTEX_WRENCHES, the edges of contact
@@ -26,29 +26,30 @@
 
 #include <locograph/check/judge.h>
 #include <locograph/core/graph.h>
+#include <locograph/planners/answer/planner_answer.h>
 #include <locograph/planners/posture/posture_problem.h>
 #include <locograph/plugins/configuration/robot_parameters.h>
 
 #include <filesystem>
 #include <memory>
-#include <string>
-#include <vector>
 
 namespace locograph {
 
 /// With the plane z = 0 as the ground, and nothing else that may be touched.
 World posture_world(World in_the_way = {});
 
-struct PostureResult {
-  bool success = false;
-  /// Of a failure: the worst violation of the best attempt, with amount and unit.
-  std::string reason;
+struct PostureStatistics : PlannerStatistics {  // iterations: of Levenberg-Marquardt
+  int restarts = 0;
+  /// The graph, Levenberg-Marquardt, exact geometry, balance certificates.
+  double build_s = 0.0, optimise_s = 0.0, geometry_s = 0.0, balance_s = 0.0;
+};
+
+/// The reason of a failure: the worst violation of the best attempt, with amount and unit.
+struct PostureResult : PlannerAnswer {
   /// The posture; without success, the best attempt.
   Eigen::VectorXd configuration;
   CheckReport report;  ///< of that configuration; its wrenches are the certificate's
-  int restarts = 0, iterations = 0;
-  /// Seconds: building the graph, Levenberg-Marquardt, exact geometry, balance certificates.
-  double build_s = 0.0, optimise_s = 0.0, geometry_s = 0.0, balance_s = 0.0, total_s = 0.0;
+  PostureStatistics statistics;
 };
 
 struct PostureShapes;

@@ -228,7 +228,8 @@ TEST(LargeInput, APlanOfAMillionConfigurationsEndsInItsTime) {
   runner.write("s.xml", drive("distance=\"4\" speed=\"0.1\" configurations=\"1000000\""));
   const MeasuredOutcome outcome = run_limited(runner, "plan s.xml -o p.g2o --timeout 0.3 --json");
   ASSERT_EQ(outcome.exit_code, 1) << outcome.err;
-  EXPECT_EQ(outcome.json()["reason"], "the time allowed is used up");
+  EXPECT_EQ(outcome.json()["status"], "deadline");
+  EXPECT_EQ(outcome.json()["reason"], "the time allowed is used up (allow more)");
   EXPECT_FALSE(outcome.json()["success"]);
   EXPECT_FALSE(runner.exists("p.g2o"));
   EXPECT_LT(outcome.kilobytes, kMostKilobytes);

@@ -63,6 +63,7 @@ TEST(PlanCommands, PlanPrintsOneJsonObjectWithEveryField) {
   EXPECT_EQ(outcome.err, "");
   const nlohmann::json json = outcome.json();
   EXPECT_EQ(json["success"], true);
+  EXPECT_EQ(json["status"], "solved");
   EXPECT_TRUE(json["reason"].is_string());
   EXPECT_EQ(json["seed"], 7);
   EXPECT_EQ(json["configurations"], 50);
@@ -329,6 +330,7 @@ TEST(PlanCommands, RefinePrintsOneJsonObjectWithEveryField) {
   EXPECT_EQ(outcome.err, "");
   const nlohmann::json json = outcome.json();
   EXPECT_EQ(json["success"], true);
+  EXPECT_EQ(json["status"], "solved");
   EXPECT_TRUE(json["reason"].is_string());
   EXPECT_EQ(json["cycles"], 49);
   EXPECT_EQ(json["horizon"], 10);

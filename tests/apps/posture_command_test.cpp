@@ -103,6 +103,7 @@ TEST(PostureCommand, WhatCannotBeReachedIsAnswerNoAndWritesNothing) {
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
   const nlohmann::json json = outcome.json();
   EXPECT_EQ(json["success"], false);
+  EXPECT_EQ(json["status"], "not_found");
   const std::string reason = json["reason"];
   EXPECT_NE(reason.find("contact_position"), std::string::npos) << reason;
   EXPECT_NE(reason.find(" m, limit"), std::string::npos) << reason;

@@ -181,8 +181,8 @@ TEST(StanceBadInput, WhereTheSecondGoalIsOutOfReachTheWayToTheFirstIsKept) {
   EXPECT_EQ(json["goals_reached"], 1);
   EXPECT_GE(json["best"]["stances"], 9) << "four end effectors were lifted and put down";
   const std::string reason = json["reason"];
-  EXPECT_TRUE(
-      reason.starts_with("goal 2 of 2 is not reached: the transitions allowed are used up; "))
+  EXPECT_TRUE(reason.starts_with(
+      "goal 2 of 2 is not reached: the transitions allowed are used up (allow more); "))
       << reason;
   EXPECT_NE(reason.find("left_hand"), std::string::npos) << reason;
   const Outcome checked = runner.run("check part.g2o --json");

@@ -22,6 +22,7 @@ TEST(StancePlanCommand, WritesAPlanThatCheckAccepts) {
   EXPECT_EQ(outcome.err, "");
   const nlohmann::json json = outcome.json();
   EXPECT_EQ(json["success"], true);
+  EXPECT_EQ(json["status"], "solved");
   EXPECT_TRUE(json["reason"].is_string());
   EXPECT_EQ(json["seed"], 3);
   EXPECT_EQ(json["planner"], "guided");
@@ -169,8 +170,10 @@ TEST(StancePlanCommand, AnIncompletePlanIsWrittenAndCheckSaysSo) {
   ASSERT_EQ(outcome.exit_code, 1) << outcome.err;
   const nlohmann::json json = outcome.json();
   EXPECT_EQ(json["success"], false);
+  EXPECT_EQ(json["status"], "not_found");
   const std::string reason = json["reason"];
-  EXPECT_TRUE(reason.starts_with("the goal is not reached: the transitions allowed are used up; "))
+  EXPECT_TRUE(reason.starts_with(
+      "the goal is not reached: the transitions allowed are used up (allow more); "))
       << reason;
   EXPECT_NE(reason.find("left_hand"), std::string::npos) << reason;
   EXPECT_EQ(json["best"]["goal_contacts_reached"], 3);

@@ -136,7 +136,7 @@ TEST(BalanceAlong, EndsWithItsJobOnSeveralThreads) {
        {"judging contacts", "judging self-collisions", "judging balance"}) {
     JobControl ended;
     ended.report = [&](std::string_view part, double) {
-      if (part == last) ended.deadline = Deadline::after(0.0);
+      if (part == last) ended.termination.deadline = Deadline::after(0.0);
     };
     EXPECT_FALSE(judge.check(arms(75, 0.05), options, ended)) << last;
   }

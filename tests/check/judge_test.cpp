@@ -247,7 +247,7 @@ TEST(Judge, SaysNothingWhenItsTimeIsUpWhereverThatHappens) {
   for (const std::string& last : parts) {
     JobControl ended;
     ended.report = [&](std::string_view part, double) {
-      if (part == last) ended.deadline = Deadline::after(0.0);
+      if (part == last) ended.termination.deadline = Deadline::after(0.0);
     };
     EXPECT_FALSE(judge.check(motion, {}, ended)) << last;
   }

@@ -22,6 +22,11 @@ TEST(Deadline, FurtherAwayThanTheClockCountsNeverPasses) {
   EXPECT_TRUE(Deadline::after(-1e300).passed());
 }
 
+TEST(Deadline, OfALimitOfNoneNeverPasses) {
+  EXPECT_FALSE(Deadline::of_limit(0.0).exists());
+  EXPECT_TRUE(Deadline::of_limit(1e-3).exists());
+}
+
 TEST(Stopwatch, NeverRunsBackwards) {
   Stopwatch watch;
   const double first = watch.seconds();

@@ -93,7 +93,7 @@ inline Task drive_task(double distance_m, int configurations) {
 }
 inline Graph drive(double distance_m, int configurations) {
   const Task task = drive_task(distance_m, configurations);
-  return *drive_graph(task, *plan_wheeled_drive(task));
+  return *drive_graph(task, plan_wheeled_drive(task).motion);
 }
 inline std::vector<Eigen::VectorXd> configurations_of(const Graph& graph, const Plan& plan) {
   return motion_of(graph, plan).configurations;
@@ -223,7 +223,7 @@ struct Context {
 namespace offline_drive_drive_graph_h {
 struct Context {
   const Task task = drive_task(0.32, 5);
-  const Motion motion = *plan_wheeled_drive(task);
+  const Motion motion = plan_wheeled_drive(task).motion;
 };
 }  // namespace offline_drive_drive_graph_h
 namespace offline_drive_wheel_motion_h {
@@ -453,7 +453,7 @@ struct Context {
 }  // namespace online_standard_proposals_h
 namespace online_proposal_schedule_h {
 struct Context : WindowContext {
-  const Deadline deadline;
+  const Termination termination;
   Proposal::Answer answer = Proposal::Answer::kNone;
   std::vector<Eigen::VectorXd> candidate;
 };
@@ -484,8 +484,8 @@ struct Context : DriveContext {
 namespace online_window_solver_h {
 struct Context : WindowContext {
   Incumbent incumbent;
-  const Deadline deadline;
-  CycleReport report;
+  const Termination termination;
+  WindowStatistics statistics;
 };
 }  // namespace online_window_solver_h
 namespace online_window_cause_h {
@@ -571,6 +571,12 @@ struct Context {
   Context() { write_example_file("standing.xml", kStanding); }
 };
 }  // namespace scenario_contacts_file_h
+namespace answer_planner_answer_h {
+struct Context : StepContext {
+  const PostureSolver solver{task.robot};
+  const PostureProblem problem = {.stance = stance, .preferred = q};
+};
+}  // namespace answer_planner_answer_h
 namespace posture_posture_graph_h {
 struct Context : StepContext {
   const std::shared_ptr<const RobotParameter>& robot = task.robot;

@@ -98,7 +98,7 @@ double shortest_s(double way_m, double acceleration) {
 TEST(BalanceRows, LeaveWhatFrictionLeaves) {
   const Mast mast(0.1, 1.0);
   const PathTiming timing = mast.timing(-0.25, 0.25);
-  ASSERT_TRUE(timing.feasible());
+  ASSERT_TRUE(timing.answer().success());
   EXPECT_GT(timing.duration_s(), shortest_s(0.5, 0.1 * kMastGravity));
   // The margin, and a pyramid of eight edges inside the cone.
   const double most = 0.9 * 0.98 * 0.1 * std::cos(std::numbers::pi / 8.0) * kMastGravity;
@@ -109,7 +109,7 @@ TEST(BalanceRows, LeaveWhatFrictionLeaves) {
 TEST(BalanceRows, LeaveWhatTheEdgesOfAPlateLeave) {
   const Mast mast(1.0, 0.1);
   const PathTiming timing = mast.timing(-0.02, 0.02);
-  ASSERT_TRUE(timing.feasible());
+  ASSERT_TRUE(timing.answer().success());
   EXPECT_LT(timing.duration_s(), shortest_s(0.04, kMastGravity / kMast_m * 0.9 * 0.08));
   EXPECT_GT(timing.duration_s(), shortest_s(0.04, kMastGravity / kMast_m * 0.12));
   EXPECT_GE(least_margin(mast.robot, timing, {mast.bearing.contact}, 0.0, false), 0.0);
@@ -118,7 +118,7 @@ TEST(BalanceRows, LeaveWhatTheEdgesOfAPlateLeave) {
 TEST(BalanceRows, LeaveWhatEffortsLeave) {
   const Mast mast(1.0, 1.0, 5.0);
   const PathTiming timing = mast.timing(-0.1, 0.1, {.effort_scale = 0.8});
-  ASSERT_TRUE(timing.feasible());
+  ASSERT_TRUE(timing.answer().success());
   const double best = shortest_s(0.2, 0.9 * 0.8 * 5.0 / kOnMast_kg);
   EXPECT_NEAR(timing.duration_s(), best, 0.01 * best);
   EXPECT_LT(mast.timing(-0.1, 0.1).duration_s(), 0.5 * best);
@@ -128,11 +128,11 @@ TEST(BalanceRows, LeaveAWayWhereTheMarginIsUsedUpAtRest) {
   const Mast mast(1.0, 0.1);
   for (const double end_m : {0.05, 0.09, 0.095, 0.099}) {
     const PathTiming timing = mast.timing(0.0, end_m);
-    ASSERT_TRUE(timing.feasible()) << end_m;
+    ASSERT_TRUE(timing.answer().success()) << end_m;
     EXPECT_GE(least_margin(mast.robot, timing, {mast.bearing.contact}, 0.0, false), 0.0) << end_m;
     EXPECT_LT(timing.duration_s(), 5.0) << end_m;
   }
-  EXPECT_FALSE(mast.timing(0.0, 0.15).feasible());
+  EXPECT_FALSE(mast.timing(0.0, 0.15).answer().success());
 }
 
 TEST(BalanceRows, ServeOnePathAfterTheOther) {
@@ -184,7 +184,7 @@ TEST(BalanceRows, KeepAHumanoidBalancedThatThrowsItsArms) {
     fell += margin(free, false) < 0.0;
     BalanceRows balance(robot, bearing, {.effort_scale = effort_scale});
     const PathTiming timing(path, limits, options, balance.along(path, limits));
-    ASSERT_TRUE(timing.feasible()) << seed;
+    ASSERT_TRUE(timing.answer().success()) << seed;
     EXPECT_GE(margin(timing, false), 0.0) << seed;
     EXPECT_LT(timing.duration_s(), 3.0 * free.duration_s()) << seed;
   }

@@ -16,15 +16,15 @@ TEST(ImproveStances, FindsPlansWithNoMoreStancesOnTwoThreadsAndTheJudgeAccepts) 
   const auto planner = make_stance_planner("guided");
   StancePlannerOptions options;
   StancePlan plan = planner->plan(task, options);
-  ASSERT_TRUE(plan.success) << plan.reason;
+  ASSERT_TRUE(plan.success()) << plan.reason;
   const std::size_t stances = plan.stances.size();
-  const int transitions = plan.transitions;
-  options.deadline = Deadline::after(test::kSanitized ? 0.1 : 1.5);
+  const int transitions = plan.statistics.transitions;
+  options.termination.deadline = Deadline::after(test::kSanitized ? 0.1 : 1.5);
   const int better = improve_stances(*planner, task, options, 2, plan);
-  EXPECT_TRUE(plan.success);
+  EXPECT_TRUE(plan.success());
   EXPECT_LE(plan.stances.size(), stances);
   EXPECT_EQ(plan.stances.size(), plan.configurations.size());
-  EXPECT_GE(plan.transitions, transitions) << "of all plans together";
+  EXPECT_GE(plan.statistics.transitions, transitions) << "of all plans together";
   EXPECT_TRUE(better > 0 || plan.stances.size() == stances);
   const CheckReport report =
       Judge(task.robot->robot, task.world).check(stances_motion(plan), task.check);
@@ -37,9 +37,9 @@ TEST(ImproveStances, LeavesAloneWhatDidNotSucceedAndNeedsAnEnd) {
   StancePlannerOptions options;
   StancePlan none;
   EXPECT_THROW(improve_stances(*planner, task, options, 1, none), Error);
-  options.deadline = Deadline::after(10.0);
+  options.termination.deadline = Deadline::after(10.0);
   EXPECT_EQ(improve_stances(*planner, task, options, 1, none), 0);
-  EXPECT_FALSE(none.success);
+  EXPECT_FALSE(none.success());
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ class ClosedWay {
 TEST(InterpolationTest, StepsForwardWithTheFootClearOfTheGround) {
   const auto problem = test::step_forward_problem();
   const SegmentPath path = path_of(*problem);
-  ASSERT_TRUE(path.found) << path.reason;
+  ASSERT_TRUE(path.success()) << path.reason;
   EXPECT_EQ(path.waypoints.front(), problem->segment.from);
   EXPECT_EQ(path.waypoints.back(), problem->segment.to);
   const Robot& robot = *problem->robot->robot;
@@ -84,7 +84,7 @@ TEST(InterpolationTest, StepsForwardWithTheFootClearOfTheGround) {
 TEST(InterpolationTest, EveryWaypointIsClosedAndTheWayBetweenIsValid) {
   const auto problem = test::step_forward_problem();
   const SegmentPath path = path_of(*problem);
-  ASSERT_TRUE(path.found) << path.reason;
+  ASSERT_TRUE(path.success()) << path.reason;
   SegmentSpace space(problem->robot, problem->world);
   space.set_segment(problem->segment);
   Eigen::VectorXd error;
@@ -108,7 +108,7 @@ TEST(InterpolationTest, GoesStraightWhereNothingSwings) {
   const auto problem = test::segment_problem("board");
   problem->world.solids.clear();
   const SegmentPath path = path_of(*problem);
-  ASSERT_TRUE(path.found) << path.reason;
+  ASSERT_TRUE(path.success()) << path.reason;
   const SegmentSpace space(problem->robot, problem->world);
   EXPECT_LT(length_of(path, space),
             1.1 * space.distance(problem->segment.from, problem->segment.to));
@@ -122,7 +122,7 @@ TEST(InterpolationTest, StraightensTheWayOverALowWall) {
   problem->world.solids = {
       test::box_between("wall", {x - 0.01, from.y() - 0.3, 0.0}, {x + 0.01, from.y() + 0.1, 0.09})};
   const SegmentPath path = path_of(*problem);
-  ASSERT_TRUE(path.found) << path.reason;
+  ASSERT_TRUE(path.success()) << path.reason;
   SegmentSpace space(problem->robot, problem->world);
   space.set_segment(problem->segment);
   EXPECT_LT(length_of(path, space), 3.0);
@@ -137,7 +137,7 @@ TEST(InterpolationTest, FindsNothingWhereAWallLeavesNoWay) {
   problem->world.solids = {test::box_between("wall", {0.25, 0.235, 0.02}, {1.5, 0.265, 2.5}),
                            test::box_between("front", {0.23, 0.05, 0.6}, {0.26, 0.265, 1.3})};
   const SegmentPath path = path_of(*problem);
-  EXPECT_FALSE(path.found);
+  EXPECT_FALSE(path.success());
   EXPECT_TRUE(path.waypoints.empty());
   EXPECT_FALSE(path.reason.empty());
 }
@@ -150,7 +150,7 @@ TEST(InterpolationTest, FindsNoStepThroughAWall) {
   problem->world.solids = {
       test::box_between("wall", {x + 0.11, y - 0.3, 0.0}, {x + 0.13, y + 0.1, 0.6})};
   const SegmentPath path = path_of(*problem);
-  EXPECT_FALSE(path.found);
+  EXPECT_FALSE(path.success());
   EXPECT_FALSE(path.reason.empty());
 }
 
@@ -159,14 +159,14 @@ TEST(InterpolationTest, TheSamePathEveryTime) {
   SegmentOptions other;
   other.seed = 5;
   const SegmentPath a = path_of(*problem), b = path_of(*problem, other);
-  ASSERT_TRUE(a.found);
+  ASSERT_TRUE(a.success());
   EXPECT_EQ(a.waypoints, b.waypoints);
 }
 
 TEST(InterpolationTest, EndsWithTheTimeAllowed) {
   SegmentOptions late;
-  late.deadline = Deadline::after(0.0);
-  EXPECT_FALSE(path_of(*test::step_forward_problem(), late).found);
+  late.termination.deadline = Deadline::after(0.0);
+  EXPECT_FALSE(path_of(*test::step_forward_problem(), late).success());
 }
 
 /// Go2 on three feet, the front left one to go 0.08 m ahead.
@@ -191,7 +191,7 @@ TEST(InterpolationTest, SaysAtOnceThatABallHasNoWay) {
   const double x = before.position.x() + 0.04;
   world.solids.push_back(test::box_between("wall", {x - 0.01, -2.0, -1.0}, {x + 0.01, 2.0, 2.0}));
   const SegmentPath path = plan();
-  EXPECT_FALSE(path.found);
+  EXPECT_FALSE(path.success());
   EXPECT_TRUE(path.no_arc);
   EXPECT_TRUE(path.waypoints.empty());
   EXPECT_NE(path.reason.find("no way"), std::string::npos) << path.reason;

@@ -38,7 +38,7 @@ class MotionGraph : public testing::Test {
   MotionGraph() : scenario(changed_scenario("standing_up", {})) {
     task = started_task(scenario).task;
     task.moves = {.most_m = 0.02, .seed = 3, .draws = 1};
-    plan.success = true;
+    plan.status = PlannerStatus::kSolved;
     Motion& motion = plan.motion;
     motion.stances = {task.start, without_contact(task.start, "left_hand")};
     for (int i = 0; i < kCount; ++i) {

@@ -65,7 +65,7 @@ class MotionPlanTest : public testing::TestWithParam<std::size_t> {
   MotionPlanTest()
       : plan(plan_of_seed(GetParam())), motion(plan.motion), robot(*standing_up().robot->robot) {}
 
-  void SetUp() override { ASSERT_TRUE(plan.success) << plan.reason; }
+  void SetUp() override { ASSERT_TRUE(plan.success()) << plan.reason; }
 
   /// Of joints, from vertex `step` to the next.
   Eigen::VectorXd joint_rates(int step) const {
@@ -257,10 +257,10 @@ INSTANTIATE_TEST_SUITE_P(Seeds, MotionPlanTest, testing::Range(std::size_t{0}, k
 TEST(MotionPlannerTest, GivesTheSameBitsWithAnyNumberOfThreads) {
   if (test::kSanitized) GTEST_SKIP() << "takes long there";
   const MotionPlan &one = plan_of_seed(0), two = plan_of(0, 2);
-  ASSERT_TRUE(two.success) << two.reason;
+  ASSERT_TRUE(two.success()) << two.reason;
   EXPECT_EQ(two.motion.time_s, one.motion.time_s);
   EXPECT_EQ(two.motion.stance_from, one.motion.stance_from);
-  EXPECT_EQ(two.refused_segments, one.refused_segments);
+  EXPECT_EQ(two.statistics.refused_segments, one.statistics.refused_segments);
   ASSERT_EQ(two.motion.configurations.size(), one.motion.configurations.size());
   for (std::size_t i = 0; i < one.motion.configurations.size(); ++i) {
     const Eigen::VectorXd &a = one.motion.configurations[i], &b = two.motion.configurations[i];
@@ -274,7 +274,7 @@ TEST(MotionPlannerTest, SaysWhyThereIsNoMotionAndGivesWhatThereIs) {
   StancePlannerOptions stances;
   stances.max_transitions = 1;
   const MotionPlan plan = plan_motion(standing_up(), stances);
-  EXPECT_FALSE(plan.success);
+  EXPECT_FALSE(plan.success());
   EXPECT_FALSE(plan.reason.empty());
   EXPECT_TRUE(plan.segments.empty());
   ASSERT_EQ(plan.motion.configurations.size(), 1U);
@@ -357,15 +357,15 @@ TEST(SegmentMoverTest, TheSamePathAtAnotherPace) {
   SegmentMover mover(task, options);
   const std::vector<BearingContact> bearing = {{step->segment.held[0]}};
   const SegmentMotion fast = mover.move(step->segment, bearing, 0, 1, {});
-  ASSERT_TRUE(fast.found) << fast.reason;
+  ASSERT_TRUE(fast.success()) << fast.reason;
   SegmentMotion slow = fast;
   mover.retime(step->segment, bearing, {.slower = 2.0}, slow);
-  ASSERT_TRUE(slow.found);
+  ASSERT_TRUE(slow.success());
   EXPECT_NEAR(slow.duration_s, 2.0 * fast.duration_s, 1e-9);
   EXPECT_NEAR(slow.length, fast.length, 1e-2 * fast.length);
   SegmentMotion fine = fast;
   mover.retime(step->segment, bearing, {.finer = true}, fine);
-  ASSERT_TRUE(fine.found);
+  ASSERT_TRUE(fine.success());
   for (const SegmentMotion* motion : {&slow, &fine}) {
     EXPECT_EQ(motion->planner, fast.planner);
     EXPECT_EQ(motion->configurations.front(), step->segment.from);

@@ -53,7 +53,7 @@ TEST_P(TreePlannersTest, FindWaysWhereNoneIsStraight) {
     space.set_segment(problem->segment);
     EXPECT_FALSE(space.valid_between(problem->segment.from, problem->segment.to));
     const SegmentPath path = planner->plan(space, options_of(1));
-    ASSERT_TRUE(path.found) << path.reason;
+    ASSERT_TRUE(path.success()) << path.reason;
     ASSERT_GE(path.waypoints.size(), 3U);
     EXPECT_EQ(path.waypoints.front(), problem->segment.from);
     EXPECT_EQ(path.waypoints.back(), problem->segment.to);
@@ -80,7 +80,7 @@ TEST_P(TreePlannersTest, GiveTheSameBitsForASeedWhateverOmplDidBefore) {
   const auto planner = planner_of(GetParam());
   const auto windows = segment_problem("windows"), other = segment_problem("windows_held");
   const SegmentPath once = path_through(*planner, *windows, options_of(3));
-  ASSERT_TRUE(once.found) << once.reason;
+  ASSERT_TRUE(once.success()) << once.reason;
   path_through(*planner, *other, options_of(4));
   for (int i = 0; i < 17; ++i) ompl::RNG().uniform01();
   const SegmentPath again = path_through(*planner, *windows, options_of(3));
@@ -99,13 +99,13 @@ TEST_P(TreePlannersTest, SayThatTheyFoundNothing) {
   const auto planner = planner_of(GetParam());
   const auto problem = segment_problem("board");
   const SegmentPath few = path_through(*planner, *problem, options_of(0, 20));
-  EXPECT_FALSE(few.found);
+  EXPECT_FALSE(few.success());
   EXPECT_TRUE(few.waypoints.empty());
   EXPECT_NE(few.reason.find("states"), std::string::npos) << few.reason;
 
   SegmentOptions late = options_of(0);
-  late.deadline = Deadline::after(0.0);
-  EXPECT_FALSE(path_through(*planner, *problem, late).found);
+  late.termination.deadline = Deadline::after(0.0);
+  EXPECT_FALSE(path_through(*planner, *problem, late).success());
 }
 
 TEST_P(TreePlannersTest, PrintNothing) {
@@ -152,7 +152,7 @@ TEST(AtlasRrtStarTest, ShortensTheFirstWay) {
   int shorter = 0;
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
     const SegmentPath path = path_through(*make_atlas_rrt_star(), *problem, options_of(seed));
-    if (path.found && path.tree_length < 0.99 * path.first_length) ++shorter;
+    if (path.success() && path.tree_length < 0.99 * path.first_length) ++shorter;
   }
   EXPECT_GT(shorter, 0);
 }

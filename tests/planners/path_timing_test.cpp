@@ -206,7 +206,7 @@ TEST(PathTiming, KeepsLimitsEverywhereAndIsNearTheOptimumOnRandomPaths) {
   for (unsigned seed = 0; seed < kTasks; ++seed) {
     const RandomTask task(seed);
     const PathTiming timing(*task.robot, task.waypoints, task.limits);
-    ASSERT_TRUE(timing.feasible());
+    ASSERT_TRUE(timing.answer().success());
     const TimedPath motion = timing.sampled(kMillisecond);
     const Extremes found = seen(motion, task.limits);
     EXPECT_LE(found.velocity, 1.0 + 1e-6) << seed;
@@ -242,7 +242,7 @@ TEST(PathTiming, KeepsLimitsWhenItSmooths) {
     const RandomTask task(seed);
     const double smoothing_s = seed % 2 == 0 ? 0.02 : 0.1;
     const PathTiming timing(*task.robot, task.waypoints, task.limits, {.smoothing_s = smoothing_s});
-    ASSERT_TRUE(timing.feasible());
+    ASSERT_TRUE(timing.answer().success());
     const Extremes found = seen(timing.sampled(kMillisecond), task.limits);
     EXPECT_LE(found.velocity, 1.0 + 1e-6) << seed;
     EXPECT_LE(found.acceleration, 1.0 + 1e-6) << seed;
@@ -330,7 +330,7 @@ TEST(PathTiming, KeepsTorquesWithinEffortLimits) {
   for (const double smoothing_s : {0.0, 0.03}) {
     const PathTiming timing(robot, way, limits, {.smoothing_s = smoothing_s},
                             effort_rows(robot, scale));
-    ASSERT_TRUE(timing.feasible());
+    ASSERT_TRUE(timing.answer().success());
     const TimedPath motion = timing.sampled(kMillisecond);
     const double torque = largest_torque(motion);
     EXPECT_LE(torque, 1.0 + 1e-6);
@@ -338,7 +338,7 @@ TEST(PathTiming, KeepsTorquesWithinEffortLimits) {
     EXPECT_GT(motion.duration_s, free.duration_s());
     EXPECT_LE(seen(motion, limits).acceleration, 1.0 + 1e-6);
   }
-  EXPECT_FALSE(PathTiming(robot, way, limits, {}, effort_rows(robot, 0.01)).feasible());
+  EXPECT_FALSE(PathTiming(robot, way, limits, {}, effort_rows(robot, 0.01)).answer().success());
   EXPECT_THROW(effort_rows(robot, 0.0), Error);
   EXPECT_THROW(effort_rows(slides(1, true)), Error);
 }
@@ -351,7 +351,8 @@ TEST(PathTiming, SaysWhenRowsLeaveNoMotion) {
     return TimingRows{numbers({0}), numbers({0}), numbers({-1})};
   };
   const PathTiming timing(robot, way, limits, {}, never);
-  EXPECT_FALSE(timing.feasible());
+  EXPECT_EQ(timing.answer().status, PlannerStatus::kInfeasible);
+  EXPECT_NE(timing.answer().reason.find("rows leave no motion"), std::string::npos);
   EXPECT_THROW(timing.duration_s(), Error);
   EXPECT_THROW(timing.at(0.0), Error);
   // Faster at the middle than the way to there allows.
@@ -359,7 +360,7 @@ TEST(PathTiming, SaysWhenRowsLeaveNoMotion) {
     const bool middle = std::abs(point.first[0] * (point.s - 0.5)) < 0.1;
     return TimingRows{numbers({0}), numbers({-1}), numbers({middle ? -100.0 : 0.0})};
   };
-  EXPECT_FALSE(PathTiming(robot, way, limits, {}, too_fast).feasible());
+  EXPECT_FALSE(PathTiming(robot, way, limits, {}, too_fast).answer().success());
 }
 
 TEST(PathTiming, StaysNearTheStraightWaysAndDoesNotStopAtCorners) {

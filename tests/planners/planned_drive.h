@@ -48,8 +48,8 @@ inline Scenario centauro_drive(double distance_m = 4.0, double curvature_1_m = 0
 /// Nothing when the job ends before the plan is whole.
 inline std::optional<Graph> planned_drive(const Scenario& scenario, const JobControl& job) {
   const Task task = task_of(scenario);
-  const std::optional<Motion> motion = plan_wheeled_drive(task, job);
-  return motion ? drive_graph(task, *motion, job) : std::nullopt;
+  const DrivePlan plan = plan_wheeled_drive(task, job);
+  return plan.success() ? drive_graph(task, plan.motion, job) : std::nullopt;
 }
 inline Graph planned_drive(const Scenario& scenario) { return *planned_drive(scenario, {}); }
 

@@ -54,9 +54,10 @@ TEST(PostureSolverOnThreads, TakesTheSameStepsAsOnOne) {
 
   for (const std::vector<PostureResult>& of_thread : results) {
     for (int p = 0; p < kProblems; ++p) {
-      EXPECT_EQ(of_thread[p].success, alone[p].success) << "problem " << p;
-      EXPECT_EQ(of_thread[p].restarts, alone[p].restarts) << "problem " << p;
-      EXPECT_EQ(of_thread[p].iterations, alone[p].iterations) << "problem " << p;
+      EXPECT_EQ(of_thread[p].success(), alone[p].success()) << "problem " << p;
+      EXPECT_EQ(of_thread[p].statistics.restarts, alone[p].statistics.restarts) << "problem " << p;
+      EXPECT_EQ(of_thread[p].statistics.iterations, alone[p].statistics.iterations)
+          << "problem " << p;
       const Eigen::VectorXd difference = of_thread[p].configuration - alone[p].configuration;
       EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-9) << "problem " << p;
     }

@@ -12,7 +12,7 @@ namespace {
 
 /// What every path promises, looked at more densely than the planner does.
 void expect_optimised(SegmentSpace& space, const SegmentPath& path) {
-  ASSERT_TRUE(path.found) << path.reason;
+  ASSERT_TRUE(path.success()) << path.reason;
   ASSERT_GE(path.waypoints.size(), 2u);
   EXPECT_EQ(path.waypoints.front(), space.segment().from);
   EXPECT_EQ(path.waypoints.back(), space.segment().to);
@@ -51,7 +51,7 @@ TEST(SegmentOptimisation, GoesRoundABoardWhereInterpolationFindsNoWay) {
   const auto problem = test::segment_problem("board");
   SegmentSpace space(problem->robot, problem->world);
   space.set_segment(problem->segment);
-  EXPECT_FALSE(make_interpolation()->plan(space, {}).found);
+  EXPECT_FALSE(make_interpolation()->plan(space, {}).success());
   const SegmentPath path = make_optimisation()->plan(space, {});
   expect_optimised(space, path);
   EXPECT_LT(optimised_length(space, path),
@@ -98,7 +98,7 @@ TEST(SegmentOptimisation, TheSamePathEveryTime) {
   const auto planner = make_optimisation();
   const SegmentPath a = planner->plan(first, {}), b = planner->plan(second, {});
   const SegmentPath again = planner->plan(first, {});
-  ASSERT_TRUE(a.found);
+  ASSERT_TRUE(a.success());
   EXPECT_EQ(a.waypoints, b.waypoints);
   EXPECT_EQ(a.waypoints, again.waypoints);
 }
@@ -111,7 +111,7 @@ TEST(SegmentOptimisation, SaysWhyThereIsNoPath) {
   SegmentSpace space(problem->robot, problem->world);
   space.set_segment(problem->segment);
   const SegmentPath path = make_optimisation()->plan(space, {});
-  EXPECT_FALSE(path.found);
+  EXPECT_FALSE(path.success());
   EXPECT_TRUE(path.waypoints.empty());
   EXPECT_NE(path.reason.find(" in "), std::string::npos) << path.reason;
 }
@@ -121,10 +121,10 @@ TEST(SegmentOptimisation, EndsWithTheTimeAllowed) {
   SegmentSpace space(problem->robot, problem->world);
   space.set_segment(problem->segment);
   SegmentOptions options;
-  options.deadline = Deadline::after(0.0);
+  options.termination.deadline = Deadline::after(0.0);
   const SegmentPath path = make_optimisation()->plan(space, options);
-  EXPECT_FALSE(path.found);
-  EXPECT_EQ(path.reason, "the time allowed is used up");
+  EXPECT_FALSE(path.success());
+  EXPECT_EQ(path.reason, "the time allowed is used up (allow more)");
 }
 
 }  // namespace

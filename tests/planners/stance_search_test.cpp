@@ -46,7 +46,7 @@ TEST(StanceSearch, NoLaterCandidateHasAChangeThatIsRefused) {
   EXPECT_FALSE(search->next());
   expect_none_refused(search->taken());
   const StancePlan plan = search->result();
-  ASSERT_TRUE(plan.success) << plan.reason;
+  ASSERT_TRUE(plan.success()) << plan.reason;
   EXPECT_EQ(plan.configurations, search->taken().configurations);
   EXPECT_EQ(plan.stances.size(), search->taken().footings.size());
 }
@@ -62,7 +62,7 @@ TEST(StanceSearch, WhereAllCandidatesAreRefusedThereIsNoPlanAndTheReasonIsTold) 
   }
   EXPECT_GT(candidates, 0);
   const StancePlan plan = search->result();
-  EXPECT_FALSE(plan.success);
+  EXPECT_FALSE(plan.success());
   EXPECT_NE(plan.reason.find("nobody likes it"), std::string::npos) << plan.reason;
   EXPECT_EQ(plan.stances.size(), 1U);
 }
@@ -76,7 +76,7 @@ TEST(StanceSearch, OtherConfigurationsTakeThePlaceOfThoseOfACandidate) {
   search->take();
   EXPECT_FALSE(search->next());
   const StancePlan plan = search->result();
-  ASSERT_TRUE(plan.success) << plan.reason;
+  ASSERT_TRUE(plan.success()) << plan.reason;
   EXPECT_EQ(plan.configurations, others);
 }
 
@@ -90,7 +90,7 @@ TEST(StanceSearch, CandidatesLeadToOneGoalAfterTheOther) {
     search->take();
   }
   EXPECT_FALSE(search->next());
-  EXPECT_TRUE(search->result().success);
+  EXPECT_TRUE(search->result().success());
 }
 
 TEST(StanceSearch, APlanIsTheFirstCandidates) {
@@ -99,8 +99,8 @@ TEST(StanceSearch, APlanIsTheFirstCandidates) {
   const StancePlan found = search->result();
   const StancePlan plan = make_stance_planner("guided")->plan(standing_up(), {});
   EXPECT_EQ(found.configurations, plan.configurations);
-  EXPECT_EQ(found.transitions, plan.transitions);
-  EXPECT_EQ(found.iterations, plan.iterations);
+  EXPECT_EQ(found.statistics.transitions, plan.statistics.transitions);
+  EXPECT_EQ(found.statistics.iterations, plan.statistics.iterations);
 }
 
 }  // namespace

@@ -46,12 +46,12 @@ Told plan_on(int threads, const Task& task, StancePlannerOptions options) {
 }
 
 void expect_same(const Told& a, const Told& b) {
-  EXPECT_EQ(a.plan.success, b.plan.success);
+  EXPECT_EQ(a.plan.success(), b.plan.success());
   EXPECT_EQ(a.plan.reason, b.plan.reason);
-  EXPECT_EQ(a.plan.iterations, b.plan.iterations);
-  EXPECT_EQ(a.plan.vertices_in_tree, b.plan.vertices_in_tree);
-  EXPECT_EQ(a.plan.transitions, b.plan.transitions);
-  EXPECT_EQ(a.plan.transitions_found, b.plan.transitions_found);
+  EXPECT_EQ(a.plan.statistics.iterations, b.plan.statistics.iterations);
+  EXPECT_EQ(a.plan.statistics.vertices_in_tree, b.plan.statistics.vertices_in_tree);
+  EXPECT_EQ(a.plan.statistics.transitions, b.plan.statistics.transitions);
+  EXPECT_EQ(a.plan.statistics.transitions_found, b.plan.statistics.transitions_found);
   ASSERT_EQ(a.plan.stances.size(), b.plan.stances.size());
   ASSERT_EQ(a.plan.configurations.size(), b.plan.configurations.size());
   for (std::size_t i = 0; i < a.plan.stances.size(); ++i) {
@@ -97,7 +97,7 @@ TEST(StanceThreads, GiveTheSamePlanAndReportToTheLastBit) {
       options.seed = seed;
       options.max_transitions = transitions;
       const Told alone = plan_on(1, task, options);
-      EXPECT_GT(alone.plan.transitions, 0);
+      EXPECT_GT(alone.plan.statistics.transitions, 0);
       for (const int threads : {2, 4}) {
         SCOPED_TRACE(name + ", seed " + std::to_string(seed) + ", " + std::to_string(threads));
         expect_same(alone, plan_on(threads, task, options));
@@ -111,25 +111,25 @@ TEST(StanceThreads, EndWhenTheSearchIsStoppedOrOutOfTime) {
   std::atomic<bool> stop = false;
   StancePlannerOptions options;
   options.threads = 3;
-  options.stop = &stop;
+  options.termination.stop = &stop;
   int told = 0;
   options.observe = [&](const TransitionAttempt&) { stop = ++told >= 5; };
   const StancePlan stopped = make_stance_planner("guided")->plan(task, options);
-  EXPECT_FALSE(stopped.success);
+  EXPECT_FALSE(stopped.success());
   EXPECT_NE(stopped.reason.find("interrupted"), std::string::npos) << stopped.reason;
-  EXPECT_GE(stopped.transitions, 5);
-  EXPECT_LE(stopped.transitions, 6) << "putting down what was lifted";
+  EXPECT_GE(stopped.statistics.transitions, 5);
+  EXPECT_LE(stopped.statistics.transitions, 6) << "putting down what was lifted";
 
-  options.stop = nullptr;
-  options.deadline = Deadline::after(0.05);
-  const Deadline deadline = options.deadline;
+  options.termination.stop = nullptr;
+  options.termination.deadline = Deadline::after(0.05);
+  const Deadline deadline = options.termination.deadline;
   options.observe = [&](const TransitionAttempt&) {
     while (!deadline.passed()) std::this_thread::yield();
   };
   const StancePlan late = make_stance_planner("guided")->plan(task, options);
-  EXPECT_FALSE(late.success);
+  EXPECT_FALSE(late.success());
   EXPECT_NE(late.reason.find("time"), std::string::npos) << late.reason;
-  EXPECT_LE(late.transitions, 2);
+  EXPECT_LE(late.statistics.transitions, 2);
 }
 
 /// Transitions from the start of a task: one contact less, or the same contact back.
@@ -177,14 +177,14 @@ TEST_F(TransitionsAhead, AreThoseThatANewSolverFindsWhateverWasSolvedBefore) {
     BalanceRegions regions(task_.robot->robot->total_mass());
     const TransitionResult fresh = TaskSolver(task_, regions).solve(asked);
     const TransitionResult used = solver_.solve(asked);
-    EXPECT_EQ(used.found, fresh.found);
+    EXPECT_EQ(used.success(), fresh.success());
     EXPECT_EQ(used.failure, fresh.failure);
-    EXPECT_EQ(used.iterations, fresh.iterations);
+    EXPECT_EQ(used.statistics.iterations, fresh.statistics.iterations);
     EXPECT_TRUE(same_bits(used.configuration, fresh.configuration)) << "lifted " << lifted;
     TransitionAhead ahead(solver_, 1);
     const std::optional<TransitionResult> given = taken(ahead, {asked}, asked);
     ASSERT_TRUE(given.has_value());
-    EXPECT_EQ(given->found, fresh.found);
+    EXPECT_EQ(given->success(), fresh.success());
     EXPECT_TRUE(same_bits(given->configuration, fresh.configuration)) << "lifted " << lifted;
   }
 }
@@ -210,7 +210,7 @@ TEST_F(TransitionsAhead, AreGivenOnceAndForTheirExactArgumentsOnly) {
 
 TEST_F(TransitionsAhead, GoOnFromWhatWasFound) {
   int lifted = 0;
-  while (!solver_.solve(task(lifted)).found) ++lifted;
+  while (!solver_.solve(task(lifted)).success()) ++lifted;
   TransitionTask put = task(lifted, 2);
   put.start = solver_.solve(task(lifted)).configuration;
   const TransitionResult expected = solver_.solve(put);

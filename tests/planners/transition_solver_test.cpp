@@ -205,9 +205,9 @@ TransitionOptions restarts(int count) {
 TEST_F(TransitionSolverTest, WhatItFindsTheJudgeAcceptsOnBothStances) {
   TransitionSolver solver(task.robot, task.world->world());
   const TransitionResult result = solver.solve(problem(), restarts(2));
-  ASSERT_TRUE(result.found) << result.reason;
+  ASSERT_TRUE(result.success()) << result.reason;
   EXPECT_EQ(result.failure, TransitionFailure::kNone);
-  EXPECT_EQ(result.reason, "");
+  EXPECT_EQ(result.reason, "found");
   const Judge judge(task.robot->robot, task.world);
   for (const bool lifts : {true, false}) {
     Motion motion;
@@ -233,8 +233,8 @@ TEST_F(TransitionSolverTest, AContactOutOfReachIsNamedWithTheAmount) {
   asked.closed = far.contacts;
   TransitionSolver solver(task.robot, task.world->world());
   const TransitionResult result = solver.solve(asked, restarts(1));
-  EXPECT_FALSE(result.found);
-  EXPECT_EQ(result.restarts, 1);
+  EXPECT_FALSE(result.success());
+  EXPECT_EQ(result.statistics.restarts, 1);
   EXPECT_EQ(result.failure, TransitionFailure::kContact);
   EXPECT_GT(result.amount, 1.0);
   EXPECT_NE(result.reason.find("left_hand"), std::string::npos) << result.reason;
@@ -249,13 +249,13 @@ TEST_F(TransitionSolverTest, AStanceThatBalancesNowhereIsRefusedAtOnce) {
   asked.balance = &none;
   TransitionSolver solver(task.robot, task.world->world());
   const TransitionResult result = solver.solve(asked, restarts(5));
-  EXPECT_FALSE(result.found);
+  EXPECT_FALSE(result.success());
   EXPECT_EQ(result.failure, TransitionFailure::kBalance);
   EXPECT_FALSE(result.reason.empty());
-  EXPECT_EQ(result.iterations, 0);
-  EXPECT_EQ(result.restarts, 0);
+  EXPECT_EQ(result.statistics.iterations, 0);
+  EXPECT_EQ(result.statistics.restarts, 0);
   asked.balance = nullptr;
-  EXPECT_TRUE(solver.solve(asked, restarts(5)).found) << "balance is not asked for";
+  EXPECT_TRUE(solver.solve(asked, restarts(5)).success()) << "balance is not asked for";
 }
 
 TEST_F(TransitionSolverTest, ACentreOfMassThatCannotGetThereIsBalance) {
@@ -267,7 +267,7 @@ TEST_F(TransitionSolverTest, ACentreOfMassThatCannotGetThereIsBalance) {
   asked.balance = &away;
   TransitionSolver solver(task.robot, task.world->world());
   const TransitionResult result = solver.solve(asked);
-  EXPECT_FALSE(result.found);
+  EXPECT_FALSE(result.success());
   EXPECT_NE(result.failure, TransitionFailure::kNone);
   EXPECT_GT(result.amount, 1.0);
 }
@@ -289,9 +289,9 @@ TEST_F(TransitionSolverTest, GivesTheSameBitsForTheSameSeedWhateverItSolvedBefor
     TransitionSolver other(task.robot, task.world->world());
     for (std::size_t i = starts.size(); i-- > 0;) {
       const TransitionResult again = other.solve(problem(starts[i], 5), restarts(2));
-      EXPECT_EQ(again.found, results[i].found) << i;
-      EXPECT_EQ(again.iterations, results[i].iterations) << i;
-      EXPECT_EQ(again.restarts, results[i].restarts) << i;
+      EXPECT_EQ(again.success(), results[i].success()) << i;
+      EXPECT_EQ(again.statistics.iterations, results[i].statistics.iterations) << i;
+      EXPECT_EQ(again.statistics.restarts, results[i].statistics.restarts) << i;
       EXPECT_EQ(again.configuration, results[i].configuration) << i << ": not the same bits";
       EXPECT_EQ(again.reason, results[i].reason) << i;
     }
@@ -304,12 +304,12 @@ TEST_F(TransitionSolverTest, RestartsFindWhatOneAttemptDoesNot) {
   int lost = 0, found_after_all = 0;
   for (int i = 0; i < 60 && found_after_all == 0; ++i) {
     const Eigen::VectorXd start = at_random(robot(), task.start_configuration, 0.3, 0.8, random);
-    if (solver.solve(problem(start), restarts(0)).found) continue;
+    if (solver.solve(problem(start), restarts(0)).success()) continue;
     ++lost;
     const TransitionResult again = solver.solve(problem(start), restarts(10));
-    if (!again.found) continue;
+    if (!again.success()) continue;
     ++found_after_all;
-    EXPECT_GT(again.restarts, 0);
+    EXPECT_GT(again.statistics.restarts, 0);
   }
   if (lost == 0) GTEST_SKIP() << "one attempt found all";
   EXPECT_GT(found_after_all, 0) << "of " << lost;
@@ -322,7 +322,7 @@ TEST_F(TransitionSolverTest, RefusesContactsAndRobotsThatMakeNoSense) {
   asked.closed = unsound.contacts;
   TransitionSolver solver(task.robot, task.world->world());
   EXPECT_THROW(solver.solve(asked), Error);
-  EXPECT_TRUE(solver.solve(problem(), restarts(2)).found) << "it goes on as before";
+  EXPECT_TRUE(solver.solve(problem(), restarts(2)).success()) << "it goes on as before";
 
   RobotOptions fixed;
   fixed.floating_base = false;

@@ -210,9 +210,8 @@ TEST(WheeledDrive, RefusesAScenarioWithoutADrive) {
   EXPECT_THROW(planned_drive(scenario), Error);
 }
 
-TEST(WheeledDrive, IsNoneWhenItsTimeIsUpWhereverThatHappens) {
+TEST(WheeledDrive, EndsWithItsDeadlineWhereverThatPasses) {
   const Scenario scenario = centauro_drive(1.0, 0.0, 5);
-  EXPECT_FALSE(planned_drive(scenario, {.deadline = Deadline::after(0.0)}));
   std::vector<std::string> parts;
   JobControl job;
   job.report = [&parts](std::string_view part, double fraction) {
@@ -226,9 +225,11 @@ TEST(WheeledDrive, IsNoneWhenItsTimeIsUpWhereverThatHappens) {
   for (const std::string& last : parts) {
     JobControl ended;
     ended.report = [&](std::string_view part, double) {
-      if (part == last) ended.deadline = Deadline::after(0.0);
+      if (part == last) ended.termination.deadline = Deadline::after(0.0);
     };
     EXPECT_FALSE(planned_drive(scenario, ended)) << last;
+    if (last != "rolling") continue;
+    EXPECT_EQ(plan_wheeled_drive(task_of(scenario), ended).status, PlannerStatus::kDeadline);
   }
 }
 

@@ -64,7 +64,7 @@ TEST(WheelsAsFeet, HavePlacesOnSurfacesARadiusFromTheirBorders) {
 
 TEST(WheelsAsFeet, StepOntoAPlatformAndAreJudged) {
   const StancePlan plan = make_stance_planner("guided")->plan(platform(), StancePlannerOptions());
-  ASSERT_TRUE(plan.success) << plan.reason;
+  ASSERT_TRUE(plan.success()) << plan.reason;
   for (const char* constraint : {"contact_position", "contact_motion", "contact_turn",
                                  "contact_on_surface", "static_balance", "torque_limits"}) {
     EXPECT_TRUE(plan.report.constraint(constraint).judged) << constraint;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace locograph {
@@ -77,7 +78,8 @@ class WheeledDrive {
     std::vector<Eigen::VectorXd>& all = motion.configurations;
     Eigen::VectorXd along = Eigen::VectorXd::Zero(robot_.tangent_size());  // for one unit of speed
     for (std::size_t i = 0; i < ramp.time_s.size(); ++i) {
-      if (!job.go_on("rolling", i, ramp.time_s.size())) return;
+      job.report_progress("rolling", i, ramp.time_s.size());
+      if (job.termination.ended()) return;
       const DrivePoint at = path_point(drive_, step_m * static_cast<double>(i));
       Eigen::VectorXd q = stand_;
       q[0] = at.x;
@@ -148,16 +150,21 @@ class WheeledDrive {
 
 }  // namespace
 
-std::optional<Motion> plan_wheeled_drive(const Task& task, const JobControl& job) {
+DrivePlan plan_wheeled_drive(const Task& task, const JobControl& job) {
+  const Stopwatch watch;
+  job.termination.validate();
   if (!task.drive) throw Error(task.scenario, 0, "the scenario has no drive", "<drive …/>");
   Motion motion;
   motion.stances = {all_wheels(task)};
   require_sound_stance(*task.robot->robot, motion.stances.front());
   WheeledDrive(task, motion.stances.front()).drive(job, motion);
-  if (motion.configurations.size() < static_cast<std::size_t>(task.drive->configurations)) {
-    return {};
-  }
-  return motion;
+  const bool whole =
+      motion.configurations.size() == static_cast<std::size_t>(task.drive->configurations);
+  DrivePlan plan{
+      whole ? PlannerAnswer{PlannerStatus::kSolved, "planned"} : end_by(job.termination).value(),
+      std::move(motion)};
+  plan.statistics.total_s = watch.seconds();
+  return plan;
 }
 
 }  // namespace locograph

@@ -64,17 +64,17 @@ class Interpolation : public SegmentPlanner {
     return name;
   }
 
-  SegmentPath plan(SegmentSpace& space, const SegmentOptions& options) const override {
+ private:
+  bool search(SegmentSpace& space, const SegmentOptions& options,
+              SegmentPath& path) const override {
     const std::vector<Swing> swings = swings_of(space);
-    SegmentPath path;
+    int& tried = path.statistics.iterations;
     const auto try_arc = [&](const ArcOptions& arc) {
-      path.found = !options.deadline.passed() && follow(space, swings, arc, path);
-      return path.found;
+      if (options.termination.ended(tried)) return false;
+      ++tried;
+      return follow(space, swings, arc, path);
     };
-    if (swings.empty()) {
-      try_arc(kArcs.front());
-      return path;
-    }
+    if (swings.empty()) return try_arc(kArcs.front());
     // Balls and wheels have no axes to turn: they take each arc once.
     const bool turns = std::ranges::any_of(swings, [](const Swing& swing) {
       return contact_kind_entry(swing.contact().effector.kind).holds_normal;
@@ -89,27 +89,25 @@ class Interpolation : public SegmentPlanner {
     const bool free_first = std::ranges::any_of(swings, [](const Swing& swing) {
       return swing.left == nullptr || swing.reached == nullptr;
     });
-    if (free_first && std::ranges::any_of(free, try_arc)) return path;
+    if (free_first && std::ranges::any_of(free, try_arc)) return true;
     for (const ArcOptions& arc : held) {
       if (is_blocked(space, swings, arc)) {
         blocked.push_back(arc);
       } else if (try_arc(arc)) {
-        return path;
+        return true;
       }
     }
     // No ball passes by turning.
     path.no_arc = blocked.size() == held.size() && !turns && !free_first;
     if (path.no_arc) {
       path.reason = "what swings has no way past what is between its places";
-      return path;
+      return false;
     }
     if (static_cast<int>(blocked.size()) > kMostBlocked) blocked.resize(kMostBlocked);
-    if (std::ranges::any_of(blocked, try_arc) || free_first) return path;
-    std::ranges::any_of(free, try_arc);
-    return path;
+    if (std::ranges::any_of(blocked, try_arc)) return true;
+    return !free_first && std::ranges::any_of(free, try_arc);
   }
 
- private:
   /// The path along an arc into `path`, or why there is none.
   static bool follow(SegmentSpace& space, const std::vector<Swing>& swings, const ArcOptions& arc,
                      SegmentPath& path) {

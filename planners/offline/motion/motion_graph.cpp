@@ -11,7 +11,7 @@ Graph motion_graph(const Task& task, const MotionPlan& plan) {
   if (motion.configurations.empty()) throw Error("a motion without configurations", "one or more");
   Graph graph;
   const std::vector<int> numbers =
-      add_task(graph, task, motion.stances, {.incomplete = !plan.success});
+      add_task(graph, task, motion.stances, {.incomplete = !plan.success()});
   int number = graph.parameters().all().rbegin()->first;
   for (std::size_t j = 0; j < plan.segments.size(); ++j) {
     const SegmentRecord& record = plan.segments[j];

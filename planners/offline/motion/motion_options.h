@@ -17,6 +17,9 @@ struct MotionOptions {
   double lift_off_m = 0.035;  ///< along normals, before and after a swing
   /// Where the scenario has no limit of accelerations [rad/s^2, m/s^2 of prismatic joints].
   double joint_acceleration_rad_s2 = 10.0;
+
+  /// Throws Error naming the option that is out of range; names are looked up where they are used.
+  void validate() const;
 };
 
 }  // namespace locograph

@@ -87,7 +87,7 @@ class MotionSearch {
     motion = {};
     plan_.segments.clear();
     double time_s = 0.0;
-    for (std::size_t j = 0; j < ways_.size() && ways_[j]->motion.found; ++j) {
+    for (std::size_t j = 0; j < ways_.size() && ways_[j]->motion.success(); ++j) {
       const SegmentMotion& way = ways_[j]->motion;
       SegmentRecord record;
       record.stance = static_cast<int>(j);
@@ -104,8 +104,8 @@ class MotionSearch {
       record.last = static_cast<int>(motion.configurations.size());
       record.duration_s = way.duration_s;
       record.planner = way.planner;
-      record.seconds = way.path_s;
-      record.timing_s = way.timing_s;
+      record.path_s = way.statistics.path_s;
+      record.timing_s = way.statistics.timing_s;
       record.length = way.length;
       record.straight = way.straight;
       record.clear_m = way.clear_m;
@@ -128,7 +128,7 @@ class MotionSearch {
 
  private:
   std::size_t refuse(std::size_t segment) {
-    ++plan_.refused_segments;
+    ++plan_.statistics.refused_segments;
     refused_reason_ = ways_[segment]->motion.reason;
     return segment + 1;
   }
@@ -162,7 +162,7 @@ class MotionSearch {
 
   bool found_at(const StancePath& path, std::size_t j) {
     ways_[j] = &solved(path, j);
-    return ways_[j]->motion.found;
+    return ways_[j]->motion.success();
   }
 
   Solved& solved(const StancePath& path, std::size_t j) {
@@ -187,7 +187,8 @@ class MotionSearch {
   void move(Solved& solved) {
     SegmentOptions asked;
     asked.seed = stances_.seed;
-    asked.deadline = stances_.deadline;
+    asked.termination = stances_.termination;
+    asked.termination.max_iterations = 0;  // is of stances
     if (!all_planners_) asked.max_states = kFewStates;
     solved.motion = {};
     on_segment(solved, [&](const Segment& segment, std::span<const BearingContact> bearing) {
@@ -227,17 +228,17 @@ class MotionSearch {
     segment.reached = besides(solved.after, solved.held);
     segment.from = solved.from;
     segment.to = solved.to;
-    plan_.whole_body_s -= solved.motion.path_s;
-    plan_.timing_s -= solved.motion.timing_s;
+    plan_.statistics.path_s -= solved.motion.statistics.path_s;
+    plan_.statistics.timing_s -= solved.motion.statistics.timing_s;
     f(segment, bearing);
-    plan_.whole_body_s += solved.motion.path_s;
-    plan_.timing_s += solved.motion.timing_s;
+    plan_.statistics.path_s += solved.motion.statistics.path_s;
+    plan_.statistics.timing_s += solved.motion.statistics.timing_s;
   }
 
   /// Planners of segments that are tried: another way through other stances is cheaper than the
   /// dear ones, as long as there are others.
   std::size_t allowed() const {
-    const std::size_t refused = static_cast<std::size_t>(plan_.refused_segments);
+    const std::size_t refused = static_cast<std::size_t>(plan_.statistics.refused_segments);
     const std::size_t some = 1 + refused / kRefusedForMore;
     return all_planners_ ? mover_.planners() : std::min(some, mover_.planners());
   }
@@ -252,7 +253,7 @@ class MotionSearch {
       };
     }
     CheckReport report = judge_.check(motion, asked);
-    plan_.judge_s += watch.seconds();
+    plan_.statistics.judge_s += watch.seconds();
     return report;
   }
 
@@ -318,8 +319,8 @@ class MotionSearch {
         solved.slowed = 0;
         if (solved.planner < allowed()) move(solved);
       }
-      if (solved.planner >= allowed() || !solved.motion.found) {
-        solved.motion.found = false;
+      if (solved.planner >= allowed() || !solved.motion.success()) {
+        solved.motion.status = PlannerStatus::kNotFound;
         solved.motion.reason = "refused: " + violation_text(report.worst());
         return false;
       }
@@ -342,6 +343,7 @@ class MotionSearch {
 
 MotionPlan plan_motion(const Task& task, const StancePlannerOptions& stances,
                        const MotionOptions& options) {
+  options.validate();
   const Stopwatch watch;
   MotionPlan plan;
   StancePlannerOptions asked = stances;
@@ -360,9 +362,9 @@ MotionPlan plan_motion(const Task& task, const StancePlannerOptions& stances,
     }
   }
   plan.stances = search->result();
-  plan.success = plan.stances.success;
+  plan.status = plan.stances.status;
   plan.reason = plan.stances.reason;
-  if (!plan.success) {
+  if (!plan.success()) {
     if (!motions.refused_reason().empty()) {
       plan.reason += "; the last motion that was not found: " + motions.refused_reason();
     }
@@ -370,7 +372,8 @@ MotionPlan plan_motion(const Task& task, const StancePlannerOptions& stances,
     motions.keep(search->taken().changes());
     motions.assemble(search->taken());
   }
-  plan.total_s = watch.seconds();
+  plan.statistics.iterations = plan.stances.statistics.iterations;
+  plan.statistics.total_s = watch.seconds();
   return plan;
 }
 

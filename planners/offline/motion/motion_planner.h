@@ -3,7 +3,7 @@
 ///
 ///     const Task task = started_task(scenario).task;
 ///     const MotionPlan plan = plan_motion(task, {.seed = 7});
-///     if (plan.success) write_graph(motion_graph(task, plan), "plan.g2o");
+///     if (plan.success()) write_graph(motion_graph(task, plan), "plan.g2o");
 ///
 /// Each stance that the stance planner finds is a segment: a path between the configurations in
 /// which it begins and ends (segment_planner.h), with the fastest timing from rest to rest
@@ -28,28 +28,32 @@ struct SegmentRecord {
   int stance = 0;           ///< of Motion::stances
   int first = 0, last = 0;  ///< vertices of the motion
   double duration_s = 0.0;
-  std::string planner;   ///< that solved it
-  double seconds = 0.0;  ///< all planners that tried
+  std::string planner;  ///< that solved it
+  double path_s = 0.0;  ///< all planners that tried
   double timing_s = 0.0;
   double length = 0.0,
          straight = 0.0;          ///< of the path and of the straight way, SegmentSpace::distance
   std::optional<double> clear_m;  ///< as SegmentMotion::clear_m
 };
 
-struct MotionPlan {
-  bool success = false;
-  std::string reason;
+struct MotionStatistics : PlannerStatistics {  // iterations: of the stance planner
+  int refused_segments = 0;                    ///< told to the stance planner
+  double path_s = 0.0, timing_s = 0.0;         ///< of all segments
+  double judge_s = 0.0;
+};
+
+struct MotionPlan : PlannerAnswer {
   StancePlan stances;
   /// Without success as far as it got: the segments up to the first that has none. With the
   /// wrenches that the judge found; none without success.
   Motion motion;
   std::vector<SegmentRecord> segments;
-  CheckReport report;        ///< of the motion
-  int refused_segments = 0;  ///< told to the stance planner
-  double whole_body_s = 0.0, timing_s = 0.0, judge_s = 0.0, total_s = 0.0;
+  CheckReport report;  ///< of the motion
+  MotionStatistics statistics;
 };
 
-/// Contacts are put only where they can be approached, whatever the options say
+/// The termination is that of the stance planner, and ends segments as well. Contacts are put only
+/// where they can be approached, whatever the options say
 /// (StancePlannerOptions::approachable_only).
 MotionPlan plan_motion(const Task& task, const StancePlannerOptions& stances,
                        const MotionOptions& options = {});

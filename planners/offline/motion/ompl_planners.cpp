@@ -130,15 +130,22 @@ class TreeSearch {
   const ob::State* to() const { return to_.get(); }
 
   /// Two trees find a way; where it is to be, a third one shortens it.
-  SegmentPath run(bool shortened) {
+  bool run(bool shortened, SegmentPath& path) {
+    const bool found = search(shortened, path);
+    path.statistics.iterations = states_;
+    return found;
+  }
+
+ private:
+  bool search(bool shortened, SegmentPath& path) {
     SeededTree<og::RRTConnect> trees(information_, options_.seed + 1);
     const ob::ProblemDefinitionPtr first = begin(trees);
     end(trees, options_.max_states);
     if (!first->hasExactSolution()) {
-      return {.reason = "no way among " + std::to_string(states_) + " states"};
+      path.reason = "no way among " + std::to_string(states_) + " states";
+      return false;
     }
     auto* way = first->getSolutionPath()->as<og::PathGeometric>();
-    SegmentPath path;
     path.first_length = way->length();
     ShorteningTree shortening(information_, options_.seed + 2);
     const ob::ProblemDefinitionPtr second = begin(shortening);
@@ -150,11 +157,9 @@ class TreeSearch {
       way = second->getSolutionPath()->as<og::PathGeometric>();
     }
     path.tree_length = way->length();
-    complete(way->getStates(), path);
-    return path;
+    return complete(way->getStates(), path);
   }
 
- private:
   ob::ProblemDefinitionPtr begin(ob::Planner& tree) {
     auto problem = std::make_shared<ob::ProblemDefinition>(information_);
     problem->setStartAndGoalStates(from_, to_);
@@ -168,19 +173,21 @@ class TreeSearch {
   void end(ob::Planner& tree, int most) {
     // Rounds count as well: not each of them comes to look at a state.
     tree.solve(ob::PlannerTerminationCondition(
-        [&] { return ++states_ > most || options_.deadline.passed(); }));
+        [&] { return ++states_ > most || options_.termination.ended(states_); }));
   }
 
-  void complete(const std::vector<ob::State*>& states, SegmentPath& path) {
+  bool complete(const std::vector<ob::State*>& states, SegmentPath& path) {
     Waypoints middle;
     if (follow(states, middle)) {
       shorten(space_, middle, kShortcuts, options_.seed);
       path.waypoints = {space_.lifted().front()};
-      path.found = append(space_.lifted(), true, path.waypoints) &&
-                   append(middle, false, path.waypoints) &&
-                   append(space_.landing(), true, path.waypoints);
+      if (append(space_.lifted(), true, path.waypoints) && append(middle, false, path.waypoints) &&
+          append(space_.landing(), true, path.waypoints)) {
+        return true;
+      }
     }
-    if (!path.found) path.reason = space_.why_not();
+    path.reason = space_.why_not();
+    return false;
   }
 
   /// `way` goes on from where `part` begins.
@@ -231,18 +238,23 @@ class TreePlanner : public SegmentPlanner {
   explicit TreePlanner(std::string name) : name_(std::move(name)) {}
   const std::string& name() const override { return name_; }
 
-  SegmentPath plan(SegmentSpace& space, const SegmentOptions& options) const override {
-    if (!space.lift_off()) return {.reason = space.why_not()};
+ private:
+  bool search(SegmentSpace& space, const SegmentOptions& options,
+              SegmentPath& path) const override {
+    if (!space.lift_off()) {
+      path.reason = space.why_not();
+      return false;
+    }
     const SilentOmpl silent;
     try {
-      return search(space, options);
+      return grow(space, options, path);
     } catch (const ompl::Exception& error) {  // as where rows of the closure depend on each other
-      return {.reason = error.what()};
+      path.reason = error.what();
+      return false;
     }
   }
-
- private:
-  virtual SegmentPath search(SegmentSpace& space, const SegmentOptions& options) const = 0;
+  virtual bool grow(SegmentSpace& space, const SegmentOptions& options,
+                    SegmentPath& path) const = 0;
 
   std::string name_;
 };
@@ -252,10 +264,10 @@ class RrtConnectPlanner : public TreePlanner {
   RrtConnectPlanner() : TreePlanner("rrt_connect") {}
 
  private:
-  SegmentPath search(SegmentSpace& space, const SegmentOptions& options) const override {
+  bool grow(SegmentSpace& space, const SegmentOptions& options, SegmentPath& path) const override {
     Waypoints way = {space.from(), space.to()};
     TreeSearch search(space, way, options, projected_manifold(space, way, options.seed));
-    return search.run(false);
+    return search.run(false, path);
   }
 };
 
@@ -264,13 +276,13 @@ class AtlasRrtStarPlanner : public TreePlanner {
   AtlasRrtStarPlanner() : TreePlanner("atlas_rrt_star") {}
 
  private:
-  SegmentPath search(SegmentSpace& space, const SegmentOptions& options) const override {
+  bool grow(SegmentSpace& space, const SegmentOptions& options, SegmentPath& path) const override {
     Waypoints way = {space.from(), space.to()};
     const auto atlas = atlas_manifold(space, way, options.seed);
     TreeSearch search(space, way, options, atlas);
     atlas->anchorChart(search.from());
     atlas->anchorChart(search.to());
-    return search.run(true);
+    return search.run(true, path);
   }
 };
 

@@ -167,13 +167,15 @@ class SegmentGraph {
     }
   }
 
-  std::vector<Eigen::VectorXd> optimised(const Deadline& deadline) {
+  /// iterations: made before, and these as well.
+  std::vector<Eigen::VectorXd> optimised(const Termination& termination, int& iterations) {
     OptimiserOptions lm;
-    lm.max_iterations = kMostIterations;
+    lm.max_iterations = termination.left_of(kMostIterations, iterations);
     lm.gain = kGain;
     lm.shorten_steps = true;
-    lm.deadline = deadline;
-    optimise(graph_, lm, *make_linear_solver("banded"));
+    lm.deadline = termination.deadline;
+    lm.on_iteration = [&](const OptimiserResult&) { return !termination.stopped(); };
+    iterations += optimise(graph_, lm, *make_linear_solver("banded")).iterations;
     std::vector<Eigen::VectorXd> way;
     for (const auto id : ids_) way.push_back(graph_.vertex(id).state);
     return way;
@@ -209,36 +211,28 @@ class Optimisation : public SegmentPlanner {
     return name;
   }
 
-  SegmentPath plan(SegmentSpace& space, const SegmentOptions& options) const override {
+ private:
+  bool search(SegmentSpace& space, const SegmentOptions& options,
+              SegmentPath& path) const override {
     const std::vector<Swing> swings = swings_of(space);
     const auto wanted = std::make_shared<const WantedRoom>(space);
-    SegmentPath path;
+    int& iterations = path.statistics.iterations;
     for (const Attempt& attempt : kAttempts) {
-      if (options.deadline.passed()) {
-        path.reason = "the time allowed is used up";
-        break;
-      }
+      if (options.termination.ended(iterations)) return false;
       if (swings.empty() && &attempt != kAttempts.data() && attempt.bend == 0.0) continue;
       std::vector<Eigen::VectorXd> way = first_way(space, attempt);
       if (way.empty()) continue;
-      for (int round = 0; round < kTries && !path.found; ++round) {
+      for (int round = 0; round < kTries && !options.termination.used_up(iterations); ++round) {
         if (round > 0) halve(space, way);
         SegmentGraph graph(space, wanted, swings, attempt, std::move(way));
-        way = graph.optimised(options.deadline);
+        way = graph.optimised(options.termination, iterations);
         path.waypoints = way;
-        path.found = holds(space, path.waypoints, path.reason);
+        if (holds(space, path.waypoints, path.reason)) return true;
       }
-      if (path.found) break;
     }
-    if (path.found) {
-      path.reason.clear();
-    } else {
-      path.waypoints.clear();
-    }
-    return path;
+    return false;
   }
 
- private:
   /// Straight, or bent towards the first named configuration; empty: there is none.
   static std::vector<Eigen::VectorXd> first_way(SegmentSpace& space, const Attempt& attempt) {
     const Robot& robot = space.robot();

@@ -62,6 +62,10 @@ CheckOptions with_accelerations(CheckOptions check, const MotionOptions& options
   return check;
 }
 
+void add_reason(const std::string& reason, SegmentMotion& motion) {
+  motion.reason += (motion.reason.empty() ? "" : "; ") + reason;
+}
+
 }  // namespace
 
 Motion as_motion(const SegmentMotion& way) {
@@ -88,32 +92,42 @@ SegmentMover::SegmentMover(const Task& task, const MotionOptions& options)
 SegmentMotion SegmentMover::move(const Segment& segment, std::span<const BearingContact> bearing,
                                  std::size_t first, std::size_t end,
                                  const SegmentOptions& options) {
+  options.validate();
+  const Stopwatch watch;
   SegmentMotion motion;
   space_.set_segment(segment);
   motion.straight = space_.distance(segment.from, segment.to);
   if (motion.straight <= kNoWay) {
-    motion.found = true;
+    motion.status = PlannerStatus::kSolved;
     motion.planner = planners_.front()->name();
     motion.waypoints = motion.configurations = {segment.from, segment.to};
     motion.slopes.assign(2, Eigen::VectorXd::Zero(space_.robot().tangent_size()));
     motion.duration_s = options_.step_s;
     return motion;
   }
-  for (std::size_t i = first; i < end && !motion.found; ++i) {
-    if (options.deadline.passed()) break;
-    const Stopwatch searching;
-    SegmentPath path = planners_[i]->plan(space_, options);
-    motion.path_s += searching.seconds();
+  for (std::size_t i = first; i < end && motion.status == PlannerStatus::kNotFound; ++i) {
+    if (const auto ended = end_by(options.termination, motion.statistics.iterations)) {
+      motion.status = ended->status;
+      add_reason(ended->reason, motion);
+      break;
+    }
+    SegmentOptions asked = options;
+    asked.termination = options.termination.after(motion.statistics.iterations);
+    SegmentPath path = planners_[i]->plan(space_, asked);
+    motion.statistics.iterations += path.statistics.iterations;
+    motion.statistics.path_s += path.statistics.total_s;
     motion.planner = planners_[i]->name();
     motion.no_arc = motion.no_arc || path.no_arc;
-    if (path.found) {
+    motion.status = path.status;
+    if (path.success()) {
       motion.waypoints = std::move(path.waypoints);
       shape(bearing, {}, motion);
+      if (motion.success()) break;
+      path.reason = "no timing keeps it in balance";
     }
-    if (motion.found) break;
-    if (path.found) path.reason = "no timing keeps it in balance";
-    motion.reason += (motion.reason.empty() ? "" : "; ") + motion.planner + ": " + path.reason;
+    add_reason(motion.planner + ": " + path.reason, motion);
   }
+  motion.statistics.total_s = watch.seconds();
   return motion;
 }
 
@@ -127,15 +141,16 @@ void SegmentMover::shape(std::span<const BearingContact> bearing, const SegmentP
                          SegmentMotion& motion) {
   const Stopwatch closing;
   const PathSpline closed = close(motion.waypoints, pace.finer);
-  motion.path_s += closing.seconds();
+  motion.statistics.path_s += closing.seconds();
   const Stopwatch timing;
-  motion.found = time(closed, bearing, pace.slower, motion);
-  motion.timing_s += timing.seconds();
+  const bool timed = time(closed, bearing, pace.slower, motion);
+  motion.status = timed ? PlannerStatus::kSolved : PlannerStatus::kNotFound;
+  motion.statistics.timing_s += timing.seconds();
   motion.clear_m = clear_of(motion);
 }
 
 std::optional<double> SegmentMover::clear_of(const SegmentMotion& motion) {
-  if (!motion.found) return std::nullopt;
+  if (!motion.success()) return std::nullopt;
   std::optional<double> least;
   RobotState state(space_.robot());
   for (const Swing& swing : swings_of(space_)) {
@@ -243,11 +258,11 @@ bool SegmentMover::time(const PathSpline& path, std::span<const BearingContact> 
   std::optional<PathTiming> timing(std::in_place, path, limits_, options,
                                    balance.along(path, limits_));
   // Where rows leave nothing, which is for rounding only: slowly, as the judge will say.
-  if (!timing->feasible()) {
+  if (!timing->answer().success()) {
     timing.emplace(path, limits_, options);
     slower *= kSlowly;
   }
-  if (!timing->feasible()) return false;
+  if (!timing->answer().success()) return false;
   const double duration_s = slower * timing->duration_s();
   const auto steps_in = [&](double seconds) {
     return std::max(2, static_cast<int>(std::ceil(seconds / options_.step_s)));

@@ -3,7 +3,7 @@
 ///
 ///     SegmentMover mover(task, options);
 ///     const SegmentMotion motion = mover.move(segment, bearing, 0, 1, {.seed = 7});
-///     if (motion.found) std::cout << motion.configurations.size() << " configurations\n";
+///     if (motion.success()) std::cout << motion.configurations.size() << " configurations\n";
 ///
 /// The waypoints of a path become a spline through few of them: where it is off the contacts or
 /// does not hold, more are added. It is timed from rest to rest (timing/path_timing.h), sampled
@@ -30,10 +30,13 @@ struct SegmentPace {
   bool finer = false;   ///< the spline keeps closer to the path
 };
 
-struct SegmentMotion {
-  bool found = false;
+struct SegmentStatistics : PlannerStatistics {  // of all planners that tried
+  double path_s = 0.0, timing_s = 0.0;
+};
+
+/// The reason of a failure: of each planner.
+struct SegmentMotion : PlannerAnswer {
   std::string planner;                          ///< that found the path
-  std::string reason;                           ///< why there is none: of each planner
   bool no_arc = false;                          ///< see SegmentPath
   std::vector<Eigen::VectorXd> waypoints;       ///< of the path
   std::vector<Eigen::VectorXd> configurations;  ///< equispaced in time, both ends included
@@ -43,7 +46,7 @@ struct SegmentMotion {
   /// How far what swings from one place to another gets from all else, at most 0.1 m; of several
   /// the least. Nothing swings: none.
   std::optional<double> clear_m;
-  double path_s = 0.0, timing_s = 0.0;  ///< what it took
+  SegmentStatistics statistics;
 };
 
 /// Its configurations, slopes and times from 0 on; of no stance.
@@ -58,7 +61,7 @@ class SegmentMover {
   /// planners that are tried.
   SegmentMotion move(const Segment& segment, std::span<const BearingContact> bearing,
                      std::size_t first, std::size_t end, const SegmentOptions& options);
-  /// The same path at another pace. Not found: its timing is not.
+  /// The same path at another pace; without success there is no timing.
   void retime(const Segment& segment, std::span<const BearingContact> bearing,
               const SegmentPace& pace, SegmentMotion& motion);
   std::size_t planners() const { return planners_.size(); }

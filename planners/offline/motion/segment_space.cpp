@@ -262,7 +262,7 @@ bool SegmentSpace::solve(const Eigen::VectorXd& start, std::span<const Contact> 
   options.max_iterations = 25;
   TransitionResult result = solver_.solve(problem, options);
   q = std::move(result.configuration);
-  if (result.found) return true;
+  if (result.success()) return true;
   // A little short of all margins is enough on the way.
   if (!also.empty() && result.amount > kAlmost) {
     why_not_ = std::move(result.reason);

@@ -95,7 +95,7 @@ class GuidedSearch final : public StanceSearch {
                            std::vector<signed char>(effectors, 0)});
     Node& node = own_->nodes.back();
     if (own_->backwards && !from_both_ends_) return number;  // the goal, which others aim at
-    ++result_.vertices_in_tree;
+    ++result_.statistics.vertices_in_tree;
     ++own_->crowds[roughly(node.footing)];
     kept().add(node.footing, parent);
     if (!own_->backwards) note_best(node.footing, goal_);
@@ -459,7 +459,7 @@ class GuidedSearch final : public StanceSearch {
     Node& node = own_->nodes[static_cast<std::size_t>(move.node)];
     const Footing after = with(node.footing, move.effector, move.place);
     if (own_->known.contains(after)) return -1;
-    ++result_.iterations;
+    ++space_.iterations;
     const bool in_contact = node.footing[effector] != kFree;
     const Footing between = without(node.footing, move.effector);
     if (in_contact) {

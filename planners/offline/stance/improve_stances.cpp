@@ -19,20 +19,20 @@ std::pair<std::size_t, double> price_of(const Task& task, const StancePlan& plan
   return {plan.stances.size(), moved};
 }
 
-void add_effort(const StancePlan& spent, StancePlan& plan) {
-  plan.vertices_in_tree += spent.vertices_in_tree;
-  plan.iterations += spent.iterations;
-  plan.transitions += spent.transitions;
-  plan.transitions_found += spent.transitions_found;
-  plan.transitions_s += spent.transitions_s;
-  plan.judge_s += spent.judge_s;
+void add_effort(const StanceStatistics& spent, StanceStatistics& statistics) {
+  statistics.vertices_in_tree += spent.vertices_in_tree;
+  statistics.iterations += spent.iterations;
+  statistics.transitions += spent.transitions;
+  statistics.transitions_found += spent.transitions_found;
+  statistics.transitions_s += spent.transitions_s;
+  statistics.judge_s += spent.judge_s;
 }
 
 }  // namespace
 
 int improve_stances(const StancePlanner& planner, const Task& task,
                     const StancePlannerOptions& options, int threads, StancePlan& plan) {
-  if (!options.deadline.exists() && options.stop == nullptr) {
+  if (!options.termination.deadline.exists() && options.termination.stop == nullptr) {
     throw Error("plans are to be improved without end", "a deadline, or a flag that stops it");
   }
   const Stopwatch watch;
@@ -40,7 +40,7 @@ int improve_stances(const StancePlanner& planner, const Task& task,
   std::vector<StancePlan> others(static_cast<std::size_t>(threads));
   auto best = price_of(task, plan);
   int better = 0;
-  for (std::uint64_t tried = 1; plan.success && !options.ended();
+  for (std::uint64_t tried = 1; plan.success() && !options.termination.ended();
        tried += static_cast<std::uint64_t>(threads)) {
     pool.run(threads, [&](int i) {
       StancePlannerOptions other = options;
@@ -50,16 +50,16 @@ int improve_stances(const StancePlanner& planner, const Task& task,
     });
     for (StancePlan& other : others) {
       const auto price = price_of(task, other);
-      const bool found = other.success && price < best;
-      add_effort(found ? plan : other, found ? other : plan);
+      const bool found = other.success() && price < best;
+      add_effort((found ? plan : other).statistics, (found ? other : plan).statistics);
       if (!found) continue;
       best = price;
-      other.total_s = plan.total_s;
+      other.statistics.total_s = plan.statistics.total_s;
       plan = std::move(other);
       ++better;
     }
   }
-  plan.total_s += watch.seconds();
+  plan.statistics.total_s += watch.seconds();
   return better;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// Uses the time that is left: plans again with other seeds and keeps the best.
 ///
-///     options.deadline = Deadline::after(5.0);
+///     options.termination.deadline = Deadline::after(5.0);
 ///     StancePlan plan = planner->plan(task, options);
 ///     const int better = improve_stances(*planner, task, options, 2, plan);
 
@@ -9,11 +9,11 @@
 
 namespace locograph {
 
-/// Until the deadline or `stop`, each seed on one of `threads`, whatever the options say. The best
-/// plan has the fewest stances; of as many, the one whose joints move least from configuration to
-/// configuration (sum of the angles). Counts and times are those of all plans together. Returns how
-/// often a better one was found. Throws Error where neither deadline nor stop is given. A plan
-/// without success is left alone.
+/// Until the deadline or the stop flag, each seed on one of `threads`, whatever the options say; a
+/// count is that of each plan. The best plan has the fewest stances; of as many, the one whose
+/// joints move least from configuration to configuration (sum of the angles). Statistics are those
+/// of all plans together. Returns how often a better one was found. Throws Error where neither
+/// deadline nor stop flag is given. A plan without success is left alone.
 int improve_stances(const StancePlanner& planner, const Task& task,
                     const StancePlannerOptions& options, int threads, StancePlan& plan);
 

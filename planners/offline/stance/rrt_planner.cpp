@@ -108,7 +108,7 @@ class RrtSearch final : public StanceSearch {
 
   /// The new vertex, or -1.
   int iterate() {
-    ++result_.iterations;
+    ++space_.iterations;
     const Target target = draw_target();
     const int chosen = draw_vertex(target);
     return chosen < 0 ? -1 : expand(chosen, target);
@@ -215,7 +215,7 @@ class RrtSearch final : public StanceSearch {
     note_best(footing, goal_);
     tree_.add(footing, parent);
     vertices_.push_back({std::move(footing), std::move(q), parent, added, std::move(positions)});
-    ++result_.vertices_in_tree;
+    ++result_.statistics.vertices_in_tree;
     return static_cast<int>(vertices_.size()) - 1;
   }
 

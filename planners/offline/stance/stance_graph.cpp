@@ -49,7 +49,7 @@ std::vector<int> add_task(Graph& graph, const Task& task, const std::vector<Stan
 Graph stance_graph(const Task& task, const StancePlan& plan) {
   Graph graph;
   const std::vector<int> numbers =
-      add_task(graph, task, plan.stances, {.stances_only = true, .incomplete = !plan.success});
+      add_task(graph, task, plan.stances, {.stances_only = true, .incomplete = !plan.success()});
 
   Motion motion{.time_s = {},
                 .configurations = plan.configurations,

@@ -7,6 +7,7 @@ void StancePlannerOptions::validate() const {
   check_option(grid_m >= 1e-3 && grid_m <= 10.0, "grid_m", "0.001 to 10 m");
   check_option(reach > 0.0 && reach <= 2.0, "reach", "above 0, up to 2");
   check_option(threads >= 1, "threads", "1 or more");
+  termination.validate();
   check_option(max_transitions >= 0, "max_transitions", "0 or more");
 }
 

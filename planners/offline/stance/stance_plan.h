@@ -11,10 +11,9 @@
 
 #include <locograph/check/check_report.h>
 #include <locograph/check/motion.h>
-#include <locograph/common/deadline.h>
+#include <locograph/planners/answer/planner_answer.h>
 
 #include <Eigen/Core>
-#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -28,20 +27,19 @@ struct TransitionAttempt {
   Eigen::VectorXd start;  ///< the configuration it was looked for from
   int restarts = 0;       ///< at most
   bool found = false;
-  double seconds = 0.0;  ///< that the search waited; of little meaning with several threads
+  double waited_s = 0.0;  ///< by the search; of little meaning with several threads
 };
 
 struct StancePlannerOptions {
   std::uint64_t seed = 0;
-  Deadline deadline;
-  const std::atomic<bool>* stop = nullptr;  ///< set, as by Ctrl-C: the search ends; may be null
+  Termination termination = {};
   /// That a search may use, the caller's included; a plan that ends before the deadline does not
   /// depend on it. `rrt` takes them only to shorten its way.
   int threads = 1;
   double grid_m = 0.05;  ///< between places of contacts on a surface
   /// How far an end effector gets in one move, as a part of its chain's length.
   double reach = 0.7;
-  /// Transitions that may be tried for each goal; 0: no end but the deadline.
+  /// Transitions that may be tried for each goal; 0: no end but the termination.
   int max_transitions = 20000;
   /// Told of every transition of the search and of shortening, in their order, by the thread that
   /// plans; may be empty.
@@ -50,9 +48,6 @@ struct StancePlannerOptions {
   /// Balls are put only where they can come to along the normal, none in a gap as wide as itself:
   /// for stances that are to be moved between.
   bool approachable_only = false;
-
-  bool stopped() const { return stop != nullptr && *stop; }
-  bool ended() const { return deadline.passed() || stopped(); }
 
   /// Throws Error naming the option that is out of range.
   void validate() const;
@@ -73,9 +68,14 @@ struct StanceTreeNode {
   bool on_way = false;  ///< to a goal, before moves were left out of that way
 };
 
-struct StancePlan {
-  bool success = false;
-  std::string reason;
+struct StanceStatistics : PlannerStatistics {
+  int vertices_in_tree = 0;
+  int transitions = 0, transitions_found = 0;
+  double transitions_s = 0.0;  ///< that the search worked on transitions or waited for them
+  double judge_s = 0.0;
+};
+
+struct StancePlan : PlannerAnswer {
   /// σ_0 … σ_N, and the configurations: the start, then that of each change, N + 1 in all.
   /// Without success as far as it got: to the goals before the one that was not reached.
   std::vector<Stance> stances;
@@ -83,13 +83,10 @@ struct StancePlan {
   int goals_reached = 0;
   int best_contacts = 0;  ///< of the goal that was not reached: most of its contacts in one stance
   Stance best;            ///< the stance that has them
-  int vertices_in_tree = 0, iterations = 0;
-  int transitions = 0, transitions_found = 0;
   std::vector<StanceFailure> failures;  ///< the most frequent first
   std::vector<StanceTreeNode> tree;     ///< in the order of trying, one tree after the other
   CheckReport report;                   ///< of the judge
-  /// transitions_s: that the search worked on transitions or waited for them.
-  double transitions_s = 0.0, judge_s = 0.0, total_s = 0.0;
+  StanceStatistics statistics;
 };
 
 /// Stances and as many configurations as a motion that holds still, one vertex a second: what the

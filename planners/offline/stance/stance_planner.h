@@ -5,7 +5,7 @@
 ///     const Task task = started_task(scenario).task;
 ///     const auto planner = make_stance_planner("guided");         // stance_planners.h
 ///     const StancePlan plan = planner->plan(task, {.seed = 7});
-///     if (!plan.success) std::cerr << plan.reason;
+///     if (!plan.success()) std::cerr << plan.reason;
 ///
 /// The first offline stage of Rossini et al., "Loco-Manipulation Planning for Legged Robots:
 /// Offline and Online Strategies", whose S_σ and S_q it gives. Planners are chosen by name

@@ -46,7 +46,7 @@ bool StanceSearch::next() {
     shorten(space_, candidate_, first);
     const Stopwatch judging;
     const JudgedPath judged = judge_path(space_, judge_, candidate_);
-    result_.judge_s += judging.seconds();
+    result_.statistics.judge_s += judging.seconds();
     result_.report = judged.report;
     if (judged.report.feasible) return true;
     const std::string violation = violation_text(judged.report.worst());
@@ -92,19 +92,20 @@ void StanceSearch::note_best(const Footing& footing, const Footing& goal) {
 
 StancePlan StanceSearch::result() {
   StancePlan plan = result_;
-  plan.success = static_cast<std::size_t>(plan.goals_reached) == task_.goals.size();
   plan.failures = space_.failures();
-  plan.transitions = space_.transitions;
-  plan.transitions_found = space_.transitions_found;
-  plan.transitions_s = space_.transitions_s;
+  plan.statistics.iterations = space_.iterations;
+  plan.statistics.transitions = space_.transitions;
+  plan.statistics.transitions_found = space_.transitions_found;
+  plan.statistics.transitions_s = space_.transitions_s;
   for (const Footing& footing : taken_.footings) plan.stances.push_back(space_.stance(footing));
   plan.configurations = taken_.configurations;
-  if (plan.success) {
+  if (static_cast<std::size_t>(plan.goals_reached) == task_.goals.size()) {
+    plan.status = PlannerStatus::kSolved;
     plan.reason = "planned";
   } else if (plan.reason.empty()) {
-    plan.reason = why_not_reached(plan);
+    explain(plan);
   }
-  plan.total_s = watch_.seconds();
+  plan.statistics.total_s = watch_.seconds();
   return plan;
 }
 
@@ -119,17 +120,19 @@ std::string StanceSearch::why_none_stands(const Stance& goal) {
   return reason;
 }
 
-std::string StanceSearch::why_not_reached(const StancePlan& plan) {
+void StanceSearch::explain(StancePlan& plan) {
   const std::size_t goals = task_.goals.size();
   const std::string none_stands =
       why_none_stands(task_.goals[static_cast<std::size_t>(plan.goals_reached)]);
-  std::string reason = goals > 1 ? "goal " + std::to_string(plan.goals_reached + 1) + " of " +
-                                       std::to_string(goals) + " is not reached"
-                                 : "the goal is not reached";
-  if (space_.ended()) {
-    reason += space_.stopped() ? ": interrupted" : ": the time allowed is used up";
+  std::string& reason = plan.reason;
+  reason = goals > 1 ? "goal " + std::to_string(plan.goals_reached + 1) + " of " +
+                           std::to_string(goals) + " is not reached"
+                     : "the goal is not reached";
+  if (const auto end = end_by(options_.termination, space_.iterations)) {
+    plan.status = end->status;
+    reason += ": " + end->reason;
   } else if (space_.tried_enough()) {
-    reason += ": the transitions allowed are used up";
+    reason += ": the transitions allowed are used up (allow more)";
   }
   if (!none_stands.empty()) {
     reason += "; no posture was found that holds the goal's contacts: " + none_stands;
@@ -138,11 +141,11 @@ std::string StanceSearch::why_not_reached(const StancePlan& plan) {
     reason += "; refused: " + std::to_string(refused_) +
               (refused_ == 1 ? " way to it: " : " ways to it, the last one: ") + last_refusal_;
   }
-  if (plan.failures.empty()) return reason;
+  if (plan.failures.empty()) return;
   const StanceFailure& most = plan.failures.front();
-  return reason + "; most often in the way: " + most.what + ", for " + most.end_effector + " (" +
-         std::to_string(most.count) + " of " +
-         std::to_string(plan.transitions - plan.transitions_found) + " transitions)";
+  const int failed = plan.statistics.transitions - plan.statistics.transitions_found;
+  reason += "; most often in the way: " + most.what + ", for " + most.end_effector + " (" +
+            std::to_string(most.count) + " of " + std::to_string(failed) + " transitions)";
 }
 
 }  // namespace locograph

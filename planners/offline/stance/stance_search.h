@@ -63,7 +63,8 @@ class StanceSearch {
   virtual bool reach(const Footing& goal, StancePath& path) = 0;
   void begin_goal();
   void count_refused(const std::string& reason);
-  std::string why_not_reached(const StancePlan& plan);
+  /// Why the goal after those that are reached is not.
+  void explain(StancePlan& plan);
   /// Why no posture was found in the goal's stance; empty: one was.
   std::string why_none_stands(const Stance& goal);
 

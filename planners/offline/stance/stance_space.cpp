@@ -52,7 +52,8 @@ TransitionOptions wide_margins() {
 }
 
 StanceSpace::Attempt attempt_of(TransitionResult result) {
-  return {result.found, std::move(result.configuration), result.failure, std::move(result.reason)};
+  return {result.success(), std::move(result.configuration), result.failure,
+          std::move(result.reason)};
 }
 
 double distance_to(const Surface& surface, const Eigen::Vector3d& point) {

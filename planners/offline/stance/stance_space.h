@@ -95,11 +95,10 @@ class StanceSpace {
   /// StancePlannerOptions::max_transitions is used up for this goal.
   bool tried_enough() const { return transitions_left() <= 0; }
 
-  /// StancePlannerOptions::stop is set.
-  bool stopped() const { return options_.stopped(); }
   /// Stopped, or the time allowed is used up.
-  bool ended() const { return options_.ended(); }
+  bool ended() const { return options_.termination.ended(iterations); }
 
+  int iterations = 0;  ///< counted by searches
   int transitions = 0, transitions_found = 0;
   double transitions_s = 0.0;
   std::vector<StanceFailure> failures() const;

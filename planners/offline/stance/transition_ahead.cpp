@@ -73,7 +73,7 @@ void TransitionAhead::add(Expected expected, bool first) {
 
 /// Before what is expected otherwise if it has only now been found.
 void TransitionAhead::follow_up(const Entry& done) {
-  if (!done.expected.then || !done.result.found || done.round != round_) return;
+  if (!done.expected.then || !done.result.success() || done.round != round_) return;
   Expected next{*done.expected.then};
   next.task.start = done.result.configuration;
   add(std::move(next), done.state == Entry::kRunning);

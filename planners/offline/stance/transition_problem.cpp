@@ -1,8 +1,22 @@
+#include <locograph/common/check_option.h>
 #include <locograph/planners/offline/stance/transition_problem.h>
 
 #include <array>
 
 namespace locograph {
+
+void TransitionOptions::validate() const {
+  check_option(max_iterations >= 1, "max_iterations", "1 or more");
+  check_option(patience >= 1, "patience", "1 or more");
+  check_option(restarts >= 0, "restarts", "0 or more");
+  check_option(joint_margin_rad >= 0.0, "joint_margin_rad", "0 or more");
+  check_option(self_margin_m >= 0.0, "self_margin_m", "0 or more");
+  check_option(surface_margin_m >= 0.0, "surface_margin_m", "0 or more");
+  check_option(obstacle_margin_m >= 0.0, "obstacle_margin_m", "0 or more");
+  check_option(balance_margin_m >= 0.0, "balance_margin_m", "0 or more");
+  check_option(torque_margin >= 0.0 && torque_margin < 1.0, "torque_margin", "a part in [0, 1)");
+  termination.validate();
+}
 
 const std::string& transition_failure_name(TransitionFailure failure) {
   static const std::array<std::string, 8> names = {"none",           "contact", "joint limit",

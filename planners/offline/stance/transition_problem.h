@@ -5,6 +5,7 @@
 ///                                     .start = q, .preferred = home};
 ///     const std::string& name = transition_failure_name(TransitionFailure::kBalance);
 
+#include <locograph/common/termination.h>
 #include <locograph/planners/balance/balance_region.h>
 #include <locograph/planners/balance/torque_programme.h>
 
@@ -25,7 +26,10 @@ struct TransitionOptions {
   double obstacle_margin_m = 0.01;
   double balance_margin_m = 4e-3;  ///< of the centre of mass to the sides of the polygon
   double torque_margin = 0.03;     ///< the part of efforts left unused
+  Termination termination = {};
 
+  /// Throws Error naming the option that is out of range.
+  void validate() const;
   bool operator==(const TransitionOptions&) const = default;
 };
 

@@ -138,6 +138,7 @@ struct TransitionSolver::Parts {
     Eigen::VectorXd trial;
     for (int i = 0; i < options.max_iterations; ++i) {
       if (holds()) return true;
+      if (options.termination.ended(iterations)) return false;
       ++iterations;
       find_step(q, preferred, damping);
       double share = share_within(radius);
@@ -256,8 +257,11 @@ TransitionSolver::TransitionSolver(TransitionSolver&&) noexcept = default;
 
 TransitionResult TransitionSolver::solve(const TransitionProblem& problem,
                                          const TransitionOptions& options) {
+  options.validate();
+  const Stopwatch watch;
   TransitionResult result;
   if (problem.balance != nullptr && problem.balance->empty()) {
+    result.status = PlannerStatus::kInfeasible;
     result.configuration = problem.start;
     result.failure = TransitionFailure::kBalance;
     result.reason = "the contacts balance the robot nowhere";
@@ -268,23 +272,32 @@ TransitionResult TransitionSolver::solve(const TransitionProblem& problem,
   std::mt19937_64 random(problem.seed);
   Eigen::VectorXd q = problem.start;
   double least = std::numeric_limits<double>::infinity();
-  for (;; ++result.restarts) {
+  int &iterations = result.statistics.iterations, &restarts = result.statistics.restarts;
+  for (;; ++restarts) {
     double best = 0.0;
-    result.found = parts.attempt(q, problem.preferred, options, result.iterations, best);
-    if (result.found || best < least) {
+    const bool found = parts.attempt(q, problem.preferred, options, iterations, best);
+    if (found) result.status = PlannerStatus::kSolved;
+    if (found || best < least) {
       least = best;
       result.configuration = q;
-      if (!result.found) parts.explain(result);
+      if (!found) parts.explain(result);
     }
-    if (result.found || result.restarts >= options.restarts) break;
-    q = parts.perturbed(problem.start, std::min(1.0, 0.25 * (result.restarts + 1)), random);
+    if (found) break;
+    if (const auto end = end_by(options.termination, iterations)) {
+      result.status = end->status;
+      result.reason += "; " + end->reason;
+      break;
+    }
+    if (restarts >= options.restarts) break;
+    q = parts.perturbed(problem.start, std::min(1.0, 0.25 * (restarts + 1)), random);
   }
-  if (result.found) {
+  if (result.success()) {
     const Eigen::VectorXd closed = Eigen::VectorXd::Zero(parts.rows.closure().size());
     parts.correct(result.configuration, closed, kExactlyClosed, 4);
     result.failure = TransitionFailure::kNone;
-    result.reason.clear();
+    result.reason = "found";
   }
+  result.statistics.total_s = watch.seconds();
   return result;
 }
 

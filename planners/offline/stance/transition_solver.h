@@ -6,7 +6,7 @@
 ///     const TransitionProblem problem{.closed = larger.contacts, .balance = &region_of_smaller,
 ///                                     .start = q, .preferred = home};
 ///     const TransitionResult result = solver.solve(problem);
-///     if (!result.found) std::cerr << result.reason;
+///     if (!result.success()) std::cerr << result.reason;
 ///
 /// Wrenches are no unknowns: what a stance can balance is a polygon for the centre of mass
 /// (balance_region.h), and what it asks of the joints one number with a gradient
@@ -24,24 +24,28 @@
 /// The result depends on the arguments alone, not on what was solved before. One solver for each
 /// thread; copies share what does not change.
 
+#include <locograph/planners/answer/planner_answer.h>
 #include <locograph/planners/offline/stance/transition_problem.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
 #include <locograph/world/world.h>
 
 #include <Eigen/Core>
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace locograph {
 
-struct TransitionResult {
-  bool found = false;
+struct TransitionStatistics : PlannerStatistics {  // iterations: steps of all attempts
+  int restarts = 0;
+};
+
+/// Infeasible where the contacts balance the robot nowhere. The reason of a failure: link, joint or
+/// contact and amount.
+struct TransitionResult : PlannerAnswer {
   Eigen::VectorXd configuration;  ///< the posture, or the best attempt
-  int iterations = 0, restarts = 0;
+  TransitionStatistics statistics;
   TransitionFailure failure = TransitionFailure::kNone;
   double amount = 0.0;  ///< of that violation, m or rad
-  std::string reason;   ///< in words: link, joint or contact and amount
 };
 
 class TransitionSolver {
@@ -53,7 +57,7 @@ class TransitionSolver {
   TransitionSolver(const TransitionSolver& other);
   TransitionSolver(TransitionSolver&&) noexcept;
 
-  /// Throws Error for contacts that are not sound.
+  /// Throws Error for contacts that are not sound and for options out of range.
   TransitionResult solve(const TransitionProblem& problem, const TransitionOptions& options = {});
 
  private:

@@ -48,7 +48,7 @@ TransitionResult TaskSolver::solve(const TransitionTask& task) {
   problem.preferred = task.preferred.size() > 0 ? task.preferred : task_.start_configuration;
   problem.seed = task.seed;
   TransitionResult result = solver_.solve(problem, task.options);
-  if (result.found && task_.check.enforce_torque_limits) ease_torques(task, problem, result);
+  if (result.success() && task_.check.enforce_torque_limits) ease_torques(task, problem, result);
   return result;
 }
 

@@ -118,8 +118,8 @@ class BalanceRows::Work {
 
   TimingRowsAt along(const PathSpline& path, const TimingLimits& limits) {
     // Rows only make a motion slower, so that its speeds are bounds.
-    const std::optional<SpeedProfile> fastest = fastest_profile(path, limits, {1, 4});
-    if (!fastest) return {};
+    const FastestProfile fastest = fastest_profile(path, limits, {1, 4});
+    if (!fastest.success()) return {};
     if (!joints_.empty()) halfspaces_.clear();  // not tight on another path
     std::vector<double> places = places_on(path);
     std::vector<Asked> asked;
@@ -130,7 +130,7 @@ class BalanceRows::Work {
       asked.push_back(ask(point));
       if (s < path.length() * looks / options_.looks) continue;
       ++looks;
-      SpeedPolygon allowed = allowed_by(limits, point, *fastest);
+      SpeedPolygon allowed = allowed_by(limits, point, fastest.profile);
       find_halfspaces(asked.back(), allowed);
     }
     return interpolated(asked);

@@ -39,6 +39,12 @@ struct Excess {
 
 }  // namespace
 
+void TimingOptions::validate() const {
+  GridSize{intervals, intervals_per_step}.validate();
+  check_option(smoothing_s >= 0.0 && !std::isinf(smoothing_s), "smoothing_s", "0 or more");
+  termination.validate();
+}
+
 PathSpline timing_path(const Robot& robot, std::vector<Eigen::VectorXd> waypoints,
                        const TimingLimits& limits, double max_deviation) {
   return {robot, std::move(waypoints), path_scale(robot, limits), max_deviation};
@@ -53,11 +59,14 @@ PathTiming::PathTiming(const Robot& robot, std::vector<Eigen::VectorXd> waypoint
 PathTiming::PathTiming(PathSpline path, const TimingLimits& limits, const TimingOptions& options,
                        const TimingRowsAt& rows)
     : path_(std::move(path)), smoothing_s_(options.smoothing_s) {
-  check_option(smoothing_s_ >= 0.0 && !std::isinf(smoothing_s_), "smoothing_s", "0 or more");
-  std::optional<SpeedProfile> profile =
-      fastest_profile(path_, limits, {options.intervals, options.intervals_per_step}, rows);
-  if (!profile) return;
-  profile_ = std::move(*profile);
+  options.validate();
+  const Stopwatch watch;
+  FastestProfile fastest = fastest_profile(
+      path_, limits, {options.intervals, options.intervals_per_step}, rows, options.termination);
+  answer_ = fastest;
+  statistics_ = fastest.statistics;
+  if (!answer_.success()) return;
+  profile_ = std::move(fastest.profile);
   time_s_.assign(1, 0.0);
   integral_.assign(1, 0.0L);
   for (std::size_t i = 0; i + 1 < profile_.s.size(); ++i) {
@@ -69,7 +78,12 @@ PathTiming::PathTiming(PathSpline path, const TimingLimits& limits, const Timing
     integral_.push_back(integral_.back() + time * profile_.s[i] +
                         time * time * (2.0L * from + to) / 6.0L);
   }
-  feasible_ = smoothing_s_ == 0.0 || slow_down(limits, rows);
+  if (smoothing_s_ != 0.0 && !slow_down(limits, rows)) {
+    answer_ = {PlannerStatus::kInfeasible, "rows leave no motion that is smoothed over " +
+                                               std::to_string(smoothing_s_) +
+                                               " s (smooth over less, or loosen them)"};
+  }
+  statistics_.total_s = watch.seconds();
 }
 
 std::size_t PathTiming::interval(double time) const {
@@ -194,7 +208,7 @@ bool PathTiming::slow_down(const TimingLimits& limits, const TimingRowsAt& rows)
 }
 
 double PathTiming::duration_s() const {
-  if (!feasible_) throw Error("a path that cannot be timed", "feasible() to be true");
+  if (!answer_.success()) throw Error("a path that is not timed: " + answer_.reason, "success");
   return slower_ * (time_s_.back() + smoothing_s_);
 }
 

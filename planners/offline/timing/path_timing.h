@@ -3,7 +3,7 @@
 ///
 ///     TimingLimits limits = timing_limits(robot, task.check);
 ///     PathTiming timing(robot, waypoints, limits, {.smoothing_s = 0.05});
-///     if (timing.feasible()) TimedPath motion = timing.sampled(0.01);
+///     if (timing.answer().success()) TimedPath motion = timing.sampled(0.01);
 ///
 /// The path is path_spline.h's, its speeds are speed_profile.h's. Limits hold at every time, so
 /// they hold for the judge, who sees configurations only: the velocity of a step and the
@@ -29,6 +29,10 @@ struct TimingOptions {
   /// From the straight way between waypoints, see path_spline.h.
   double max_deviation = std::numeric_limits<double>::infinity();
   double smoothing_s = 0.0;  ///< T; 0: accelerations jump
+  Termination termination = {};
+
+  /// Throws Error naming the option that is out of range.
+  void validate() const;
 };
 
 struct TimedPath {
@@ -56,9 +60,10 @@ class PathTiming {
   PathTiming(PathSpline path, const TimingLimits& limits, const TimingOptions& options = {},
              const TimingRowsAt& rows = {});
 
-  /// False when the rows leave no motion from rest to rest; limits alone always leave one.
-  bool feasible() const { return feasible_; }
-  /// The rest throws Error when not feasible.
+  /// Infeasible when the rows leave no motion from rest to rest; limits alone always leave one.
+  const PlannerAnswer& answer() const { return answer_; }
+  const PlannerStatistics& statistics() const { return statistics_; }  ///< as of FastestProfile
+  /// The rest throws Error without success.
   double duration_s() const;
   /// time_s is clamped to [0, duration_s()].
   TimedPoint at(double time_s) const;
@@ -84,7 +89,8 @@ class PathTiming {
   std::vector<double> time_s_;         // of the grid points
   std::vector<long double> integral_;  // of s, up to there
   double smoothing_s_ = 0.0, slower_ = 1.0;
-  bool feasible_ = false;
+  PlannerAnswer answer_;
+  PlannerStatistics statistics_;
 };
 
 }  // namespace locograph

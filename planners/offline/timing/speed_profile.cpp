@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace locograph {
 namespace {
@@ -33,35 +34,48 @@ Value middle(const Value& start, const Value& half_way, const Value& end) {
 class Grid {
  public:
   Grid(const PathSpline& path, const TimingLimits& limits, const GridSize& size,
-       const TimingRowsAt& rows)
-      : limits_(limits) {
+       const TimingRowsAt& rows, const Termination& termination)
+      : limits_(limits), termination_(termination) {
     place(path, size);
-    look(path, rows);
-    cap();
+    complete_ = look(path, rows);
+    if (complete_) cap();
   }
 
-  std::optional<SpeedProfile> fastest() const {
+  FastestProfile fastest() const {
+    if (!complete_) return {end_by(termination_).value()};
     const std::size_t n = s_.size() - 1;
+    FastestProfile result;
+    int& done = result.statistics.iterations;
     std::vector<SpeedPolygon> polygons;
     polygons.reserve(n);
     std::pair<double, double> reached{0.0, 0.0};
-    for (std::size_t i = n; i-- > 0;) {
+    for (std::size_t i = n; i-- > 0; ++done) {
+      if (const auto end = end_by(termination_, done)) return {*end, {}, result.statistics};
       SpeedPolygon polygon(0.0, i == 0 ? 0.0 : cap_[i], reached.first, reached.second);
       clip(polygon, i);
-      if (polygon.empty()) return std::nullopt;
+      if (polygon.empty()) return {no_motion_at(i), {}, result.statistics};
       reached = polygon.here();
       polygons.push_back(std::move(polygon));
     }
     SpeedProfile profile{s_, {0.0}};
     for (std::size_t i = 0; i < n; ++i) {
       const double next = polygons[n - 1 - i].most_next(profile.squared.back());
-      if (i + 1 < n && !(next > 0.0)) return std::nullopt;
+      if (i + 1 < n && !(next > 0.0)) return {no_motion_at(i), {}, result.statistics};
       profile.squared.push_back(i + 1 < n ? next : 0.0);
     }
-    return profile;
+    result.status = PlannerStatus::kSolved;
+    result.reason = "timed";
+    result.profile = std::move(profile);
+    return result;
   }
 
  private:
+  PlannerAnswer no_motion_at(std::size_t interval) const {
+    return {PlannerStatus::kInfeasible,
+            "rows leave no motion from rest to rest at s = " + std::to_string(s_[interval]) +
+                " of " + std::to_string(s_.back()) + " (loosen them, or change the path there)"};
+  }
+
   void place(const PathSpline& path, const GridSize& size) {
     const std::vector<double>& knots = path.knots();
     for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
@@ -74,13 +88,14 @@ class Grid {
     s_.push_back(path.length());
   }
 
-  /// Columns 2 i are grid points, those in between half-way.
-  void look(const PathSpline& path, const TimingRowsAt& rows) {
+  /// Columns 2 i are grid points, those in between half-way. False: ended before.
+  bool look(const PathSpline& path, const TimingRowsAt& rows) {
     const Eigen::Index columns = 2 * static_cast<Eigen::Index>(s_.size()) - 1;
     first_.resize(path.robot().tangent_size(), columns);
     second_.resize(path.robot().tangent_size(), columns);
     PathPoint point;
     for (Eigen::Index i = 0; i < columns; ++i) {
+      if (termination_.ended()) return false;
       const auto grid = static_cast<std::size_t>(i / 2);
       path.at(i % 2 == 0 ? s_[grid] : 0.5 * (s_[grid] + s_[grid + 1]), point);
       first_.col(i) = point.first;
@@ -103,6 +118,7 @@ class Grid {
       b_.col(i) = found.b;
       c_.col(i) = found.c;
     }
+    return true;
   }
 
   /// Limits of velocity, as those of x at grid points: x is linear between two of them, q' within
@@ -201,6 +217,8 @@ class Grid {
   }
 
   const TimingLimits& limits_;
+  const Termination& termination_;
+  bool complete_ = false;
   std::vector<double> s_, cap_;  // cap_: of x
   Eigen::MatrixXd first_, second_, a_, b_, c_;
 };
@@ -237,13 +255,22 @@ TimingLimits timing_limits(const Robot& robot, const CheckOptions& limits) {
   return result;
 }
 
-std::optional<SpeedProfile> fastest_profile(const PathSpline& path, const TimingLimits& limits,
-                                            const GridSize& size, const TimingRowsAt& rows) {
-  check_limits(path.robot(), limits);
-  for (const int intervals : {size.intervals, size.intervals_per_step}) {
-    if (intervals < 1) throw Error(std::to_string(intervals) + " intervals", "1 or more");
+void GridSize::validate() const {
+  for (const int count : {intervals, intervals_per_step}) {
+    if (count < 1) throw Error(std::to_string(count) + " intervals", "1 or more");
   }
-  return Grid(path, limits, size, rows).fastest();
+}
+
+FastestProfile fastest_profile(const PathSpline& path, const TimingLimits& limits,
+                               const GridSize& size, const TimingRowsAt& rows,
+                               const Termination& termination) {
+  const Stopwatch watch;
+  check_limits(path.robot(), limits);
+  size.validate();
+  termination.validate();
+  FastestProfile result = Grid(path, limits, size, rows, termination).fastest();
+  result.statistics.total_s = watch.seconds();
+  return result;
 }
 
 }  // namespace locograph

@@ -2,7 +2,8 @@
 /// The fastest speeds along a path: time-optimal path parametrisation by reachability analysis.
 ///
 ///     TimingLimits limits = timing_limits(robot, task.check);
-///     std::optional<SpeedProfile> profile = fastest_profile(path, limits);
+///     const FastestProfile fastest = fastest_profile(path, limits);
+///     if (!fastest.success()) std::cerr << fastest.reason;
 ///
 /// Pham & Pham 2018, "A new approach to time-optimal path parameterization based on reachability
 /// analysis" (TOPP-RA). With x = (ds/dt)^2 and u = d^2s/dt^2, tangent velocities are q' sqrt(x) and
@@ -17,10 +18,10 @@
 /// which are no quadratics, this holds but for terms of third order in the step of the grid.
 
 #include <locograph/check/check_report.h>
+#include <locograph/planners/answer/planner_answer.h>
 #include <locograph/planners/offline/timing/path_spline.h>
 
 #include <functional>
-#include <optional>
 #include <vector>
 
 namespace locograph {
@@ -52,14 +53,22 @@ struct SpeedProfile {
 /// for each 0.02 rad. Where waypoints are dense, a few per step suffice.
 struct GridSize {
   int intervals = 1000, intervals_per_step = 16;
+
+  /// Throws Error naming the size that makes no sense.
+  void validate() const;
 };
 
-/// Nothing when the rows leave no way to move from rest to rest. Throws Error for limits and sizes
-/// that make no sense, for a part of the path where nothing that moves has a limit, and for rows
-/// that do not match.
-std::optional<SpeedProfile> fastest_profile(const PathSpline& path, const TimingLimits& limits,
-                                            const GridSize& size = {},
-                                            const TimingRowsAt& rows = {});
+struct FastestProfile : PlannerAnswer {
+  SpeedProfile profile = {};          ///< of success
+  PlannerStatistics statistics = {};  ///< iterations: intervals, from the end of the path
+};
+
+/// Infeasible when the rows leave no way to move from rest to rest; limits alone always leave one.
+/// Throws Error for limits and sizes that make no sense, for a part of the path where nothing that
+/// moves has a limit, and for rows that do not match.
+FastestProfile fastest_profile(const PathSpline& path, const TimingLimits& limits,
+                               const GridSize& size = {}, const TimingRowsAt& rows = {},
+                               const Termination& termination = {});
 
 /// Throws Error naming the limit that makes no sense.
 void check_limits(const Robot& robot, const TimingLimits& limits);

@@ -73,8 +73,8 @@ TEST(LocalPlanner, RestoresTheWeightsItRaised) {
   // Nowhere to go: violated whatever is tried.
   planner.show(seeing({box("rock", {0.5, 0.0, 0.5}, {3.0, 3.0, 1.0})}));
   const CycleReport report = planner.cycle(0);
-  EXPECT_FALSE(report.feasible);
-  EXPECT_GT(report.rounds, 0);
+  EXPECT_FALSE(report.success());
+  EXPECT_GT(report.statistics.rounds, 0);
   const Graph fresh = drive();
   ASSERT_EQ(graph.edge_pools().size(), fresh.edge_pools().size());
   for (std::size_t p = 0; p < graph.edge_pools().size(); ++p) {
@@ -141,7 +141,7 @@ TEST(LocalPlanner, RaisesAConstraintOfAPlugInUntilItHolds) {
   int raised = 0;
   for (int executed = 0; executed + 1 < planner.plan_size(); ++executed) {
     const CycleReport report = planner.cycle(executed);
-    raised += report.rounds > 0 ? 1 : 0;
+    raised += report.statistics.rounds > 0 ? 1 : 0;
     if (!report.next_feasible) break;
     EXPECT_LE(configurations(graph)[executed + 1][0], 1.0 + EdgeFence::kTolerance + 1e-9);
   }
@@ -157,9 +157,9 @@ TEST(LocalPlanner, SeesAConstraintThatAFixedConfigurationViolates) {
   const Eigen::VectorXd before = configurations(graph)[45];
   LocalPlanner planner(graph, {});
   CycleReport report = planner.cycle(0);
-  EXPECT_TRUE(report.feasible) << "it is not in the window yet";
+  EXPECT_TRUE(report.success()) << "it is not in the window yet";
   for (int executed = 1; executed <= 30; ++executed) report = planner.cycle(executed);
-  EXPECT_FALSE(report.feasible);
+  EXPECT_FALSE(report.success());
   EXPECT_EQ(configurations(graph)[45], before);
 }
 
@@ -185,16 +185,18 @@ TEST(LocalPlanner, SeesAccelerationsAcrossTheSeam) {
 TEST(LocalPlanner, NeverGivesUpAFeasibleWindowForADeadline) {
   for (const double deadline_s : {1e-6, 2e-4, 1e-3, 5e-3}) {
     Graph graph = drive();
-    LocalPlannerOptions options;
-    options.deadline_s = deadline_s;
-    LocalPlanner planner(graph, options);
+    LocalPlanner planner(graph, LocalPlannerOptions());
+    const auto in_time = [deadline_s] {
+      return Termination{.deadline = Deadline::after(deadline_s)};
+    };
     for (int executed = 0; executed < 10; ++executed) {
-      ASSERT_TRUE(planner.cycle(executed).feasible) << deadline_s << " s, cycle " << executed;
+      ASSERT_TRUE(planner.cycle(executed, in_time()).success())
+          << deadline_s << " s, cycle " << executed;
     }
     planner.show(seeing({box_ahead()}));
     int feasible_steps = 0, executed = 10;
     for (; executed + 1 < planner.plan_size(); ++executed) {
-      const CycleReport report = planner.cycle(executed);
+      const CycleReport report = planner.cycle(executed, in_time());
       EXPECT_GE(report.feasible_steps, feasible_steps - 1) << deadline_s << " s, " << executed;
       feasible_steps = report.feasible_steps;
       if (!report.next_feasible) break;
@@ -205,13 +207,11 @@ TEST(LocalPlanner, NeverGivesUpAFeasibleWindowForADeadline) {
 
 TEST(LocalPlanner, MakesTheSamePlanWithADeadlineThatIsGenerous) {
   Graph without = drive(), with = drive();
-  LocalPlannerOptions options;
-  LocalPlanner free(without, options);
-  options.deadline_s = 1e4;
-  LocalPlanner bound(with, options);
-  for (LocalPlanner* planner : {&free, &bound}) {
-    planner->show(seeing({box_ahead()}));
-    for (int executed = 0; executed < 25; ++executed) planner->cycle(executed);
+  LocalPlanner free(without, LocalPlannerOptions()), bound(with, LocalPlannerOptions());
+  for (LocalPlanner* planner : {&free, &bound}) planner->show(seeing({box_ahead()}));
+  for (int executed = 0; executed < 25; ++executed) {
+    free.cycle(executed);
+    bound.cycle(executed, {.deadline = Deadline::after(1e4)});
   }
   EXPECT_EQ(write_graph_text(without), write_graph_text(with));
 }

@@ -37,7 +37,7 @@ TEST(LocalPlannerOnThreads, IsShownNewerWorldsWhileItPlans) {
   });
   double before_s = 1.0;
   for (int executed = 0; executed < kCycles; ++executed) {
-    EXPECT_TRUE(planner.cycle(executed).feasible) << executed;
+    EXPECT_TRUE(planner.cycle(executed).success()) << executed;
     const double seen_s = planner.online_plan().world().stamp_s();
     EXPECT_GE(seen_s, before_s) << "a cycle never goes back to an older world";
     before_s = seen_s;
@@ -53,7 +53,7 @@ TEST(LocalPlannerOnThreads, EndsACycleInTheWorldThatItBeganWith) {
   struct ShowsOnTheWay : Proposal {
     LocalPlanner** planner;
     double* seen_s;
-    Answer search(const OnlinePlan& plan, const Window&, const Deadline&,
+    Answer search(const OnlinePlan& plan, const Window&, const Termination&,
                   std::vector<Eigen::VectorXd>&) override {
       std::thread([this] { (*planner)->show(cart_seen_at(2.0)); }).join();
       *seen_s = plan.world().stamp_s();

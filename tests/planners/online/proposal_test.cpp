@@ -21,7 +21,7 @@ class ScriptedProposal : public Proposal {
  public:
   explicit ScriptedProposal(Script& script) : script_(script) {}
 
-  Answer search(const OnlinePlan&, const Window& window, const Deadline&,
+  Answer search(const OnlinePlan&, const Window& window, const Termination&,
                 std::vector<Eigen::VectorXd>& candidate) override {
     const std::size_t call = script_.asked.size();
     script_.asked.push_back(window.executed());
@@ -109,7 +109,7 @@ TEST(Proposals, AreAskedAgainAfterAPauseWhereTheyDidNotHelp) {
   LocalPlanner planner(graph, options);
   for (int executed = 0; executed <= 10; ++executed) {
     const CycleReport report = planner.cycle(executed);
-    EXPECT_TRUE(report.feasible) << executed;
+    EXPECT_TRUE(report.success()) << executed;
     EXPECT_EQ(report.detour, executed % 5 == 0) << executed;
   }
   EXPECT_EQ(script.asked, (Indices{0, 5, 10}));
@@ -163,7 +163,7 @@ TEST(Proposals, ThatOnlyATestRegistersHaveTheirBetterWindowTaken) {
   EXPECT_EQ(script.asked, Indices{0});
   EXPECT_TRUE(report.detour);
   EXPECT_GE(report.feasible_steps, past_the_box.feasible_steps);
-  EXPECT_TRUE(report.feasible || !past_the_box.feasible);
+  EXPECT_TRUE(report.success() || !past_the_box.success());
   EXPECT_GT(configurations(graph)[farthest][1] / way[farthest][1], 0.5) << "the same way past it";
 }
 

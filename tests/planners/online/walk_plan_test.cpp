@@ -56,7 +56,7 @@ TEST(WalkPlan, LeavesAPlanInAnEmptyWorldAsItIs) {
     for (const double curvature : {0.0, 0.3}) {
       Graph graph = planned_drive(centauro_drive(4.0, curvature));
       const WalkReport report = walk_in(graph, surroundings);
-      EXPECT_TRUE(report.success) << report.reason;
+      EXPECT_TRUE(report.success()) << report.reason;
       EXPECT_EQ(report.cycles.size(), 49u);
       EXPECT_EQ(report.feasible_cycles, 49);
       EXPECT_EQ(report.dof, 30);
@@ -69,7 +69,7 @@ void expect_gets_past(const Surroundings& surroundings) {
   Graph graph = drive();
   EXPECT_TRUE(violated(surroundings.check(graph)).contains("obstacle_distance"));
   const WalkReport report = walk_in(graph, surroundings);
-  EXPECT_TRUE(report.success) << report.reason;
+  EXPECT_TRUE(report.success()) << report.reason;
   EXPECT_EQ(report.configurations, 50);
   const CheckReport check = surroundings.check(graph);
   expect_feasible(check);
@@ -94,7 +94,7 @@ TEST(WalkPlan, DrivesAroundABoxThatShowsUpOnTheWay) {
   Graph graph = drive();
   const WalkReport report =
       walk_plan(graph, [&world](int executed) { return executed == 3 ? world : nullptr; }, {});
-  EXPECT_TRUE(report.success) << report.reason;
+  EXPECT_TRUE(report.success()) << report.reason;
   expect_feasible(surroundings.check(graph));
 }
 
@@ -110,13 +110,13 @@ TEST(WalkPlan, NeverCallsAStepFeasibleThatMeetsACartOnItsWay) {
   const WalkReport report = walk_in(graph, surroundings);
   expect_feasible(surroundings.check(graph));
   EXPECT_EQ(configurations(graph).size(), static_cast<std::size_t>(report.configurations));
-  EXPECT_EQ(report.success, report.configurations == 50) << report.reason;
+  EXPECT_EQ(report.success(), report.configurations == 50) << report.reason;
 }
 
 void expect_stops(const Surroundings& surroundings) {
   Graph graph = drive();
   const WalkReport report = walk_in(graph, surroundings);
-  EXPECT_FALSE(report.success);
+  EXPECT_FALSE(report.success());
   EXPECT_TRUE(report.reason.find("obstacle_distance") != std::string::npos ||
               report.reason.find("blocked") != std::string::npos)
       << report.reason;
@@ -147,14 +147,14 @@ TEST(WalkPlan, RemovesWhatCannotBeExecutedWhenThereIsNowhereToGo) {
   Graph graph = drive();
   const WalkReport report =
       walk_plan(graph, [&world](int executed) { return executed == 12 ? world : nullptr; }, {});
-  EXPECT_FALSE(report.success);
+  EXPECT_EQ(report.status, PlannerStatus::kNotFound);
   EXPECT_EQ(report.reason.find("stopped at configuration 12: "), 0u) << report.reason;
   EXPECT_NE(report.reason.find("(rock)"), std::string::npos) << report.reason;
   EXPECT_NE(report.reason.find("after 12 of 49 steps"), std::string::npos) << report.reason;
   EXPECT_NEAR(report.goal_distance_m, 4.0 * 37 / 49, 1e-2);
   EXPECT_EQ(report.configurations, 13);
   EXPECT_EQ(configurations(graph).size(), 13u);
-  EXPECT_FALSE(report.cycles.back().feasible);
+  EXPECT_FALSE(report.cycles.back().success());
   expect_feasible(check_plan(graph));
 }
 
@@ -170,11 +170,11 @@ TEST_P(WalkWithHorizon, NeverHandsOutAnInfeasiblePlan) {
   for (const CycleReport& cycle : report.cycles) {
     EXPECT_EQ(cycle.window, std::min(GetParam(), 49 - cycle.executed));
   }
-  if (report.success) {
+  if (report.success()) {
     EXPECT_EQ(report.configurations, 50);
     EXPECT_NEAR(configurations(graph).back()[0], 4.0, 0.3);
   }
-  EXPECT_TRUE(report.success || GetParam() < 20) << report.reason;
+  EXPECT_TRUE(report.success() || GetParam() < 20) << report.reason;
 }
 
 INSTANTIATE_TEST_SUITE_P(WalkPlan, WalkWithHorizon, testing::Values(1, 5, 20, 200));
@@ -184,9 +184,9 @@ TEST(WalkPlan, RefusesAHorizonOfNothingAndANegativeDeadline) {
   EXPECT_THROW(walk_in(graph, {}, 0), Error);
   EXPECT_THROW(walk_in(graph, {}, -5), Error);
   WalkOptions options;
-  options.planner.deadline_s = -0.001;
+  options.cycle_deadline_s = -0.001;
   EXPECT_THROW(walk_plan(graph, {}, options), Error);
-  options.planner.deadline_s = kNaN;
+  options.cycle_deadline_s = kNaN;
   EXPECT_THROW(walk_plan(graph, {}, options), Error);
   expect_same(graph, drive(), 0.0);
 }
@@ -194,13 +194,17 @@ TEST(WalkPlan, RefusesAHorizonOfNothingAndANegativeDeadline) {
 TEST(WalkPlan, EndsWithWhatItHasWhenItIsInterrupted) {
   std::atomic<bool> stop{false};
   WalkOptions options;
-  options.stop = &stop;
+  options.termination.stop = &stop;
   options.on_cycle = [&stop](const CycleReport& cycle) { stop = cycle.executed == 4; };
   Graph graph = drive();
   EXPECT_FALSE(plan_of(graph).incomplete);
   const WalkReport report = walk_plan(graph, {}, options);
-  EXPECT_FALSE(report.success);
-  EXPECT_EQ(report.reason.find("stopped at configuration 5: interrupted; after 5 of 49 steps"), 0u)
+  EXPECT_EQ(report.status, PlannerStatus::kStopped);
+  EXPECT_EQ(report.statistics.iterations, 5);
+  EXPECT_EQ(report.reason.find(
+                "stopped at configuration 5: interrupted (start again to go on); after 5 of 49 "
+                "steps"),
+            0u)
       << report.reason;
   EXPECT_EQ(report.configurations, 6);
   EXPECT_EQ(configurations(graph).size(), 6u);
@@ -216,7 +220,7 @@ TEST(WalkPlan, IsNoSuccessWhereItEndsTooFarFromTheGoal) {
   Graph graph = drive();
   const WalkReport report = walk_plan(
       graph, [&world](int executed) { return executed == 0 ? world : nullptr; }, options);
-  EXPECT_FALSE(report.success);
+  EXPECT_FALSE(report.success());
   EXPECT_EQ(report.configurations, 50);
   EXPECT_NE(report.reason.find("from the goal"), std::string::npos) << report.reason;
   options.goal_tolerance_m = -1.0;

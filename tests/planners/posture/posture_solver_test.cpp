@@ -58,7 +58,7 @@ TEST(PostureSolver, AHumanoidStandsOnItsSoles) {
   const PostureSolver& solver = solver_of("coman_plus");
   const PostureProblem problem = coman_standing();
   const PostureResult result = solver.solve(problem);
-  ASSERT_TRUE(result.success) << result.reason;
+  ASSERT_TRUE(result.success()) << result.reason;
   EXPECT_TRUE(result.report.feasible);
   const Robot& robot = solver.robot();
   RobotState state(robot);
@@ -89,7 +89,7 @@ void expect_saved_is_judged_alike(const PostureSolver& solver, const PostureProb
   const Plan plan = plan_of(read);
   const Judging judging = judging_of(read, plan, {.data_folder = folder.path()});
   const CheckReport report = judged(read, plan, judging);
-  EXPECT_EQ(report.feasible, result.success) << violation_text(report.worst());
+  EXPECT_EQ(report.feasible, result.success()) << violation_text(report.worst());
   ASSERT_EQ(report.violations.size(), result.report.violations.size() + kOfWholePlans);
   for (std::size_t i = 0; i < result.report.violations.size(); ++i) {
     if (!result.report.violations[i].judged) continue;
@@ -118,8 +118,8 @@ TEST_P(ReachableSets, ArePosturesThatTheCheckAccepts) {
     ++known;
     const PostureResult result =
         solver.solve({set.stance, placed_at(robot.model(), robot.home, set.stance)});
-    solved += result.success;
-    EXPECT_EQ(result.success,
+    solved += result.success();
+    EXPECT_EQ(result.success(),
               judge.check(result.configuration, set.stance, posture_check()).feasible)
         << result.reason;
     expect_saved_is_judged_alike(solver, {set.stance, result.configuration}, result);
@@ -143,9 +143,9 @@ TEST(PostureSolver, TakesTheSameStepsForTheSameSeed) {
     options.max_restarts = 2;
     const PostureResult once = solver_of("coman_plus").solve(problem, options);
     const PostureResult again = PostureSolver(robot.robot).solve(problem, options);
-    EXPECT_EQ(once.success, again.success);
-    EXPECT_EQ(once.restarts, again.restarts);
-    EXPECT_EQ(once.iterations, again.iterations);
+    EXPECT_EQ(once.success(), again.success());
+    EXPECT_EQ(once.statistics.restarts, again.statistics.restarts);
+    EXPECT_EQ(once.statistics.iterations, again.statistics.iterations);
     EXPECT_LT((once.configuration - again.configuration).cwiseAbs().maxCoeff(), 1e-9);
   }
 }
@@ -160,8 +160,8 @@ TEST(PostureSolver, SaysWhichContactIsOutOfReachAndByHowMuch) {
   PostureOptions options;
   options.max_restarts = 2;
   const PostureResult result = solver_of("coman_plus").solve(problem, options);
-  EXPECT_FALSE(result.success);
-  EXPECT_EQ(result.restarts, 2);
+  EXPECT_FALSE(result.success());
+  EXPECT_EQ(result.statistics.restarts, 2);
   const Violation& worst = result.report.worst();
   EXPECT_EQ(worst.constraint, "contact_position");
   EXPECT_GT(worst.worst, 1.0);
@@ -173,10 +173,10 @@ TEST(PostureSolver, EndsWhenItsTimeIsUp) {
   PostureProblem problem = coman_standing();
   problem.preferred[2] += 0.5;
   PostureOptions options;
-  options.deadline = Deadline::after(0.0);
+  options.termination.deadline = Deadline::after(0.0);
   const PostureResult result = solver_of("coman_plus").solve(problem, options);
-  EXPECT_FALSE(result.success);
-  EXPECT_EQ(result.restarts, 0);
+  EXPECT_FALSE(result.success());
+  EXPECT_EQ(result.statistics.restarts, 0);
   EXPECT_NE(result.reason.find("time allowed is used up"), std::string::npos) << result.reason;
 }
 
@@ -191,7 +191,7 @@ TEST(PostureSolver, ReportsBalanceThatNoPostureHas) {
   PostureOptions options;
   options.max_restarts = 1;
   const PostureResult result = solver_of("coman_plus").solve(problem, options);
-  EXPECT_FALSE(result.success);
+  EXPECT_FALSE(result.success());
   EXPECT_FALSE(result.report.feasible);
 }
 
@@ -204,7 +204,7 @@ TEST(PostureSolver, AContactThatBearsNoLoadIsClosedAllTheSame) {
   hand.bears_load = false;
   problem.stance.contacts.push_back(hand);
   const PostureResult result = solver_of("coman_plus").solve(problem);
-  ASSERT_TRUE(result.success) << result.reason;
+  ASSERT_TRUE(result.success()) << result.reason;
   EXPECT_EQ(result.report.balance.value().wrenches.size(), 3U);
   EXPECT_TRUE(result.report.balance->wrenches[2].isZero(0.0));
   EXPECT_LT(result.report.constraint("contact_position").worst, 1e-4);
@@ -229,7 +229,7 @@ TEST(PostureSolver, KeepsClearOfObstacles) {
                   .constraint("obstacle_distance")
                   .violated);
   const PostureResult result = solver.solve(problem);
-  ASSERT_TRUE(result.success) << result.reason;
+  ASSERT_TRUE(result.success()) << result.reason;
   EXPECT_GE(result.report.constraint("obstacle_distance").worst, 0.0);
 }
 
@@ -237,7 +237,7 @@ TEST(PostureSolver, SavesAGraphThatIsAtItsOptimum) {
   const PostureSolver& solver = solver_of("coman_plus");
   const PostureProblem problem = coman_standing();
   const PostureResult result = solver.solve(problem);
-  ASSERT_TRUE(result.success) << result.reason;
+  ASSERT_TRUE(result.success()) << result.reason;
   const TemporaryFolder folder;
   Graph graph = solver.graph(problem, result);
   write_graph(graph, folder.file("standing.g2o"));
@@ -264,7 +264,7 @@ TEST(PostureSolver, SavesAPlanThatIsJudgedAsThePostureWas) {
       "forward=\"1 0 0\" half_x=\"0.08\" half_y=\"0.04\" mu=\"0.6\" max_force=\"3000\"/>\n"
       "</contacts>\n");
   const PostureResult result = solver.solve(problem);
-  ASSERT_TRUE(result.success) << result.reason;
+  ASSERT_TRUE(result.success()) << result.reason;
   write_graph(solver.graph(problem, result), folder.file("standing.g2o"));
   TypeRegistry types;
   add_robot_types(types);
@@ -297,7 +297,7 @@ TEST(PostureSolver, AWheeledRobotStandsOnItsWheels) {
   }
   problem.preferred = placed_at(robot.model(), robot.home, problem.stance);
   const PostureResult result = solver_of("centauro").solve(problem);
-  ASSERT_TRUE(result.success) << result.reason;
+  ASSERT_TRUE(result.success()) << result.reason;
   const StanceWrenches& wrenches = result.report.balance.value().wrenches;
   double carried = 0.0;
   for (const auto& wrench : wrenches) carried += wrench[2];

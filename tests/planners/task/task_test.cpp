@@ -41,7 +41,7 @@ TEST(Task, AsksTheJudgeForWhatTheScenarioSays) {
 TEST(Task, JudgesAMotionAsItsPlanIsJudged) {
   const DataFolder data;
   const auto task = std::make_shared<const Task>(task_of(centauro_drive()));
-  const Motion motion = plan_wheeled_drive(*task).value();
+  const Motion motion = plan_wheeled_drive(*task).motion;
   const Graph graph = drive_graph(*task, motion).value();
   const Plan plan = plan_of(graph);
   const CheckReport of_plan =
