@@ -21,7 +21,7 @@ constexpr std::size_t kRefusedForMore = 5;
 constexpr int kFewStates = 4000;
 
 /// What one segment came to be, to be looked up when the stance planner comes back to it.
-struct Solved {
+struct TriedSegment {
   Footing before, held, after;  ///< before: empty where the motion begins
   Eigen::VectorXd from, to;
   std::size_t planner = 0;  ///< the first one that has not been refused
@@ -161,11 +161,11 @@ class MotionSearch {
   }
 
   bool found_at(const StancePath& path, std::size_t j) {
-    ways_[j] = &solved(path, j);
+    ways_[j] = &tried(path, j);
     return ways_[j]->motion.success();
   }
 
-  Solved& solved(const StancePath& path, std::size_t j) {
+  TriedSegment& tried(const StancePath& path, std::size_t j) {
     const Footing before = j == 0 ? Footing() : path.footings[j - 1];
     for (const auto& known : known_) {
       if (known->from == path.configurations[j] && known->to == path.configurations[j + 1] &&
@@ -174,7 +174,7 @@ class MotionSearch {
         return *known;
       }
     }
-    auto fresh = std::make_unique<Solved>();
+    auto fresh = std::make_unique<TriedSegment>();
     fresh->before = before;
     fresh->held = path.footings[j];
     fresh->after = path.footings[j + 1];
@@ -184,21 +184,21 @@ class MotionSearch {
     return *known_.emplace_back(std::move(fresh));
   }
 
-  void move(Solved& solved) {
+  void move(TriedSegment& tried) {
     SegmentOptions asked;
     asked.seed = stances_.seed;
     asked.termination = stances_.termination;
     asked.termination.max_iterations = 0;  // is of stances
     if (!all_planners_) asked.max_states = kFewStates;
-    solved.motion = {};
-    on_segment(solved, [&](const Segment& segment, std::span<const BearingContact> bearing) {
-      solved.motion = mover_.move(segment, bearing, solved.planner, allowed(), asked);
+    tried.motion = {};
+    on_segment(tried, [&](const Segment& segment, std::span<const BearingContact> bearing) {
+      tried.motion = mover_.move(segment, bearing, tried.planner, allowed(), asked);
     });
   }
 
-  void retime(Solved& solved) {
-    on_segment(solved, [&](const Segment& segment, std::span<const BearingContact> bearing) {
-      mover_.retime(segment, bearing, solved.pace, solved.motion);
+  void retime(TriedSegment& tried) {
+    on_segment(tried, [&](const Segment& segment, std::span<const BearingContact> bearing) {
+      mover_.retime(segment, bearing, tried.pace, tried.motion);
     });
   }
 
@@ -212,8 +212,8 @@ class MotionSearch {
 
   /// Calls f with the segment and its contacts.
   template <class F>
-  void on_segment(Solved& solved, const F& f) {
-    const std::vector<BearingContact> bearing = space_.bearing_contacts(solved.held);
+  void on_segment(TriedSegment& tried, const F& f) {
+    const std::vector<BearingContact> bearing = space_.bearing_contacts(tried.held);
     const double mass_kg = task_.robot->robot->total_mass();
     const BalanceRegion region = balance_region(mass_kg, bearing, kRegionMargin);
     std::optional<TorqueProgramme> torques;
@@ -221,18 +221,18 @@ class MotionSearch {
       torques.emplace(*task_.robot->robot, bearing, task_.check.effort_scale, kRegionMargin);
     }
     Segment segment;
-    segment.held = space_.stance(solved.held).contacts;
+    segment.held = space_.stance(tried.held).contacts;
     segment.balance = &region;
     segment.torques = torques ? &*torques : nullptr;
-    segment.left = besides(solved.before, solved.held);
-    segment.reached = besides(solved.after, solved.held);
-    segment.from = solved.from;
-    segment.to = solved.to;
-    plan_.statistics.path_s -= solved.motion.statistics.path_s;
-    plan_.statistics.timing_s -= solved.motion.statistics.timing_s;
+    segment.left = besides(tried.before, tried.held);
+    segment.reached = besides(tried.after, tried.held);
+    segment.from = tried.from;
+    segment.to = tried.to;
+    plan_.statistics.path_s -= tried.motion.statistics.path_s;
+    plan_.statistics.timing_s -= tried.motion.statistics.timing_s;
     f(segment, bearing);
-    plan_.statistics.path_s += solved.motion.statistics.path_s;
-    plan_.statistics.timing_s += solved.motion.statistics.timing_s;
+    plan_.statistics.path_s += tried.motion.statistics.path_s;
+    plan_.statistics.timing_s += tried.motion.statistics.timing_s;
   }
 
   /// Planners of segments that are tried: another way through other stances is cheaper than the
@@ -282,46 +282,46 @@ class MotionSearch {
     return slowed;
   }
 
-  bool slow_down(Solved& solved) {
-    if (solved.slowed >= kMostSlower) return false;
-    ++solved.slowed;
-    solved.pace.slower *= kSlower;
-    solved.judged = false;
-    retime(solved);
+  bool slow_down(TriedSegment& tried) {
+    if (tried.slowed >= kMostSlower) return false;
+    ++tried.slowed;
+    tried.pace.slower *= kSlower;
+    tried.judged = false;
+    retime(tried);
     return true;
   }
 
   /// Judges a segment by itself, and moves it again until it holds: slower, or by the next planner.
   /// False: it cannot be moved otherwise.
   bool mend(std::size_t j, bool& mended) {
-    Solved& solved = *ways_[j];
+    TriedSegment& tried = *ways_[j];
     for (;;) {
-      const SegmentMotion& way = solved.motion;
+      const SegmentMotion& way = tried.motion;
       Motion alone = as_motion(way);
-      alone.stances = {space_.stance(solved.held), space_.stance(solved.after)};
+      alone.stances = {space_.stance(tried.held), space_.stance(tried.after)};
       alone.stance_from.assign(way.configurations.size(), 0);
       alone.stance_from.back() = 1;
       const CheckReport report = judged(alone);
-      solved.judged = report.feasible;
+      tried.judged = report.feasible;
       if (report.feasible) return true;
       mended = true;
       const std::vector<const Violation*> violated = report.violated();
       const bool inertia =
           std::ranges::all_of(violated, [](const Violation* v) { return is_of_inertia(*v); });
-      if (inertia && slow_down(solved)) {
+      if (inertia && slow_down(tried)) {
         // Judged again.
-      } else if (!inertia && !solved.pace.finer) {
-        solved.pace.finer = true;
-        retime(solved);
+      } else if (!inertia && !tried.pace.finer) {
+        tried.pace.finer = true;
+        retime(tried);
       } else {
-        solved.planner = mover_.number_of(way.planner) + 1;
-        solved.pace = {};
-        solved.slowed = 0;
-        if (solved.planner < allowed()) move(solved);
+        tried.planner = mover_.number_of(way.planner) + 1;
+        tried.pace = {};
+        tried.slowed = 0;
+        if (tried.planner < allowed()) move(tried);
       }
-      if (solved.planner >= allowed() || !solved.motion.success()) {
-        solved.motion.status = PlannerStatus::kNotFound;
-        solved.motion.reason = "refused: " + violation_text(report.worst());
+      if (tried.planner >= allowed() || !tried.motion.success()) {
+        tried.motion.status = PlannerStatus::kNotFound;
+        tried.motion.reason = "refused: " + violation_text(report.worst());
         return false;
       }
     }
@@ -334,8 +334,8 @@ class MotionSearch {
   SegmentMover mover_;
   bool all_planners_;  ///< from the first segment on
   Judge judge_;
-  std::vector<std::unique_ptr<Solved>> known_;
-  std::vector<Solved*> ways_;
+  std::vector<std::unique_ptr<TriedSegment>> known_;
+  std::vector<TriedSegment*> ways_;
   std::string refused_reason_;
 };
 

@@ -12,8 +12,11 @@
 #include "planners/online/drive_past_box.h"
 #include "planners/segment_problems.h"
 
-namespace locograph::test {
+namespace locograph::planner_answer_test {
 namespace {
+
+using test::segment_problem;
+using test::stance_task;
 
 /// plan: a planner that the termination it is given ends; returns its answer.
 template <class Plan>
@@ -59,7 +62,7 @@ TEST(PlannerAnswer, OfPostures) {
   const Task task = stance_task("slanted_wall");
   const PostureSolver solver(task.robot);
   PostureProblem problem{.stance = task.start, .preferred = task.start_configuration};
-  problem.preferred[2] += 0.5;  // m: it takes some iterations
+  problem.stance.contacts[0].position.x() += 5.0;  // out of reach
   const auto solve = [&](const Termination& termination) {
     return solver.solve(problem, {.termination = termination});
   };
@@ -189,4 +192,4 @@ TEST(PlannerAnswer, OfWalks) {
 }
 
 }  // namespace
-}  // namespace locograph::test
+}  // namespace locograph::planner_answer_test
