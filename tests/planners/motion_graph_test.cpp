@@ -162,6 +162,12 @@ double most_moved(const Graph& graph, const std::vector<Eigen::VectorXd>& from) 
 }
 
 TEST_F(MotionGraph, OptimisedItStaysWhereItIsAndDisturbedItComesBack) {
+  // Balanced all along: in all contacts.
+  plan.motion.stance_from.assign(kCount, 0);
+  plan.motion.wrenches.assign(kCount, plan.motion.wrenches.front());
+  plan.segments.resize(1);
+  plan.segments.front().last = kCount - 1;
+  plan.segments.front().duration_s = 2.0;
   Graph graph = motion_graph(task, plan);
   const auto solver = make_linear_solver("auto");
   OptimiserOptions options = OptimiserOptions::for_any_start();
