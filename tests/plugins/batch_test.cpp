@@ -127,6 +127,7 @@ TEST_P(Batch, DoesNotAllocateOverAWindowOfTwentyConfigurations) {
   workspace.allocate(problem);
   workspace.load_state();
   Eigen::Map<Eigen::VectorXd>(workspace.step().data(), problem.dimension()).setConstant(1e-3);
+  workspace.evaluate(workspace.state());  // as Optimiser::start() does: views of worlds are made
   const long before = allocation_count();
   workspace.evaluate(workspace.state());
   workspace.linearise();
