@@ -25,6 +25,7 @@
 #include <algorithm>
 #include <random>
 
+#include "common/allocation_counter.h"
 #include "planners/stance_tasks.h"
 
 namespace locograph::test {
@@ -184,6 +185,31 @@ TEST_F(MotionGraph, OptimisedItStaysWhereItIsAndDisturbedItComesBack) {
   ASSERT_GT(most_moved(graph, plan.motion.configurations), 4e-3);
   optimise(graph, options, *solver);
   EXPECT_LT(most_moved(graph, plan.motion.configurations), 1e-3);
+}
+
+TEST_F(MotionGraph, TwentyIterationsAllocateNothing) {
+  if (!allocations_are_counted()) GTEST_SKIP() << "a sanitizer brings its own malloc";
+  // In two stances, and disturbed, so that there is work for twenty iterations.
+  Graph graph = motion_graph(task, plan);
+  for (int i = 1; i < kCount; ++i) {
+    graph.vertex(VertexId<VertexConfiguration>{graph.slot_of(i)}).state[2] += 2e-3 * (i % 3);
+  }
+  Problem compiled;
+  compiled.compile(graph);
+  Workspace workspace;
+  workspace.allocate(compiled);
+  workspace.load_state();
+  const auto solver = make_linear_solver("auto");
+  OptimiserOptions options = OptimiserOptions::for_any_start();
+  options.max_iterations = 20;
+  options.gain = 0.0;
+  Optimiser optimiser(options);
+  optimiser.start(workspace, *solver);
+  const long before = allocation_count();
+  while (optimiser.iterate()) {
+  }
+  EXPECT_EQ(allocation_count(), before);
+  EXPECT_GE(optimiser.result().iterations, 10);
 }
 
 TEST_F(MotionGraph, AnIndexTellsWhereEverythingIs) {
