@@ -3,6 +3,7 @@
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/optimize_command.h>
 #include <locograph/apps/output.h>
+#include <locograph/apps/plan_file.h>
 #include <locograph/apps/progress.h>
 #include <locograph/apps/violations_json.h>
 #include <locograph/common/deadline.h>
@@ -120,11 +121,11 @@ struct PlanBefore {
 
 /// Nothing for a graph that does not say it is a plan of a motion. Throws Error for one that says
 /// so and is none.
-std::optional<PlanBefore> plan_before(const Graph& graph) {
+std::optional<PlanBefore> plan_before(const Graph& graph, const std::string& file) {
   if (!graph.parameters().find<PlanParameter>()) return {};
-  PlanBefore before{plan_of(graph), {}};
+  PlanBefore before{plan_of_file(graph, file), {}};
   if (before.plan.stances_only) return {};
-  before.motion = motion_of(graph, before.plan);
+  before.motion = motion_of_slopes(graph, before.plan);
   return before;
 }
 
@@ -313,7 +314,7 @@ ExitCode optimize(const OptimizeOptions& options) {
   Graph graph = load(options, report);
   times.load = total.seconds();
   if (kernel.kind != RobustKernel::Kind::kNone) graph.set_kernel(kernel);
-  const std::optional<PlanBefore> before = plan_before(graph);
+  const std::optional<PlanBefore> before = plan_before(graph, input_name(options.input));
   Gauge gauge;
   if (options.bal) {
     gauge.text = "free, held by damping";

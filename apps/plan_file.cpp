@@ -25,11 +25,15 @@ auto about(const std::string& file, F&& f) {
 
 }  // namespace
 
+Plan plan_of_file(const Graph& graph, const std::string& file) {
+  return about(file, [&] { return plan_of(graph); });
+}
+
 PlanFile plan_in(Graph graph, const std::string& file) {
   PlanFile result;
   result.name = file;
   result.graph = std::move(graph);
-  result.plan = about(file, [&] { return plan_of(result.graph); });
+  result.plan = plan_of_file(result.graph, file);
   return result;
 }
 

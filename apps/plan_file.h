@@ -24,6 +24,9 @@ struct PlanFile {
   Plan plan;
 };
 
+/// plan_of() of a graph that was read from a file, which errors name.
+Plan plan_of_file(const Graph& graph, const std::string& file);
+
 /// plugins: as graph_types(). Throws Error naming the file when it is unusable or holds no plan.
 PlanFile load_plan(const std::string& file, const std::vector<std::string>& plugins = {});
 /// The plan in a graph that was read from this file, likewise.

@@ -130,10 +130,11 @@ class Campaign {
     OptimiserOptions options = OptimiserOptions::for_any_start();
     options.max_iterations = kMostIterations;
     const auto solver = make_linear_solver("auto");
+    const Motion before = motion_of_slopes(graph, plan_);
     const Stopwatch watch;
     const OptimiserResult result = optimise(graph, options, *solver);
     const double seconds = watch.seconds();
-    carry_slopes(motion_, plan_, graph);
+    carry_slopes(before, plan_, graph);
     const CheckReport report = judged(graph, plan_, judging_);
     double moved = 0.0;
     const Motion after = motion_of(graph, plan_);

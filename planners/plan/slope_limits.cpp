@@ -1,5 +1,6 @@
 #include <locograph/check/motion_curve.h>
 #include <locograph/planners/plan/slope_limits.h>
+#include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 
 #include <algorithm>
 
@@ -27,6 +28,30 @@ Eigen::VectorXd careful_slope(const Robot& robot, const Motion& motion, int vert
   if (slope.norm() > 3.0 * slower) slope *= 3.0 * slower / slope.norm();
   keep_within_limits(robot, around.configurations[1], std::max(before_s, after_s), slope);
   return slope;
+}
+
+Motion motion_of_slopes(const Graph& graph, const Plan& plan) {
+  Motion is = motion_of(graph, plan);
+  Motion planned = is;
+  std::size_t known = 0;
+  for (const EdgePlanTracking& edge : graph.edges_of<EdgePlanTracking>()) {
+    const int i = plan.index.configuration[static_cast<std::size_t>(edge.vertices[0])];
+    planned.configurations[static_cast<std::size_t>(i)] = edge.reference;
+    ++known;
+  }
+  if (known != plan.slots.size()) return is;
+  const auto off = [&](const Motion& motion) {
+    Motion by_rule = motion;
+    by_rule.slopes.clear();
+    const MotionCurve curve(*plan.robot->robot, by_rule);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < motion.slopes.size(); ++i) {
+      const Eigen::VectorXd& slope = motion.slopes[i];
+      if (slope.size() > 0) sum += (slope - curve.slope(static_cast<int>(i))).squaredNorm();
+    }
+    return sum;
+  };
+  return off(planned) < off(is) ? planned : is;
 }
 
 void carry_slopes(const Motion& before, const Plan& plan, Graph& graph) {

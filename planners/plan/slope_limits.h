@@ -4,7 +4,8 @@
 ///
 ///     Eigen::VectorXd slope = careful_slope(robot, motion, 7);
 ///     locograph::keep_within_limits(robot, q, 0.8, slope);
-///     carry_slopes(motion, plan, graph);
+///     const Motion before = motion_of_slopes(graph, plan);
+///     carry_slopes(before, plan, graph);             // after configurations have moved
 ///
 /// Where two steps a and b (rates, tangents) point to different sides, the rule of the curve
 /// (check/motion_curve.h) rounds the corner, and wheels that roll on both straight steps slip on
@@ -27,6 +28,11 @@ namespace locograph {
 
 /// The slope at a vertex, neither first nor last, whatever slope the motion has there.
 Eigen::VectorXd careful_slope(const Robot& robot, const Motion& motion, int vertex);
+
+/// The motion that the slopes of a plan were made for: the plan as it is, or the one that its
+/// EDGE_PLAN_TRACKINGs hold to, whichever they are nearer to by the rule of the curve. The latter
+/// is so where configurations were disturbed and slopes were not. All with the slopes of the plan.
+Motion motion_of_slopes(const Graph& graph, const Plan& plan);
 
 /// Gives a plan whose configurations were moved the slopes that go with them: at each configuration
 /// that moved, or has a neighbour that did, what a stored slope was away from the rule of the curve

@@ -1,6 +1,9 @@
 #include <apps/command_runner.h>
+#include <locograph/common/uniform.h>
 #include <plugins/small_robot.h>
 
+#include <algorithm>
+#include <random>
 #include <sstream>
 
 namespace locograph {
@@ -456,6 +459,50 @@ TEST(Optimize, RefusesAnOutputItCannotWriteBeforeItStarts) {
   expect_refusal(runner.run("optimize a.g2o -o none/b.g2o"), "none/b.g2o", "writable folder");
   expect_refusal(runner.run("optimize a.g2o -o ."), ".", "is a folder");
   EXPECT_EQ(runner.files(), 1);
+}
+
+/// Each joint of each configuration but the first elsewhere by up to 0.02 rad; slopes stay.
+std::string disturbed_drive(const std::string& text) {
+  std::mt19937_64 random(1);
+  std::string result;
+  int configurations = 0;
+  for (const std::string& line : lines(text)) {
+    std::istringstream in(line);
+    std::vector<std::string> fields;
+    for (std::string field; in >> field;) fields.push_back(field);
+    if (fields[0] == "VERTEX_CONFIGURATION" && configurations++ > 0) {
+      constexpr std::size_t kJoints = 12, kEnd = kJoints + 18;  // after the base
+      for (std::size_t k = kJoints; k < kEnd; ++k) {
+        fields[k] = std::to_string(std::stod(fields[k]) + uniform(random, -0.02, 0.02));
+      }
+    }
+    for (const std::string& field : fields) result += field + ' ';
+    result += '\n';
+  }
+  return result;
+}
+
+TEST(Optimize, BringsADisturbedPlanBackWithTheSlopesThatItHas) {
+  const CommandRunner runner;
+  ASSERT_EQ(runner.run("plan centauro_drive -o drive.g2o --quiet").exit_code, 0);
+  runner.write("disturbed.g2o", disturbed_drive(runner.read("drive.g2o")));
+  EXPECT_EQ(runner.run("check disturbed.g2o --quiet").exit_code, 1);
+  EXPECT_EQ(runner.run("optimize disturbed.g2o -o back.g2o --quiet").exit_code, 0);
+  const Outcome checked = runner.run("check back.g2o");
+  EXPECT_EQ(checked.exit_code, 0) << checked.out;
+}
+
+TEST(Optimize, APlanThatIsNoneIsRefusedWithItsFileAndLine) {
+  const CommandRunner runner;
+  ASSERT_EQ(runner.run("plan centauro_drive -o drive.g2o --quiet").exit_code, 0);
+  std::string text = runner.read("drive.g2o");
+  const std::size_t at = text.find("VERTEX_CONFIGURATION");
+  text.insert(at, "PARAMS_SEGMENT 90 1 14 0 1 rrt_connect\n");
+  const std::string line = std::to_string(
+      std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n') + 1);
+  runner.write("segment.g2o", text);
+  expect_refusal(runner.run("optimize segment.g2o"), "segment.g2o:" + line,
+                 "segment 1 without those before it");
 }
 
 TEST(Optimize, RefusesWrongUsageInOneLine) {

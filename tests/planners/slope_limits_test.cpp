@@ -126,6 +126,16 @@ TEST_F(CarriedSlopes, FollowTheRuleWhereConfigurationsMove) {
   EXPECT_TRUE(after.slopes[2].isApprox(before.slopes[2] + rule(2) - rule_2, 1e-12));
 }
 
+TEST_F(CarriedSlopes, AreThoseOfThePlanWhereConfigurationsWereDisturbed) {
+  EXPECT_EQ(motion_of_slopes(graph, plan).configurations, before.configurations);
+  std::mt19937_64 random(3);
+  for (int i = 1; i + 1 < kCount; ++i) vertex(i).state[1] += uniform(random, -0.02, 0.02);
+  EXPECT_EQ(motion_of_slopes(graph, plan).configurations, before.configurations);
+  // Slopes that were made for them are theirs.
+  for (int i = 1; i + 1 < kCount; ++i) vertex(i).slopes = rule(i);
+  EXPECT_EQ(motion_of_slopes(graph, plan).configurations, motion_of(graph, plan).configurations);
+}
+
 TEST_F(CarriedSlopes, KeepJointsWithinLimits) {
   const Robot& robot = *plan.robot->robot;
   int joint = 0;
