@@ -388,7 +388,7 @@ PlanEdgeOptions motion_edges(const CheckOptions& check) {
     options.joint_acceleration_rad_s2 = check.joint_acceleration_rad_s2;
   }
   options.torque_limits = check.enforce_torque_limits;
-  options.effort_scale = 0.95 * check.effort_scale;
+  options.effort_scale = check.effort_scale;
   options.track_lateral = options.track_forward;
   options.track_yaw = options.track_tilt;
   return options;
