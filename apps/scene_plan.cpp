@@ -3,7 +3,6 @@
 #include <locograph/apps/scene.h>
 #include <locograph/check/judged_stance.h>
 #include <locograph/check/motion_curve.h>
-#include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/plugins/static_balance/static_rows.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
 #include <locograph/robots/contact_kinds.h>
@@ -23,19 +22,6 @@ const VertexConfiguration& configuration(const PlanFile& file, int slot) {
 
 void append(const Eigen::VectorXd& q, std::vector<float>& numbers) {
   for (const double value : q) numbers.push_back(static_cast<float>(value));
-}
-
-/// What the tracking edges hold to: the plan before it was refined, by vertex slot.
-std::map<int, Eigen::VectorXd> references(const Graph& graph) {
-  std::map<int, Eigen::VectorXd> result;
-  for (const auto& pool : graph.edge_pools()) {
-    const auto* tracking = dynamic_cast<const TypedEdgePool<EdgePlanTracking>*>(pool.get());
-    if (tracking == nullptr) continue;
-    for (const EdgePlanTracking& edge : tracking->edges) {
-      result.emplace(edge.vertices[0], edge.reference);
-    }
-  }
-  return result;
 }
 
 /// Where in the state of a VERTEX_WRENCHES the wrench of a contact begins.
@@ -156,7 +142,7 @@ Json stances_json(const Plan& plan) {
 void add_plan_scene(const PlanFile& file, const Judging* judging, const SceneOptions& options,
                     Json& scene) {
   const Robot& robot = *file.plan.robot->robot;
-  const std::map<int, Eigen::VectorXd> planned = references(file.graph);
+  const std::vector<Eigen::VectorXd> planned = tracked_configurations(file.graph, file.plan);
   TouchedWorld touched(robot, judging);
   RobotState state(robot);
   std::vector<float> configurations, reference;
@@ -167,8 +153,7 @@ void add_plan_scene(const PlanFile& file, const Judging* judging, const SceneOpt
     times.push_back(rounded(vertex.time_s));
     ids.push_back(file.graph.vertex_record(slot).id);
     append(vertex.state, configurations);
-    const auto found = planned.find(slot);
-    append(found == planned.end() ? Eigen::VectorXd(vertex.state) : found->second, reference);
+    append(planned[i].size() == 0 ? Eigen::VectorXd(vertex.state) : planned[i], reference);
     state.update(vertex.state.data());
     Json here = Json::array();
     if (const StanceParameter* stance = file.plan.stance_from[i].get()) {
@@ -198,7 +183,8 @@ void add_plan_scene(const PlanFile& file, const Judging* judging, const SceneOpt
     for (int i = 0; i < count; ++i) append(curve.slope(i), slopes);
     plan["slopes"] = packed_floats(slopes);
   }
-  if (!planned.empty()) plan["reference"] = packed_floats(reference);
+  const auto is_tracked = [](const Eigen::VectorXd& q) { return q.size() > 0; };
+  if (std::ranges::any_of(planned, is_tracked)) plan["reference"] = packed_floats(reference);
   if (options.executed >= 0) {
     if (options.executed >= count) {
       throw Error(file.name, 0, "no configuration " + std::to_string(options.executed),

@@ -1,6 +1,7 @@
 #include <locograph/planners/plan/plan.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/configuration/segment_parameter.h>
+#include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
 
 #include <algorithm>
@@ -246,6 +247,16 @@ Plan plan_of(const Graph& graph) {
     std::fill(begin, plan.index.segment.begin() + plan.segments[j].last + 1, static_cast<int>(j));
   }
   return plan;
+}
+
+std::vector<Eigen::VectorXd> tracked_configurations(const Graph& graph, const Plan& plan) {
+  std::vector<Eigen::VectorXd> tracked(plan.slots.size());
+  for (const EdgePlanTracking& edge : graph.edges_of<EdgePlanTracking>()) {
+    const int i = plan.index.configuration[static_cast<std::size_t>(edge.vertices[0])];
+    Eigen::VectorXd& here = tracked[static_cast<std::size_t>(i)];
+    if (here.size() == 0) here = edge.reference;
+  }
+  return tracked;
 }
 
 std::vector<int> contacts_at(const std::vector<std::shared_ptr<const StanceParameter>>& stance_from,

@@ -57,6 +57,9 @@ Motion motion_of(const Graph& graph, const Plan& plan);
 /// The part of it from one of its configurations to another, the last one included.
 Motion motion_of(const Graph& graph, const Plan& plan, int first, int last);
 
+/// Of each configuration the one that its EDGE_PLAN_TRACKING holds to; empty where it has none.
+std::vector<Eigen::VectorXd> tracked_configurations(const Graph& graph, const Plan& plan);
+
 /// The contacts of the stances before and after a configuration: what it has to close.
 std::vector<int> contacts_at(const std::vector<std::shared_ptr<const StanceParameter>>& stance_from,
                              std::size_t i);

@@ -15,7 +15,6 @@
 #include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
-#include <locograph/robots/contact_kinds.h>
 #include <locograph/robots/statics.h>
 
 #include <algorithm>
@@ -88,7 +87,7 @@ const StanceParameter* bearing_stance(const Plan& plan, std::size_t i) {
   const StanceParameter* left_in = plan.stance_from[i].get();
   if (!plan.stances_only || i == 0) return left_in;
   const StanceParameter* before = plan.stance_from[i - 1].get();
-  return before->contacts.size() < left_in->contacts.size() ? before : left_in;
+  return &bearing_stance(before->stance, left_in->stance) == &before->stance ? before : left_in;
 }
 
 /// Adds the edges of one plan.
@@ -241,9 +240,8 @@ class PlanEdges {
   }
 
   /// Of the stances before and after that of a configuration, contacts that it has just left or is
-  /// about to make: nearer than 0.1 m, and not below them.
+  /// about to make.
   std::vector<int> near_contacts(std::size_t i) const {
-    constexpr double kNear_m = 0.1, kBelow_m = 2e-3;
     if (plan_.stances_only) return {};
     std::size_t first = i, end = i;
     while (first > 0 && stance_number(first) == stance_number(i)) --first;
@@ -262,14 +260,9 @@ class PlanEdges {
         const ContactParameter& contact = *plan_.stance_from[other]->contacts[c];
         const int number = plan_.stance_from[other]->contact_numbers[c];
         if (is_closed(contact) || std::ranges::find(near, number) != near.end()) continue;
-        const EndEffector& effector = contact.contact.effector;
-        const Eigen::Vector3d normal = contact.contact.normal.stableNormalized();
-        const double radius_m =
-            contact_kind_entry(effector.kind).is_round() ? effector.radius_m : 0.0;
-        const Eigen::Vector3d off =
-            state_.kinematics.world_from_link(contact.link) * effector.point -
-            contact.contact.position - radius_m * normal;
-        if (off.norm() < kNear_m && off.dot(normal) > -kBelow_m) near.push_back(number);
+        const Eigen::Vector3d point =
+            state_.kinematics.world_from_link(contact.link) * contact.contact.effector.point;
+        if (is_near(contact.contact, point)) near.push_back(number);
       }
     }
     return near;
@@ -359,6 +352,10 @@ class PlanEdges {
 };
 
 }  // namespace
+
+const Stance& bearing_stance(const Stance& before, const Stance& after) {
+  return before.contacts.size() < after.contacts.size() ? before : after;
+}
 
 PlanEdgeOptions drive_edges() {
   PlanEdgeOptions options;

@@ -75,6 +75,10 @@ PlanEdgeOptions drive_edges();
 /// Of a contact task: as close to its limits and to the world as the judge allows.
 PlanEdgeOptions motion_edges(const CheckOptions& check);
 
+/// Of the stances before and after a configuration of a plan of stances, the one whose contacts
+/// balance it: that with fewer, the later one of two with as many.
+const Stance& bearing_stance(const Stance& before, const Stance& after);
+
 /// Adds the configurations with their times, slopes and stances, the first one fixed. kRobotNumber
 /// (plan.h) must be set; stance_numbers: of motion.stances, as add_stances() gives them. Throws
 /// Error for a step whose stance is not known. Returns false when the job ended before.

@@ -1,6 +1,5 @@
 #include <locograph/check/motion_curve.h>
 #include <locograph/planners/plan/slope_limits.h>
-#include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 
 #include <algorithm>
 
@@ -33,13 +32,9 @@ Eigen::VectorXd careful_slope(const Robot& robot, const Motion& motion, int vert
 Motion motion_of_slopes(const Graph& graph, const Plan& plan) {
   Motion is = motion_of(graph, plan);
   Motion planned = is;
-  std::size_t known = 0;
-  for (const EdgePlanTracking& edge : graph.edges_of<EdgePlanTracking>()) {
-    const int i = plan.index.configuration[static_cast<std::size_t>(edge.vertices[0])];
-    planned.configurations[static_cast<std::size_t>(i)] = edge.reference;
-    ++known;
-  }
-  if (known != plan.slots.size()) return is;
+  planned.configurations = tracked_configurations(graph, plan);
+  const auto unknown = [](const Eigen::VectorXd& q) { return q.size() == 0; };
+  if (std::ranges::any_of(planned.configurations, unknown)) return is;
   const auto off = [&](const Motion& motion) {
     Motion by_rule = motion;
     by_rule.slopes.clear();

@@ -28,6 +28,15 @@ bool is_on_bar(const Bar& bar, const Contact& contact) {
 
 }  // namespace
 
+bool is_near(const Contact& contact, const Eigen::Vector3d& point) {
+  constexpr double kNear_m = 0.1, kBelow_m = 2e-3;
+  const EndEffector& of = contact.effector;
+  const double radius_m = contact_kind_entry(of.kind).is_round() ? of.radius_m : 0.0;
+  const Eigen::Vector3d normal = contact.normal.stableNormalized();
+  const Eigen::Vector3d off = point - contact.position - radius_m * normal;
+  return off.norm() < kNear_m && off.dot(normal) > -kBelow_m;
+}
+
 void PlaceRelations::set_contacts(std::span<const Contact> closed, std::span<const Contact> held,
                                   std::span<const Contact> near, double near_m) {
   touches_.clear();

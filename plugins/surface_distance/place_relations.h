@@ -22,6 +22,11 @@
 
 namespace locograph {
 
+/// Whether an end effector whose point is there is near the place of a contact that is not closed,
+/// as it has just left it or is about to come down: nearer than 0.1 m, and not below it. Others, on
+/// other sides of what is touched as well, keep away as from anything else.
+bool is_near(const Contact& contact, const Eigen::Vector3d& point);
+
 class PlaceRelations {
  public:
   enum class Relation : char {

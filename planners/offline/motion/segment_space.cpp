@@ -23,9 +23,6 @@ constexpr double kMostBent = 0.75;
 constexpr double kMostRoom_m = 0.03, kReach_m = 0.6, kLeastStep = 0.008;
 constexpr int kLiftSteps = 3;
 constexpr double kAlmost = 0.006;  // m, rad
-/// What is further from its place is not near it: other links, and other sides of what is touched,
-/// keep away as from anything else.
-constexpr double kNear_m = 0.1, kBelowContact_m = 2e-3;
 /// Of what swings, above what it leaves: rows that hold to kRowsTolerance keep it out of it.
 constexpr double kOff_m = 2e-4;
 
@@ -140,12 +137,7 @@ std::vector<bool> SegmentSpace::what_is_near(const Eigen::VectorXd& q,
     for (const Contact& other : also) {
       if (other.name() == contact.name()) at = other.position;
     }
-    const EndEffector& of = contact.effector;
-    const double radius_m = contact_kind_entry(of.kind).is_round() ? of.radius_m : 0.0;
-    const Eigen::Vector3d off =
-        at - contact.position - radius_m * contact.normal.stableNormalized();
-    result.push_back(off.norm() < kNear_m &&
-                     off.dot(contact.normal.stableNormalized()) > -kBelowContact_m);
+    result.push_back(is_near(contact, at));
   }
   return result;
 }

@@ -10,13 +10,6 @@
 namespace locograph {
 namespace {
 
-/// Of the stances before and after a configuration, the one with fewer contacts.
-const Stance& bearing_stance(const StancePlan& plan, std::size_t i) {
-  const Stance& left_in = plan.stances[i];
-  const bool fewer = i > 0 && plan.stances[i - 1].contacts.size() < left_in.contacts.size();
-  return fewer ? plan.stances[i - 1] : left_in;
-}
-
 /// Those that the judge finds: what it answers, as in whole motions.
 StanceWrenches wrenches_of(const Judge& judge, const Eigen::VectorXd& configuration,
                            const Stance& bearing, CheckOptions options) {
@@ -60,8 +53,8 @@ Graph stance_graph(const Task& task, const StancePlan& plan) {
   for (std::size_t i = 0; i < plan.configurations.size(); ++i) {
     motion.time_s.push_back(static_cast<double>(i));
     motion.stance_from.push_back(static_cast<int>(i));
-    wrenches.push_back(
-        wrenches_of(judge, plan.configurations[i], bearing_stance(plan, i), task.check));
+    const Stance& bearing = bearing_stance(plan.stances[i == 0 ? i : i - 1], plan.stances[i]);
+    wrenches.push_back(wrenches_of(judge, plan.configurations[i], bearing, task.check));
   }
   add_configurations(graph, motion, numbers);
   add_plan_edges(graph, motion_edges(task.check), wrenches);
