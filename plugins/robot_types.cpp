@@ -17,6 +17,7 @@
 #include <locograph/plugins/self_collision/edge_self_collision.h>
 #include <locograph/plugins/static_balance/edge_balance.h>
 #include <locograph/plugins/static_balance/edge_contact_wrench.h>
+#include <locograph/plugins/static_balance/edge_moving_balance.h>
 #include <locograph/plugins/static_balance/edge_torque_limits.h>
 #include <locograph/plugins/static_balance/edge_wrench_norm.h>
 #include <locograph/plugins/surface_distance/edge_surface_distance.h>
@@ -55,6 +56,7 @@ void add_robot_types(TypeRegistry& types) {
   types.add_edge<EdgeGroundDistance>();
   types.add_edge<EdgeLinkHeight>();
   types.add_edge<EdgeJointLimits>();
+  types.add_edge<EdgeMovingBalance>();
   types.add_edge<EdgeObstacleDistance>();
   types.add_edge<EdgePlanTracking>();
   types.add_edge<EdgeRestAccelerationLimitsTimed>();

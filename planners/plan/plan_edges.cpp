@@ -9,6 +9,7 @@
 #include <locograph/plugins/self_collision/edge_self_collision.h>
 #include <locograph/plugins/static_balance/edge_balance.h>
 #include <locograph/plugins/static_balance/edge_contact_wrench.h>
+#include <locograph/plugins/static_balance/edge_moving_balance.h>
 #include <locograph/plugins/static_balance/edge_torque_limits.h>
 #include <locograph/plugins/static_balance/edge_wrench_norm.h>
 #include <locograph/plugins/surface_distance/edge_surface_distance.h>
@@ -90,6 +91,12 @@ const StanceParameter* bearing_stance(const Plan& plan, std::size_t i) {
   return &bearing_stance(before->stance, left_in->stance) == &before->stance ? before : left_in;
 }
 
+WrenchesState state_of(const VertexWrenches& vertex) {
+  WrenchesState state = vertex.make_derived();
+  vertex.derive(vertex.state.data(), state);
+  return state;
+}
+
 /// Adds the edges of one plan.
 class PlanEdges {
  public:
@@ -103,7 +110,9 @@ class PlanEdges {
         places_number_(places_number(graph)),
         track_(robot_.tangent_size()),
         steps_(robot_.tangent_size()),
-        state_(plan_.robot) {
+        state_(plan_.robot),
+        before_(plan_.robot),
+        after_(plan_.robot) {
     for (const int slot : plan_.slots) {
       ids_.push_back({slot});
       configurations_.push_back(graph.vertex(ids_.back()).state);
@@ -291,10 +300,8 @@ class PlanEdges {
     const double weight_N = robot_.total_mass() * standard_gravity().norm();
     const double unit = 1.0 / (weight_N * weight_N);
     const double balance = options_.balance_weight * unit;
-    graph_.add_edge(EdgeBalance(balance, balance), ids_[i], forces);
-    graph_.add_edge(
-        EdgeContactWrench(*graph_.vertex(forces).contacts, options_.friction_weight * unit),
-        forces);
+    add_balance_edge(i, forces, balance);
+    add_contact_wrench_edge(forces, options_.friction_weight * unit);
     graph_.add_edge(EdgeWrenchNorm(graph_.vertex(forces), options_.wrench_norm_weight * unit),
                     forces);
     if (!options_.torque_limits) return;
@@ -304,6 +311,37 @@ class PlanEdges {
       torques.weights[j] = std::isfinite(effort) ? options_.torque_weight / (effort * effort) : 0.0;
     }
     graph_.add_edge(std::move(torques), ids_[i], forces);
+  }
+
+  /// Without weight for what the plan's own wrenches exceed: the judge's friction pyramids bear
+  /// more yaw than the edge's.
+  void add_contact_wrench_edge(VertexId<VertexWrenches> forces, double weight) {
+    const VertexWrenches& vertex = graph_.vertex(forces);
+    EdgeContactWrench edge(*vertex.contacts, weight);
+    Eigen::VectorXd excess(edge.weights.size());
+    edge.error(state_of(vertex), excess);
+    edge.weights = (excess.array() > 0.0).select(0.0, edge.weights);
+    graph_.add_edge(std::move(edge), forces);
+  }
+
+  /// Of a moving robot where it has a configuration before and one after, with what the plan itself
+  /// leaves over as its load; else of one at rest.
+  void add_balance_edge(std::size_t i, VertexId<VertexWrenches> forces, double weight) {
+    if (plan_.stances_only || i == 0 || i + 1 == ids_.size()) {
+      graph_.add_edge(EdgeBalance(weight, weight), ids_[i], forces);
+      return;
+    }
+    EdgeMovingBalance edge(weight, weight);
+    const auto at = [&](std::size_t k, ConfigurationState& state) -> const ConfigurationState& {
+      state.time_s = graph_.vertex(ids_[k]).time_s;
+      state.update(configurations_[k].data());
+      return state;
+    };
+    const WrenchesState wrenches = state_of(graph_.vertex(forces));
+    Eigen::Matrix<double, 6, 1> left_over;
+    edge.error(at(i, state_), wrenches, at(i - 1, before_), at(i + 1, after_), left_over);
+    edge.load = left_over;
+    graph_.add_edge(edge, ids_[i], forces, ids_[i - 1], ids_[i + 1]);
   }
 
   /// Of the step that ends at configuration i.
@@ -347,7 +385,7 @@ class PlanEdges {
   std::vector<Configuration> ids_;
   std::vector<Eigen::VectorXd> configurations_;
   int free_id_ = 0;
-  ConfigurationState state_;
+  ConfigurationState state_, before_, after_;
   std::optional<EdgeSurfaceDistance> surfaces_;  // of the configuration before
 };
 

@@ -22,6 +22,7 @@ PlanIndex plan_index(const Graph& graph, const std::vector<int>& slots) {
         if (i < 0) continue;
         std::vector<int>& bearing = index.wrenches[static_cast<std::size_t>(i)];
         if (std::ranges::find(bearing, a) == bearing.end()) bearing.push_back(a);
+        break;
       }
     }
   }

@@ -15,7 +15,8 @@ namespace locograph {
 struct PlanIndex {
   /// By vertex slot: the place in Plan::slots; -1: a vertex of another type.
   std::vector<int> configuration;
-  /// Of each configuration the slots of the VERTEX_WRENCHES that share an edge with it.
+  /// Of each configuration the slots of the VERTEX_WRENCHES that share an edge with it in which it
+  /// is the first configuration.
   std::vector<std::vector<int>> wrenches;
   /// Of each configuration the last segment that holds it; -1: the plan has none.
   std::vector<int> segment;

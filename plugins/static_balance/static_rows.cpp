@@ -1,4 +1,5 @@
 #include <locograph/common/skew.h>
+#include <locograph/plugins/configuration/edge_fit.h>
 #include <locograph/plugins/static_balance/static_rows.h>
 #include <locograph/robots/kinematic_tree.h>
 #include <locograph/robots/statics.h>
@@ -20,13 +21,6 @@ const Axis& axis_at(const RobotState& state, int i) {
   return state.robot().axes()[static_cast<std::size_t>(i)];
 }
 
-/// How axis i moves a point behind it.
-Eigen::Vector3d point_column(const RobotState& state, int i, const Eigen::Vector3d& point) {
-  const Eigen::Vector3d& axis = state.joint_axis(i);
-  if (!revolute(state, i)) return axis;
-  return axis.cross(point - state.joint_origin(i));
-}
-
 Eigen::Matrix3d base_from_world(const RobotState& state) {
   return state.world_from_link(0).linear().transpose();
 }
@@ -41,6 +35,12 @@ void add_turning(const Eigen::Vector3d& arm, const Eigen::Vector3d& force,
 }
 
 }  // namespace
+
+Eigen::Vector3d point_column(const RobotState& state, int i, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d& axis = state.joint_axis(i);
+  if (!revolute(state, i)) return axis;
+  return axis.cross(point - state.joint_origin(i));
+}
 
 AppliedWrench::AppliedWrench(const RobotState& state, const ContactParameter& c,
                              const double* components)
@@ -132,6 +132,38 @@ void add_wrench_on_base_by_components(const RobotState& state, const AppliedWren
     }
     ++first;
   }
+}
+
+void balance_of_base(std::string_view tag, const ConfigurationState& q,
+                     const WrenchesState& wrenches, BaseWrench e) {
+  if (!q.model().floating_base()) {
+    throw locograph::Error(std::string(tag) + " on a robot with a fixed base", "a floating base");
+  }
+  require_same_robot(tag, q.robot, wrenches.contacts->front()->robot);
+  e.setZero();
+  add_gravity_on_base(q.kinematics, e);
+  const double* components = wrenches.components.data();
+  for (const auto& contact : *wrenches.contacts) {
+    add_wrench_on_base(q.kinematics, AppliedWrench(q.kinematics, *contact, components), e);
+    components += contact->cone->components().size();
+  }
+}
+
+void balance_of_base_gradients(const ConfigurationState& q, const WrenchesState& wrenches,
+                               BaseWrenchGradient by_q, BaseWrenchGradient by_wrenches) {
+  add_gravity_on_base_gradient(q.kinematics, by_q);
+  int first = 0;
+  for (const auto& contact : *wrenches.contacts) {
+    const AppliedWrench applied(q.kinematics, *contact, wrenches.components.data() + first);
+    add_wrench_on_base_gradient(q.kinematics, applied, by_q);
+    add_wrench_on_base_by_components(q.kinematics, applied, first, by_wrenches);
+    first += static_cast<int>(contact->cone->components().size());
+  }
+}
+
+double balance_tolerance(const Robot& robot) {
+  constexpr double kPart = 2e-4;
+  return kPart * robot.total_mass() * standard_gravity().norm();
 }
 
 double gravity_torque(const RobotState& state, int i) {

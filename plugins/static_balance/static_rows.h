@@ -23,8 +23,10 @@
 
 #include <locograph/plugins/configuration/contact_parameter.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
+#include <locograph/plugins/static_balance/vertex_wrenches.h>
 
 #include <Eigen/Core>
+#include <string_view>
 
 namespace locograph {
 
@@ -52,6 +54,19 @@ void add_wrench_on_base_gradient(const RobotState& state, const AppliedWrench& a
 /// By the components of the wrench: columns first … first + contact.cone->components().size() − 1.
 void add_wrench_on_base_by_components(const RobotState& state, const AppliedWrench& applied,
                                       int first, BaseWrenchGradient gradient);
+
+/// The base rows of Σ J_iᵀ w_i − g(q). Throws Error, naming the tag, for a robot with a fixed base
+/// and for wrenches on another robot.
+void balance_of_base(std::string_view tag, const ConfigurationState& q,
+                     const WrenchesState& wrenches, BaseWrench e);
+/// Added to both; by_wrenches as add_wrench_on_base_by_components().
+void balance_of_base_gradients(const ConfigurationState& q, const WrenchesState& wrenches,
+                               BaseWrenchGradient by_q, BaseWrenchGradient by_wrenches);
+/// What counts as balanced [N, N m]: a part of the robot's weight.
+double balance_tolerance(const Robot& robot);
+
+/// How axis i, above a point's link, moves the point, in the world [m for each rad or m].
+Eigen::Vector3d point_column(const RobotState& state, int i, const Eigen::Vector3d& point);
 
 /// The torque [N m] or force [N] that gravity asks of axis i of the robot (Robot::axes()), and its
 /// derivative by the tangent: row += scale · gradient. An active joint bears the sum over its axes,

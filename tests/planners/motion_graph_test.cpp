@@ -14,6 +14,7 @@
 #include <locograph/plugins/self_collision/edge_self_collision.h>
 #include <locograph/plugins/static_balance/edge_balance.h>
 #include <locograph/plugins/static_balance/edge_contact_wrench.h>
+#include <locograph/plugins/static_balance/edge_moving_balance.h>
 #include <locograph/plugins/static_balance/edge_wrench_norm.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
 #include <locograph/plugins/surface_distance/edge_surface_distance.h>
@@ -144,7 +145,8 @@ TEST_F(MotionGraph, HasEveryConstraintAndEveryCost) {
   EXPECT_EQ(graph.edges_of<EdgePlanTracking>().size(), count);
   EXPECT_EQ(graph.edges_of<EdgeJointLimits>().size(), count);
   EXPECT_EQ(graph.edges_of<EdgeSurfaceDistance>().size(), count);
-  EXPECT_EQ(graph.edges_of<EdgeBalance>().size(), count);
+  EXPECT_EQ(graph.edges_of<EdgeBalance>().size(), 2u);
+  EXPECT_EQ(graph.edges_of<EdgeMovingBalance>().size(), count - 2);
   EXPECT_EQ(graph.edges_of<EdgeContactWrench>().size(), count);
   EXPECT_EQ(graph.edges_of<EdgeWrenchNorm>().size(), count);
   EXPECT_EQ(graph.edges_of<EdgeVelocityTracking>().size(), count - 1);

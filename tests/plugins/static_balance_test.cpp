@@ -1,5 +1,6 @@
 // Static balance with contact wrenches: what statics.h says, and the four tests of each vertex and
 // edge.
+#include <locograph/robots/dynamics.h>
 #include <locograph/robots/statics.h>
 
 #include <cstring>
@@ -138,6 +139,91 @@ TEST_P(FloatingBalance, HasTheJacobianOfNumericDifferences) {
     for (const int slot : {0, 1}) compare(evaluated, k, slot, kEverywhere, compared);
   }
   EXPECT_EQ(compared.nonzero, 2 * 6 * kStates);
+}
+
+/// Configurations before and after each of a few that stand, and the edge between the three.
+struct Moving {
+  explicit Moving(const RobotCase& robot, unsigned seed, int count, double far)
+      : standing(robot, seed, count) {
+    Random random(seed + 100);
+    const Robot& model = robot.model();
+    for (int i = 0; i < count; ++i) {
+      const auto near = [&](int id, double time_s) {
+        Eigen::VectorXd moved(model.configuration_size());
+        const Eigen::VectorXd by = random.vector(model.tangent_size(), far);
+        model.integrate(standing.graph.vertex(standing.q[static_cast<std::size_t>(i)]).state.data(),
+                        by.data(), moved.data());
+        return add_configuration(standing.graph, robot, id, time_s, moved);
+      };
+      const std::size_t at = static_cast<std::size_t>(i);
+      standing.graph.vertex(standing.q[at]).time_s = 1.0;
+      EdgeMovingBalance edge(1.0, 1.0);
+      edge.load = random.vector(6, 10.0);
+      before.push_back(near(1000 + 2 * i, 0.7));
+      after.push_back(near(1001 + 2 * i, 1.2));
+      standing.graph.add_edge(edge, standing.q[at], standing.w[at], before[at], after[at]);
+    }
+  }
+
+  Standing standing;
+  std::vector<VertexId<VertexConfiguration>> before, after;
+};
+
+TEST_P(FloatingBalance, OfARobotThatMovesAsAWholeIsInverseDynamics) {
+  Moving moving(robot, 11, 10, 0.0);
+  Graph& graph = moving.standing.graph;
+  const Robot& model = robot.model();
+  RobotDynamics dynamics(model);
+  RobotState state(model);
+  Random random(12);
+  for (int i = 0; i < 10; ++i) {
+    const std::size_t at = static_cast<std::size_t>(i);
+    const Eigen::Vector3d back = random.vector(3, 0.1), on = random.vector(3, 0.1);
+    graph.vertex(moving.before[at]).state.head<3>() -= back;
+    graph.vertex(moving.after[at]).state.head<3>() += on;
+    const Eigen::VectorXd q = graph.vertex(moving.standing.q[at]).state;
+    state.update(q.data());
+    // The base's acceleration along its own axes, turning not at all.
+    Eigen::VectorXd velocity = Eigen::VectorXd::Zero(model.tangent_size()), acceleration = velocity;
+    acceleration.head<3>() = state.world_from_link(0).linear().transpose() *
+                             (2.0 * (on / 0.2 - back / 0.3) / (0.2 + 0.3));
+    Eigen::VectorXd torques(model.tangent_size()), at_rest = torques;
+    dynamics.inverse_dynamics(state, velocity, acceleration, {}, torques);
+    dynamics.inverse_dynamics(state, velocity, velocity, {}, at_rest);
+    const Eigen::VectorXd expected = -torques_by_statics(moving.standing, at).head<6>() -
+                                     (torques - at_rest).head<6>() -
+                                     graph.edges_of<EdgeMovingBalance>()[at].load;
+    EXPECT_LT((Evaluated(graph).error(i) - expected).norm(), 1e-10 * expected.norm());
+  }
+}
+
+TEST_P(FloatingBalance, OfAMovingRobotHasTheJacobianOfNumericDifferences) {
+  Moving moving(robot, 13, kStates, 0.05);
+  Evaluated evaluated(moving.standing.graph);
+  Compared compared;
+  for (int k = 0; k < kStates; ++k) {
+    for (const int slot : {0, 1, 2, 3}) compare(evaluated, k, slot, kEverywhere, compared);
+  }
+  EXPECT_EQ(compared.nonzero, 4 * 6 * kStates);
+}
+
+TEST_P(FloatingBalance, OfAMovingRobotKeepsEveryBitInAFile) {
+  Moving moving(robot, 14, 3, 0.05);
+  const TemporaryFolder folder;
+  write_graph(moving.standing.graph, folder.path() / "moving.g2o");
+  Graph again = read_graph(folder.path() / "moving.g2o", robot_types());
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(again.edges_of<EdgeMovingBalance>()[i].load,
+              moving.standing.graph.edges_of<EdgeMovingBalance>()[i].load);
+    EXPECT_EQ(Evaluated(again).error(static_cast<int>(i)),
+              Evaluated(moving.standing.graph).error(static_cast<int>(i)));
+  }
+}
+
+TEST(MovingBalance, RefusesTimesThatDoNotIncrease) {
+  Moving moving(robot_case("Gripper"), 15, 1, 0.05);
+  moving.standing.graph.vertex(moving.after[0]).time_s = 1.0;
+  EXPECT_THROW(Evaluated(moving.standing.graph).error(0), Error);
 }
 
 TEST(FixedBase, HasNoBalance) {
