@@ -295,6 +295,8 @@ void print_summary(const OptimizeOptions& options, const Json& result) {
   if (result.contains("diagnosis_text")) text += result["diagnosis_text"].get<std::string>();
   if (result.contains("output")) {
     text += "written: " + result["output"].get<std::string>() + '\n';
+  } else if (!options.output.empty()) {
+    text += "not written: " + options.output + '\n';
   }
   print_text(text);
 }
@@ -379,8 +381,9 @@ ExitCode optimize(const OptimizeOptions& options) {
     json["diagnosis"] = diagnosis;
     json["diagnosis_text"] = diagnosis_text;
   }
-  if (before) carry_slopes(before->motion, before->plan, graph);
-  if (!options.output.empty() && std::isfinite(result.final.robust)) {
+  // What did not converge is told and not written: a graph cannot say that it is unfinished.
+  if (result.converged && !options.output.empty()) {
+    if (before) carry_slopes(before->motion, before->plan, graph);
     const Progress progress("writing " + options.output);
     write_graph(graph, options.output);
     json["output"] = options.output;
@@ -405,7 +408,7 @@ Command add_optimize(OptionParser& app) {
                   "standard input")
       .required();
   parser.add_option("-o,--output", o.output,
-                    "Where to write the optimised graph; - is standard output");
+                    "Where to write the optimised graph if it converges; - is standard output");
   parser.add_option("--algorithm", o.algorithm, "lm, gn or dogleg")
       .one_of({"lm", "gn", "dogleg"})
       .show_default();

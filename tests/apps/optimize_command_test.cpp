@@ -324,14 +324,20 @@ TEST(Optimize, DoesNotBelieveAWrongLoopClosureForTheChordalGuessEither) {
   EXPECT_NEAR(with_kernel.json()["final_cost"].get<double>(), 1.0 / 3.0 + 3.0, 1e-3);
 }
 
-TEST(Optimize, SaysNoWhenTheIterationsRunOutAndStillWritesWhatItHas) {
+TEST(Optimize, SaysNoWhenTheIterationsRunOutAndWritesNothing) {
   const CommandRunner runner;
   runner.write("a.g2o", kTriangle);
+  runner.write("b.g2o", "what was there");
   const Outcome outcome = runner.run("optimize a.g2o --iterations 1 -o b.g2o --json");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_EQ(outcome.json()["converged"], false);
   EXPECT_EQ(outcome.json()["reason"], "the number of iterations is used up");
-  EXPECT_TRUE(runner.exists("b.g2o"));
+  EXPECT_FALSE(outcome.json().contains("output"));
+  EXPECT_EQ(runner.read("b.g2o"), "what was there");
+  const Outcome told = runner.run("optimize a.g2o --iterations 1 -o b.g2o");
+  EXPECT_EQ(told.exit_code, 1);
+  EXPECT_NE(told.out.find("not written: b.g2o"), std::string::npos) << told.out;
+  EXPECT_EQ(runner.files(), 2);
 }
 
 TEST(Optimize, NamesTheVertexWhereTheSystemIsSingular) {
