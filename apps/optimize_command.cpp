@@ -250,7 +250,6 @@ Json iterations_json(const OptimiserResult& result) {
 }
 
 std::string reason(const OptimiserResult& result, const Graph& graph) {
-  if (result.reason == OptimiserResult::Reason::kStopped) return "interrupted";
   std::string text = result.reason_text();
   if (result.reason == OptimiserResult::Reason::kSingular && result.singular_vertex >= 0) {
     text += " at vertex " + std::to_string(graph.vertex_record(result.singular_vertex).id);
@@ -340,8 +339,11 @@ ExitCode optimize(const OptimizeOptions& options) {
                           : run(start, options, *solver, times);
   Json diagnosis;
   std::string diagnosis_text;
+  bool interrupted = result.reason == OptimiserResult::Reason::kStopped;
   if (options.diagnose || calls_for_diagnosis(result)) {
-    const Diagnosis found = diagnose(graph);
+    const Progress progress("diagnosing " + input_name(options.input));
+    const Diagnosis found = diagnose(graph, {}, {.stop = &stop_flag()});
+    interrupted = interrupted || !found.complete;
     diagnosis = diagnosis_json(found, graph);
     diagnosis_text = found.text(graph);
   }
@@ -362,7 +364,7 @@ ExitCode optimize(const OptimizeOptions& options) {
       {"kernel", options.kernel},
       {"iterations", result.iterations},
       {"converged", result.converged},
-      {"reason", reason(result, graph)},
+      {"reason", interrupted ? "interrupted" : reason(result, graph)},
       {"initial_guess", start.guess},
       {"algorithm", options.algorithm},
       {"linear_solver", ceres ? "ceres" : solver->name()},
@@ -381,8 +383,9 @@ ExitCode optimize(const OptimizeOptions& options) {
     json["diagnosis"] = diagnosis;
     json["diagnosis_text"] = diagnosis_text;
   }
-  // What did not converge is told and not written: a graph cannot say that it is unfinished.
-  if (result.converged && !options.output.empty()) {
+  // What is not done is told and not written: a graph cannot say that it is unfinished.
+  const bool done = result.converged && !interrupted;
+  if (done && !options.output.empty()) {
     if (before) carry_slopes(before->motion, before->plan, graph);
     const Progress progress("writing " + options.output);
     write_graph(graph, options.output);
@@ -393,7 +396,7 @@ ExitCode optimize(const OptimizeOptions& options) {
   } else {
     print_summary(options, json);
   }
-  return result.converged ? kDone : kNo;
+  return done ? kDone : kNo;
 }
 
 }  // namespace
