@@ -1,3 +1,4 @@
+#include <locograph/apps/about_file.h>
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/plan_file.h>
 #include <locograph/check/judge.h>
@@ -7,26 +8,9 @@
 #include <memory>
 
 namespace locograph {
-namespace {
-
-/// What is thrown without a file is about the plan.
-template <class F>
-auto about(const std::string& file, F&& f) {
-  try {
-    return f();
-  } catch (const Error& error) {
-    if (!error.file().empty()) throw;
-    // Without a file, what() begins with the line if there is one.
-    const std::string what = error.what(), line = "line " + std::to_string(error.line()) + ": ";
-    const bool told = error.line() > 0 && what.starts_with(line);
-    throw Error(file, error.line(), told ? what.substr(line.size()) : what, "");
-  }
-}
-
-}  // namespace
 
 Plan plan_of_file(const Graph& graph, const std::string& file) {
-  return about(file, [&] { return plan_of(graph); });
+  return about_file(file, [&] { return plan_of(graph); });
 }
 
 PlanFile plan_in(Graph graph, const std::string& file) {
@@ -67,11 +51,11 @@ Judging judging_of(const PlanFile& file, const WorldOptions& options) {
                                .map = options.map,
                                .obstacles = options.obstacles,
                                .data_folder = data_folder()};
-  return about(file.name, [&] { return judging_of(file.graph, file.plan, request); });
+  return about_file(file.name, [&] { return judging_of(file.graph, file.plan, request); });
 }
 
 CheckReport check_plan(const PlanFile& file, const Judging& judging) {
-  return about(file.name, [&] { return judged(file.graph, file.plan, judging); });
+  return about_file(file.name, [&] { return judged(file.graph, file.plan, judging); });
 }
 
 std::function<CheckReport(const Motion&)> step_check(const Judging& judging) {
