@@ -4,6 +4,7 @@
 #include <locograph/planners/plan/plan_edges.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/configuration/segment_parameter.h>
+#include <locograph/plugins/surface_distance/places_parameter.h>
 
 #include <algorithm>
 #include <array>
@@ -16,6 +17,18 @@ bool is_drive(const Plan& plan) {
   return std::ranges::any_of(plan.stance_from, [](const auto& stance) {
     return stance && std::ranges::any_of(stance->wheels, [](const auto& w) { return !w.locked; });
   });
+}
+
+/// What may be touched, by the scenario's word, where the plan does not say it itself.
+void add_places(PlanFile& file, const Task& task) {
+  Parameters& parameters = file.graph.parameters();
+  if (parameters.find<PlacesParameter>()) return;
+  const auto& all = parameters.all();
+  const VertexConfiguration& first =
+      file.graph.vertex(VertexId<VertexConfiguration>{file.plan.slots.front()});
+  parameters.set(all.contains(kPlacesNumber) ? all.rbegin()->first + 1 : kPlacesNumber,
+                 std::make_shared<const PlacesParameter>(first.robot, first.robot_number,
+                                                         task.world->world()));
 }
 
 }  // namespace
@@ -116,9 +129,13 @@ void ConfigurationReader::add(const std::vector<std::string>& fields, int line) 
 Graph with_edges(ReadTrajectory trajectory, const std::string& file) {
   PlanFile plan = plan_in(std::move(trajectory.graph), file);
   require_motion(plan);
-  add_plan_edges(plan.graph,
-                 is_drive(plan.plan) ? drive_edges() : motion_edges(judging_of(plan, {}).options),
-                 trajectory.wrenches);
+  PlanEdgeOptions edges = drive_edges();
+  if (!is_drive(plan.plan)) {
+    const Judging judging = judging_of(plan, {});
+    if (judging.task) add_places(plan, *judging.task);
+    edges = motion_edges(judging.options);
+  }
+  add_plan_edges(plan.graph, edges, trajectory.wrenches);
   return std::move(plan.graph);
 }
 
