@@ -1,3 +1,4 @@
+#include <locograph/apps/about_file.h>
 #include <locograph/apps/diagnosis_json.h>
 #include <locograph/apps/gauge.h>
 #include <locograph/apps/graph_types.h>
@@ -328,15 +329,16 @@ ExitCode optimize(const OptimizeOptions& options) {
   start.problem.compile(graph);
   start.workspace.allocate(start.problem);
   times.compile = watch.lap();
-  guess(graph, options, report, *solver, start);
+  about_file(input_name(options.input), [&] { guess(graph, options, report, *solver, start); });
   times.guess = watch.lap();
   const int dimension = unknowns(graph);
   int rejected = 0;
   const FinishOnSignal finish;
   const OptimiserResult result =
-      ceres               ? run_ceres(graph, options, times)
-      : options.graduated ? run_graduated(graph, options, *solver, start, rejected, times)
-                          : run(start, options, *solver, times);
+      ceres ? run_ceres(graph, options, times) : about_file(input_name(options.input), [&] {
+        return options.graduated ? run_graduated(graph, options, *solver, start, rejected, times)
+                                 : run(start, options, *solver, times);
+      });
   Json diagnosis;
   std::string diagnosis_text;
   bool interrupted = result.reason == OptimiserResult::Reason::kStopped;

@@ -5,6 +5,7 @@
 #include <locograph/common/data_folder.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 
+#include <algorithm>
 #include <memory>
 
 namespace locograph {
@@ -23,6 +24,20 @@ PlanFile plan_in(Graph graph, const std::string& file) {
 
 PlanFile load_plan(const std::string& file, const std::vector<std::string>& plugins) {
   return plan_in(read_input_graph(file, graph_types(plugins)), input_name(file));
+}
+
+void require_increasing_times(const PlanFile& file) {
+  const auto time_s = [&file](int slot) {
+    return file.graph.vertex(VertexId<VertexConfiguration>{slot}).time_s;
+  };
+  for (std::size_t i = 1; i < file.plan.slots.size(); ++i) {
+    const int before = file.plan.slots[i - 1], here = file.plan.slots[i];
+    if (time_s(here) > time_s(before)) continue;
+    throw Error(
+        file.name,
+        std::max(file.graph.vertex_record(before).line, file.graph.vertex_record(here).line),
+        "two configurations at " + std::to_string(time_s(here)) + " s", "times that increase");
+  }
 }
 
 std::vector<std::filesystem::path> files_of(const PlanFile& file) {

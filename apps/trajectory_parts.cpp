@@ -37,14 +37,7 @@ void require_motion(const PlanFile& file) {
   if (file.plan.stances_only) {
     throw Error(file.name, 0, "is a plan of stances, which has no motion", "a whole plan");
   }
-  const auto time_s = [&file](std::size_t i) {
-    return file.graph.vertex(VertexId<VertexConfiguration>{file.plan.slots[i]}).time_s;
-  };
-  for (std::size_t i = 1; i < file.plan.slots.size(); ++i) {
-    if (time_s(i) > time_s(i - 1)) continue;
-    throw Error(file.name, 0, "two configurations at " + std::to_string(time_s(i)) + " s",
-                "times that increase");
-  }
+  require_increasing_times(file);
 }
 
 std::vector<std::string> parameter_lines(const Graph& graph, const std::filesystem::path& folder) {
@@ -93,12 +86,10 @@ std::vector<int> joint_order(const Robot& robot, const std::vector<std::string>&
 
 ConfigurationReader::ConfigurationReader(Graph& graph, std::string file)
     : graph_(graph), where_{std::move(file), 0, {}} {
-  for (const auto& [number, parameter] : graph.parameters().all()) {
-    robot_ = std::dynamic_pointer_cast<const RobotParameter>(parameter);
-    robot_number_ = number;
-    if (robot_) return;
-  }
-  throw Error(where_.file, 0, "names no robot", "a PARAMS_ROBOT");
+  const auto number = graph.parameters().number_of<RobotParameter>();
+  if (!number) throw Error(where_.file, 0, "names no robot", "a PARAMS_ROBOT");
+  robot_number_ = *number;
+  robot_ = graph.parameters().get<RobotParameter>(*number);
 }
 
 void ConfigurationReader::add(const std::vector<std::string>& fields, int line) {

@@ -17,6 +17,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <typeinfo>
 
@@ -64,13 +65,19 @@ class Parameters {
     return typed;
   }
 
-  /// The first parameter of type P in order of number, null when there is none.
+  /// The lowest number of a parameter of type P, if there is any.
+  template <class P>
+  std::optional<int> number_of() const {
+    for (const auto& [number, parameter] : all_) {
+      if (dynamic_cast<const P*>(parameter.get()) != nullptr) return number;
+    }
+    return std::nullopt;
+  }
+  /// That parameter, null when there is none.
   template <class P>
   std::shared_ptr<const P> find() const {
-    for (const auto& [number, parameter] : all_) {
-      if (auto typed = std::dynamic_pointer_cast<const P>(parameter)) return typed;
-    }
-    return nullptr;
+    const std::optional<int> number = number_of<P>();
+    return number ? get<P>(*number) : nullptr;
   }
 
   const std::map<int, std::shared_ptr<const Parameter>>& all() const { return all_; }

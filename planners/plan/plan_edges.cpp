@@ -74,14 +74,6 @@ int world_number(Graph& graph, const Plan& plan) {
   return number;
 }
 
-/// The number of the plan's PARAMS_PLACES; -1: it has none.
-int places_number(const Graph& graph) {
-  for (const auto& [number, parameter] : graph.parameters().all()) {
-    if (std::dynamic_pointer_cast<const PlacesParameter>(parameter)) return number;
-  }
-  return -1;
-}
-
 /// The stance whose contacts balance a configuration.
 const StanceParameter* bearing_stance(const Plan& plan, std::size_t i) {
   const StanceParameter* left_in = plan.stance_from[i].get();
@@ -100,7 +92,7 @@ class PlanEdges {
         plan_(plan_of(graph)),
         robot_(*plan_.robot->robot),
         world_number_(world_number(graph, plan_)),
-        places_number_(places_number(graph)),
+        places_number_(graph.parameters().number_of<PlacesParameter>()),
         track_(robot_.tangent_size()),
         steps_(robot_.tangent_size()),
         state_(plan_.robot) {
@@ -216,7 +208,7 @@ class PlanEdges {
   /// Nothing where no stance is known, or where two without a common contact meet.
   void add_surface_distance(std::size_t i) {
     const std::size_t before = i == 0 ? i : i - 1;
-    if (places_number_ < 0 || !plan_.stance_from[before] || !plan_.stance_from[i]) return;
+    if (!places_number_ || !plan_.stance_from[before] || !plan_.stance_from[i]) return;
     const auto holds = [&](std::size_t step, int number) {
       return std::ranges::count(plan_.stance_from[step]->contact_numbers, number) > 0;
     };
@@ -228,7 +220,7 @@ class PlanEdges {
     std::vector<int> near = near_contacts(i);
     if (!surfaces_ || surfaces_->before_number != stance_number(before) ||
         surfaces_->after_number != stance_number(i) || surfaces_->near_numbers.all != near) {
-      surfaces_.emplace(*plan_.robot, places_number_, stance_number(before), stance_number(i),
+      surfaces_.emplace(*plan_.robot, *places_number_, stance_number(before), stance_number(i),
                         options_.surface_margin_m, options_.limit_weight, std::move(near));
       surfaces_->bind(graph_.parameters());
     }
@@ -342,7 +334,8 @@ class PlanEdges {
   const JobControl& job_;
   const Plan plan_;
   const Robot& robot_;
-  int world_number_, places_number_;
+  int world_number_;
+  std::optional<int> places_number_;      // none: the plan does not say what may be touched
   Eigen::VectorXd track_, goal_, steps_;  // weights
   std::vector<Configuration> ids_;
   std::vector<Eigen::VectorXd> configurations_;

@@ -363,8 +363,10 @@ TEST(ConvertCommand, WhatItDoesNotConvert) {
                 [](const std::string& line) { return line.starts_with("PARAMS_SEGMENT"); });
   at_once.configurations[3].time_s = at_once.configurations[2].time_s;
   runner.write("at_once.g2o", at_once.text());
-  expect_refusal(runner.run("convert at_once.g2o -o x.json"), "at_once.g2o",
+  const std::string later = "at_once.g2o:" + std::to_string(at_once.parameters.size() + 4);
+  expect_refusal(runner.run("convert at_once.g2o -o x.json"), later,
                  "expected times that increase");
+  expect_refusal(runner.run("plot at_once.g2o -o x.svg"), later, "expected times that increase");
 }
 
 }  // namespace
