@@ -214,6 +214,8 @@ const BadLine kBadLines[] = {
     {"WrenchesTwiceAtAContact", "VERTEX_WRENCHES 9 2 2 2 0 0 0 0 0 0", "contact 2 twice"},
     {"WrenchesWithTooFewComponents", "VERTEX_WRENCHES 9 2 1 2 0 0 0", "too few fields"},
     {"WrenchesWithTooManyComponents", "VERTEX_WRENCHES 9 1 3 1 2 3 4 5 6", "too many fields"},
+    {"WrenchBeyondAllForces", "VERTEX_WRENCHES 9 1 2 0 0 -1e300",
+     "a wrench of -1e300 is beyond all forces, expected up to 1e9"},
     {"WrenchThatIsNotANumber", "VERTEX_WRENCHES 9 1 2 nan 0 0", "'nan' is not finite"},
     {"BalanceOfTwoWrenches", "EDGE_BALANCE 1 1 scalar 1",
      "vertex 1 is a VERTEX_WRENCHES, expected a VERTEX_CONFIGURATION"},
