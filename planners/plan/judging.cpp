@@ -124,9 +124,9 @@ void judge_ends(const Motion& motion, const Judging& judging, CheckReport& repor
 /// How high the ground is does not come from the plan: one that says otherwise was planned for
 /// another world.
 void require_same_ground(const Graph& graph, const World& world) {
-  for (const auto& [number, parameter] : graph.parameters().all()) {
-    const auto seen = std::dynamic_pointer_cast<const WorldParameter>(parameter);
-    if (!seen || !seen->ground_z_m) continue;
+  for (const int number : graph.parameters().numbers_of<WorldParameter>()) {
+    const auto seen = graph.parameters().get<WorldParameter>(number);
+    if (!seen->ground_z_m) continue;
     const double ground = ground_height(world);
     constexpr double kSame_m = 1e-9;
     if (std::abs(*seen->ground_z_m - ground) <= kSame_m) continue;

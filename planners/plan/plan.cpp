@@ -20,18 +20,13 @@ const VertexConfiguration& configuration(const Graph& graph, int slot) {
 /// The only parameter of its type, null if there is none.
 template <class P>
 std::shared_ptr<const P> only(const Parameters& parameters) {
-  std::shared_ptr<const P> found;
-  int first_line = 0;
-  for (const auto& [number, parameter] : parameters.all()) {
-    auto typed = std::dynamic_pointer_cast<const P>(parameter);
-    if (!typed) continue;
-    const int line = parameters.line(number);
-    if (found) {
-      throw Error("", std::max(line, first_line),
-                  "a second " + std::string(typed->tag()) + " in a plan", "one");
-    }
-    found = std::move(typed);
-    first_line = line;
+  const std::set<int>& numbers = parameters.numbers_of<P>();
+  auto found = parameters.find<P>();
+  if (numbers.size() > 1) {
+    throw Error(
+        "",
+        std::max(parameters.line(*numbers.begin()), parameters.line(*std::next(numbers.begin()))),
+        "a second " + std::string(found->tag()) + " in a plan", "one");
   }
   return found;
 }
@@ -93,9 +88,8 @@ struct GivenSegment {
 /// In their order.
 std::vector<GivenSegment> given_segments(const Parameters& parameters) {
   std::vector<GivenSegment> given;
-  for (const auto& [number, parameter] : parameters.all()) {
-    auto segment = std::dynamic_pointer_cast<const SegmentParameter>(parameter);
-    if (segment) given.push_back({std::move(segment), number, parameters.line(number)});
+  for (const int number : parameters.numbers_of<SegmentParameter>()) {
+    given.push_back({parameters.get<SegmentParameter>(number), number, parameters.line(number)});
   }
   std::ranges::stable_sort(given, {}, [](const GivenSegment& g) { return g.segment->segment; });
   return given;

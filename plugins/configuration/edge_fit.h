@@ -41,10 +41,8 @@ template <class RowsOf>
 void require_fitting_robot(const Parameters& parameters, std::string_view tag, long rows,
                            RowsOf rows_of) {
   std::string expected;
-  for (const auto& [number, parameter] : parameters.all()) {
-    const auto* robot = dynamic_cast<const RobotParameter*>(parameter.get());
-    if (robot == nullptr) continue;
-    const long wanted = rows_of(*robot);
+  for (const int number : parameters.numbers_of<RobotParameter>()) {
+    const long wanted = rows_of(*parameters.get<RobotParameter>(number));
     if (wanted == rows) return;
     expected += (expected.empty() ? "" : " or ") + std::to_string(wanted);
   }
