@@ -205,9 +205,11 @@ class PlanEdges {
 
   int stance_number(std::size_t i) const { return graph_.vertex(ids_[i]).stance_number; }
 
-  /// Nothing where no stance is known, or where two without a common contact meet.
+  /// Nothing where no stance is known, or where two without a common contact meet. Configurations
+  /// come one after the other.
   void add_surface_distance(std::size_t i) {
     const std::size_t before = i == 0 ? i : i - 1;
+    if (i == 0 || stance_number(before) != stance_number(i)) begin_stance(before, i);
     if (!places_number_ || !plan_.stance_from[before] || !plan_.stance_from[i]) return;
     const auto holds = [&](std::size_t step, int number) {
       return std::ranges::count(plan_.stance_from[step]->contact_numbers, number) > 0;
@@ -231,13 +233,18 @@ class PlanEdges {
     graph_.add_edge(std::move(edge), ids_[i]);
   }
 
+  void begin_stance(std::size_t before, std::size_t i) {
+    other_before_ = before;
+    other_after_ = i;
+    while (other_after_ + 1 < ids_.size() && stance_number(other_after_) == stance_number(i)) {
+      ++other_after_;
+    }
+  }
+
   /// Of the stances before and after that of a configuration, contacts that it has just left or is
   /// about to make.
   std::vector<int> near_contacts(std::size_t i) const {
     if (plan_.stances_only) return {};
-    std::size_t first = i, end = i;
-    while (first > 0 && stance_number(first) == stance_number(i)) --first;
-    while (end + 1 < ids_.size() && stance_number(end) == stance_number(i)) ++end;
     const std::vector<int> closed = contacts_at(plan_.stance_from, i);
     const auto is_closed = [&](const ContactParameter& contact) {
       return std::ranges::any_of(closed, [&](int number) {
@@ -246,7 +253,7 @@ class PlanEdges {
       });
     };
     std::vector<int> near;
-    for (const std::size_t other : {first, end}) {
+    for (const std::size_t other : {other_before_, other_after_}) {
       if (!plan_.stance_from[other]) continue;
       for (std::size_t c = 0; c < plan_.stance_from[other]->contacts.size(); ++c) {
         const ContactParameter& contact = *plan_.stance_from[other]->contacts[c];
@@ -342,6 +349,8 @@ class PlanEdges {
   int free_id_ = 0;
   ConfigurationState state_;
   std::optional<EdgeSurfaceDistance> surfaces_;  // of the configuration before
+  /// The nearest configurations that are left in another stance, else the ends of the plan.
+  std::size_t other_before_ = 0, other_after_ = 0;
 };
 
 }  // namespace
