@@ -1,3 +1,4 @@
+#include <locograph/apps/about_file.h>
 #include <locograph/apps/describe.h>
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/progress.h>
@@ -101,7 +102,7 @@ Json describe_graph(const std::filesystem::path& path, const TypeRegistry& types
   if (report.indefinite_information > 0) {
     json["first_indefinite_line"] = report.first_indefinite_line;
   }
-  add_violations(json, graph);
+  about_file(path.string(), [&] { add_violations(json, graph); });
   if (json.contains("violations")) {
     for (Json& violation : json["violations"]) violation = std::string(violation["text"]);
   }

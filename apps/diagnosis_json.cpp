@@ -29,6 +29,7 @@ Json diagnosis_json(const Diagnosis& diagnosis, const Graph& graph) {
                          {"difference", wrong.difference}});
   }
   return {{"healthy", diagnosis.healthy()},
+          {"complete", diagnosis.complete},
           {"free_directions", diagnosis.free_directions()},
           {"parts", parts},
           {"errors_not_finite", not_finite},

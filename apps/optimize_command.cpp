@@ -1,3 +1,4 @@
+#include <locograph/apps/about_file.h>
 #include <locograph/apps/diagnosis_json.h>
 #include <locograph/apps/gauge.h>
 #include <locograph/apps/graph_types.h>
@@ -250,7 +251,6 @@ Json iterations_json(const OptimiserResult& result) {
 }
 
 std::string reason(const OptimiserResult& result, const Graph& graph) {
-  if (result.reason == OptimiserResult::Reason::kStopped) return "interrupted";
   std::string text = result.reason_text();
   if (result.reason == OptimiserResult::Reason::kSingular && result.singular_vertex >= 0) {
     text += " at vertex " + std::to_string(graph.vertex_record(result.singular_vertex).id);
@@ -295,6 +295,8 @@ void print_summary(const OptimizeOptions& options, const Json& result) {
   if (result.contains("diagnosis_text")) text += result["diagnosis_text"].get<std::string>();
   if (result.contains("output")) {
     text += "written: " + result["output"].get<std::string>() + '\n';
+  } else if (!options.output.empty()) {
+    text += "not written: " + options.output + '\n';
   }
   print_text(text);
 }
@@ -327,19 +329,23 @@ ExitCode optimize(const OptimizeOptions& options) {
   start.problem.compile(graph);
   start.workspace.allocate(start.problem);
   times.compile = watch.lap();
-  guess(graph, options, report, *solver, start);
+  about_file(input_name(options.input), [&] { guess(graph, options, report, *solver, start); });
   times.guess = watch.lap();
   const int dimension = unknowns(graph);
   int rejected = 0;
   const FinishOnSignal finish;
   const OptimiserResult result =
-      ceres               ? run_ceres(graph, options, times)
-      : options.graduated ? run_graduated(graph, options, *solver, start, rejected, times)
-                          : run(start, options, *solver, times);
+      ceres ? run_ceres(graph, options, times) : about_file(input_name(options.input), [&] {
+        return options.graduated ? run_graduated(graph, options, *solver, start, rejected, times)
+                                 : run(start, options, *solver, times);
+      });
   Json diagnosis;
   std::string diagnosis_text;
+  bool interrupted = result.reason == OptimiserResult::Reason::kStopped;
   if (options.diagnose || calls_for_diagnosis(result)) {
-    const Diagnosis found = diagnose(graph);
+    const Progress progress("diagnosing " + input_name(options.input));
+    const Diagnosis found = diagnose(graph, {}, {.stop = &stop_flag()});
+    interrupted = interrupted || !found.complete;
     diagnosis = diagnosis_json(found, graph);
     diagnosis_text = found.text(graph);
   }
@@ -360,7 +366,7 @@ ExitCode optimize(const OptimizeOptions& options) {
       {"kernel", options.kernel},
       {"iterations", result.iterations},
       {"converged", result.converged},
-      {"reason", reason(result, graph)},
+      {"reason", interrupted ? "interrupted" : reason(result, graph)},
       {"initial_guess", start.guess},
       {"algorithm", options.algorithm},
       {"linear_solver", ceres ? "ceres" : solver->name()},
@@ -379,8 +385,10 @@ ExitCode optimize(const OptimizeOptions& options) {
     json["diagnosis"] = diagnosis;
     json["diagnosis_text"] = diagnosis_text;
   }
-  if (before) carry_slopes(before->motion, before->plan, graph);
-  if (!options.output.empty() && std::isfinite(result.final.robust)) {
+  // What is not done is told and not written: a graph cannot say that it is unfinished.
+  const bool done = result.converged && !interrupted;
+  if (done && !options.output.empty()) {
+    if (before) carry_slopes(before->motion, before->plan, graph);
     const Progress progress("writing " + options.output);
     write_graph(graph, options.output);
     json["output"] = options.output;
@@ -390,7 +398,7 @@ ExitCode optimize(const OptimizeOptions& options) {
   } else {
     print_summary(options, json);
   }
-  return result.converged ? kDone : kNo;
+  return done ? kDone : kNo;
 }
 
 }  // namespace
@@ -405,7 +413,7 @@ Command add_optimize(OptionParser& app) {
                   "standard input")
       .required();
   parser.add_option("-o,--output", o.output,
-                    "Where to write the optimised graph; - is standard output");
+                    "Where to write the optimised graph if it converges; - is standard output");
   parser.add_option("--algorithm", o.algorithm, "lm, gn or dogleg")
       .one_of({"lm", "gn", "dogleg"})
       .show_default();

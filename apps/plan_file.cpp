@@ -1,32 +1,17 @@
+#include <locograph/apps/about_file.h>
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/plan_file.h>
 #include <locograph/check/judge.h>
 #include <locograph/common/data_folder.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 
+#include <algorithm>
 #include <memory>
 
 namespace locograph {
-namespace {
-
-/// What is thrown without a file is about the plan.
-template <class F>
-auto about(const std::string& file, F&& f) {
-  try {
-    return f();
-  } catch (const Error& error) {
-    if (!error.file().empty()) throw;
-    // Without a file, what() begins with the line if there is one.
-    const std::string what = error.what(), line = "line " + std::to_string(error.line()) + ": ";
-    const bool told = error.line() > 0 && what.starts_with(line);
-    throw Error(file, error.line(), told ? what.substr(line.size()) : what, "");
-  }
-}
-
-}  // namespace
 
 Plan plan_of_file(const Graph& graph, const std::string& file) {
-  return about(file, [&] { return plan_of(graph); });
+  return about_file(file, [&] { return plan_of(graph); });
 }
 
 PlanFile plan_in(Graph graph, const std::string& file) {
@@ -39,6 +24,20 @@ PlanFile plan_in(Graph graph, const std::string& file) {
 
 PlanFile load_plan(const std::string& file, const std::vector<std::string>& plugins) {
   return plan_in(read_input_graph(file, graph_types(plugins)), input_name(file));
+}
+
+void require_increasing_times(const PlanFile& file) {
+  const auto time_s = [&file](int slot) {
+    return file.graph.vertex(VertexId<VertexConfiguration>{slot}).time_s;
+  };
+  for (std::size_t i = 1; i < file.plan.slots.size(); ++i) {
+    const int before = file.plan.slots[i - 1], here = file.plan.slots[i];
+    if (time_s(here) > time_s(before)) continue;
+    throw Error(
+        file.name,
+        std::max(file.graph.vertex_record(before).line, file.graph.vertex_record(here).line),
+        "two configurations at " + std::to_string(time_s(here)) + " s", "times that increase");
+  }
 }
 
 std::vector<std::filesystem::path> files_of(const PlanFile& file) {
@@ -67,11 +66,11 @@ Judging judging_of(const PlanFile& file, const WorldOptions& options) {
                                .map = options.map,
                                .obstacles = options.obstacles,
                                .data_folder = data_folder()};
-  return about(file.name, [&] { return judging_of(file.graph, file.plan, request); });
+  return about_file(file.name, [&] { return judging_of(file.graph, file.plan, request); });
 }
 
 CheckReport check_plan(const PlanFile& file, const Judging& judging) {
-  return about(file.name, [&] { return judged(file.graph, file.plan, judging); });
+  return about_file(file.name, [&] { return judged(file.graph, file.plan, judging); });
 }
 
 std::function<CheckReport(const Motion&)> step_check(const Judging& judging) {

@@ -32,6 +32,9 @@ PlanFile load_plan(const std::string& file, const std::vector<std::string>& plug
 /// The plan in a graph that was read from this file, likewise.
 PlanFile plan_in(Graph graph, const std::string& file);
 
+/// Throws Error with the line of a configuration that is not after the one before.
+void require_increasing_times(const PlanFile& file);
+
 /// The files that it names: of its robot, its world, its scenario, its contacts.
 std::vector<std::filesystem::path> files_of(const PlanFile& file);
 

@@ -158,6 +158,7 @@ PlotScript plot_plan(const std::filesystem::path& file, const std::vector<std::s
   if (motion.configurations.size() < 2) {
     throw Error(file.string(), 0, "one configuration is no motion", "two or more");
   }
+  require_increasing_times(plan);
   const bool base = robot.floating_base(), moves = !motion.stances_only;
   const int panels = 1 + (moves ? 2 : 0) + (base ? 1 : 0);
   PlotScript plot(1000, 340 * panels + (base ? 0 : 40));

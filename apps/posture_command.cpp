@@ -1,3 +1,4 @@
+#include <locograph/apps/about_file.h>
 #include <locograph/apps/check_json.h>
 #include <locograph/apps/common_options.h>
 #include <locograph/apps/output.h>
@@ -27,17 +28,6 @@ struct CommandOptions {
   int threads = 1;
   bool json = false;
 };
-
-/// What is thrown without a file is about the robot.
-template <class F>
-auto about(const std::filesystem::path& file, F&& f) {
-  try {
-    return f();
-  } catch (const Error& error) {
-    if (!error.file().empty()) throw;
-    throw Error(file.string(), 0, error.what(), "");
-  }
-}
 
 /// The group state asked for; else the one that robots stand in by its usual names, else neutral.
 Eigen::VectorXd preferred_state(const Robot& robot, const std::string& asked) {
@@ -143,13 +133,13 @@ ExitCode posture(const CommandOptions& options) {
   for (const Contact& contact : problem.stance.contacts) {
     solving.check.known.push_back(contact.effector);
   }
-  const PostureSolver solver = about(files.urdf, [&] {
+  const PostureSolver solver = about_file(files.urdf.string(), [&] {
     return PostureSolver(robot, posture_world(load_world(options.map, options.obstacles)),
                          {.map = options.map, .obstacles = options.obstacles});
   });
   const Robot& model = solver.robot();
   const Eigen::VectorXd state =
-      about(files.srdf, [&] { return preferred_state(model, options.state); });
+      about_file(files.srdf.string(), [&] { return preferred_state(model, options.state); });
   problem.preferred = placed_at(model, state, problem.stance);
   const double load_s = total.seconds();
 
@@ -160,7 +150,8 @@ ExitCode posture(const CommandOptions& options) {
   solving.termination.deadline = Deadline::of_limit(1e-3 * options.deadline_ms);
   solving.termination.stop = &stop_flag();
   const FinishOnSignal finish;
-  const PostureResult result = about(files.urdf, [&] { return solver.solve(problem, solving); });
+  const PostureResult result =
+      about_file(files.urdf.string(), [&] { return solver.solve(problem, solving); });
   if (result.success() && !options.output.empty()) {
     write_graph(solver.graph(problem, result, solving), options.output);
   }

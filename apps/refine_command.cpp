@@ -1,3 +1,4 @@
+#include <locograph/apps/about_file.h>
 #include <locograph/apps/common_options.h>
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/output.h>
@@ -147,8 +148,10 @@ ExitCode refine_plan(const CommandOptions& options) {
     progress->show((cycle.executed + 1) / configurations);
   };
   const FinishOnSignal finish;
-  WalkReport report = walk_plan(
-      file.graph, [&seen](int executed) { return executed == 0 ? seen : nullptr; }, walk_options);
+  WalkReport report = about_file(file.name, [&] {
+    return walk_plan(
+        file.graph, [&seen](int executed) { return executed == 0 ? seen : nullptr; }, walk_options);
+  });
   progress.emplace("judging " + options.input);
   const double judge_s = require_feasible(file, judging.task, report);
   progress.emplace("writing " + options.output);

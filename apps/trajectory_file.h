@@ -36,7 +36,7 @@ ReadTrajectory read_trajectory_csv(const std::string& file, const TypeRegistry& 
 ReadTrajectory read_trajectory_json(const std::string& file, const TypeRegistry& types);
 
 /// The graph of a plan that was read: with the edges that `locograph plan` gives a plan of its
-/// kind.
+/// kind, and what may be touched, where the plan names a scenario that can tell it.
 Graph with_edges(ReadTrajectory trajectory, const std::string& file);
 
 }  // namespace locograph

@@ -4,6 +4,7 @@
 #include <locograph/apps/trajectory_parts.h>
 #include <locograph/check/motion_curve.h>
 #include <locograph/common/input_file.h>
+#include <locograph/common/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -255,8 +256,6 @@ std::vector<double> times_of(const JsonPlan& json, const Json& points) {
   return times;
 }
 
-constexpr double kMostWrench = 1e9;  // N, N m
-
 /// Wrenches of each point, none where the file has none.
 std::vector<StanceWrenches> wrenches_of(const JsonPlan& json, const PlanFile& plan) {
   std::vector<StanceWrenches> all;
@@ -276,7 +275,7 @@ std::vector<StanceWrenches> wrenches_of(const JsonPlan& json, const PlanFile& pl
       if (!contact.bears_load) continue;
       const std::vector<double> given = json.numbers(list[i], contact.name(), path, 6);
       for (const double value : given) {
-        if (std::abs(value) > kMostWrench) json.fail(path, "is beyond all forces", "up to 1e9");
+        if (std::abs(value) > ranges::kWrench) json.fail(path, "is beyond all forces", "up to 1e9");
       }
       std::ranges::copy(given, here.back().begin());
     }

@@ -4,6 +4,7 @@
 #include <locograph/planners/plan/plan_edges.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/configuration/segment_parameter.h>
+#include <locograph/plugins/surface_distance/places_parameter.h>
 
 #include <algorithm>
 #include <array>
@@ -18,20 +19,25 @@ bool is_drive(const Plan& plan) {
   });
 }
 
+/// What may be touched, by the scenario's word, where the plan does not say it itself.
+void add_places(PlanFile& file, const Task& task) {
+  Parameters& parameters = file.graph.parameters();
+  if (parameters.find<PlacesParameter>()) return;
+  const auto& all = parameters.all();
+  const VertexConfiguration& first =
+      file.graph.vertex(VertexId<VertexConfiguration>{file.plan.slots.front()});
+  parameters.set(all.contains(kPlacesNumber) ? all.rbegin()->first + 1 : kPlacesNumber,
+                 std::make_shared<const PlacesParameter>(first.robot, first.robot_number,
+                                                         task.world->world()));
+}
+
 }  // namespace
 
 void require_motion(const PlanFile& file) {
   if (file.plan.stances_only) {
     throw Error(file.name, 0, "is a plan of stances, which has no motion", "a whole plan");
   }
-  const auto time_s = [&file](std::size_t i) {
-    return file.graph.vertex(VertexId<VertexConfiguration>{file.plan.slots[i]}).time_s;
-  };
-  for (std::size_t i = 1; i < file.plan.slots.size(); ++i) {
-    if (time_s(i) > time_s(i - 1)) continue;
-    throw Error(file.name, 0, "two configurations at " + std::to_string(time_s(i)) + " s",
-                "times that increase");
-  }
+  require_increasing_times(file);
 }
 
 std::vector<std::string> parameter_lines(const Graph& graph, const std::filesystem::path& folder) {
@@ -80,12 +86,10 @@ std::vector<int> joint_order(const Robot& robot, const std::vector<std::string>&
 
 ConfigurationReader::ConfigurationReader(Graph& graph, std::string file)
     : graph_(graph), where_{std::move(file), 0, {}} {
-  for (const auto& [number, parameter] : graph.parameters().all()) {
-    robot_ = std::dynamic_pointer_cast<const RobotParameter>(parameter);
-    robot_number_ = number;
-    if (robot_) return;
-  }
-  throw Error(where_.file, 0, "names no robot", "a PARAMS_ROBOT");
+  const auto number = graph.parameters().number_of<RobotParameter>();
+  if (!number) throw Error(where_.file, 0, "names no robot", "a PARAMS_ROBOT");
+  robot_number_ = *number;
+  robot_ = graph.parameters().get<RobotParameter>(*number);
 }
 
 void ConfigurationReader::add(const std::vector<std::string>& fields, int line) {
@@ -116,9 +120,13 @@ void ConfigurationReader::add(const std::vector<std::string>& fields, int line) 
 Graph with_edges(ReadTrajectory trajectory, const std::string& file) {
   PlanFile plan = plan_in(std::move(trajectory.graph), file);
   require_motion(plan);
-  add_plan_edges(plan.graph,
-                 is_drive(plan.plan) ? drive_edges() : motion_edges(judging_of(plan, {}).options),
-                 trajectory.wrenches);
+  PlanEdgeOptions edges = drive_edges();
+  if (!is_drive(plan.plan)) {
+    const Judging judging = judging_of(plan, {});
+    if (judging.task) add_places(plan, *judging.task);
+    edges = motion_edges(judging.options);
+  }
+  add_plan_edges(plan.graph, edges, trajectory.wrenches);
   return std::move(plan.graph);
 }
 

@@ -1,5 +1,5 @@
 #include <locograph/check/check_report.h>
-#include <locograph/common/error.h>
+#include <locograph/common/check_option.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,32 +21,27 @@ double excess(const Violation& v) {
   return std::isnan(amount) ? HUGE_VAL : amount;
 }
 
-void require(bool good, const char* name, double value, const char* expected) {
-  if (!good)
-    throw Error(std::string("check option ") + name + " is " + std::to_string(value), expected);
-}
-
 }  // namespace
 
 void CheckOptions::validate() const {
   const auto positive = [](double value, const char* name) {
-    require(value > 0.0 && std::isfinite(value), name, value, "a positive number");
+    check_option(value > 0.0 && std::isfinite(value), name, "a positive number");
   };
   const auto not_negative = [](double value, const char* name) {
-    require(value >= 0.0 && std::isfinite(value), name, value, "a number that is not negative");
+    check_option(value >= 0.0 && std::isfinite(value), name, "a number that is not negative");
   };
   const auto limit = [](double value, const char* name) {
-    require(value >= 0.0, name, value, "a limit, or 0 for none");
+    check_option(value >= 0.0, name, "a limit, or 0 for none");
   };
   limit(base_linear_m_s, "base_linear_m_s");
   limit(base_angular_rad_s, "base_angular_rad_s");
   limit(joint_acceleration_rad_s2, "joint_acceleration_rad_s2");
   positive(effort_scale, "effort_scale");
-  if (until_s) require(std::isfinite(*until_s), "until_s", *until_s, "a time");
+  if (until_s) check_option(std::isfinite(*until_s), "until_s", "a time");
   not_negative(min_clearance_m, "min_clearance_m");
   not_negative(min_self_clearance_m, "min_self_clearance_m");
-  require(min_balance_margin < 1.0 && std::isfinite(min_balance_margin), "min_balance_margin",
-          min_balance_margin, "a number below 1");
+  check_option(min_balance_margin < 1.0 && std::isfinite(min_balance_margin), "min_balance_margin",
+               "a number below 1");
   positive(max_step_m, "max_step_m");
   positive(max_step_rad, "max_step_rad");
   positive(max_samples_per_step, "max_samples_per_step");

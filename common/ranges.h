@@ -18,6 +18,10 @@ inline constexpr double kTime_s = 1e6;
 inline constexpr double kSlope = 1e6;
 /// Of what contacts bear, and of friction.
 inline constexpr double kForce_N = 1e9, kMoment_Nm = 1e9, kFriction = 1e3;
+/// Of a component of a wrench, N or N m, either sign.
+inline constexpr double kWrench = 1e9;
+/// Of the weight of a row of an error: what it multiplies stays finite.
+inline constexpr double kWeight = 1e30;
 /// Of an obstacle, as fast as its fastest point: what the judge looks at grows with its way.
 inline constexpr double kObstacleSpeed_m_s = 100.0;
 /// Of a drive.

@@ -39,11 +39,12 @@ std::vector<int> part_of_slot(const Graph& graph, const std::vector<Component>& 
   return part;
 }
 
-void find_free_directions(Workspace& workspace, const std::vector<int>& part_of,
-                          std::vector<Diagnosis::Part>& parts) {
+/// False: the termination ended it.
+bool find_free_directions(Workspace& workspace, const std::vector<int>& part_of,
+                          const Termination& termination, std::vector<Diagnosis::Part>& parts) {
   const Problem& problem = workspace.problem();
   const BlockPattern& pattern = problem.pattern();
-  const NullSpace null_space(workspace);
+  const NullSpace null_space(workspace, termination);
   // Held vertices may cut a part into several that H does not tie together.
   for (const NullSpace::Part& loose : null_space.parts()) {
     Diagnosis::Part& part = parts[part_of[problem.free_vertices()[loose.blocks[0]]]];
@@ -66,6 +67,7 @@ void find_free_directions(Workspace& workspace, const std::vector<int>& part_of,
     });
     if (part.loosest.size() > kMostVertices) part.loosest.resize(kMostVertices);
   }
+  return null_space.complete();
 }
 
 void check_edges(Graph& graph, Diagnosis& diagnosis) {
@@ -142,7 +144,8 @@ double difference_of(const EdgePool& pool, const Eigen::VectorXd& error, Eigen::
   return difference == 0.0 ? 0.0 : difference / largest;
 }
 
-std::vector<Diagnosis::WrongJacobian> wrong_jacobians(Workspace& workspace) {
+std::vector<Diagnosis::WrongJacobian> wrong_jacobians(Workspace& workspace,
+                                                      const Termination& termination) {
   const Problem& problem = workspace.problem();
   const Graph& graph = problem.graph();
   const std::vector<std::vector<int>> slot_of = slots_of_edges(graph);
@@ -164,7 +167,7 @@ std::vector<Diagnosis::WrongJacobian> wrong_jacobians(Workspace& workspace) {
     const CompiledEdges& edges = problem.edges()[p];
     const std::size_t count = edges.edges.size(), stride = 1 + count / kMostCompared;
     Diagnosis::WrongJacobian worst;
-    for (std::size_t i = 0; i < count; i += stride) {
+    for (std::size_t i = 0; i < count && !termination.ended(); i += stride) {
       const int k = static_cast<int>(i);
       Eigen::VectorXd error(pool.dimension(edges.edges[k]));
       pool.error(edges, k, x, error.data());
@@ -206,7 +209,7 @@ int Diagnosis::free_directions() const {
 }
 
 bool Diagnosis::healthy() const {
-  return free_directions() == 0 && not_finite.empty() && jacobians.empty() &&
+  return complete && free_directions() == 0 && not_finite.empty() && jacobians.empty() &&
          std::none_of(information.begin(), information.end(),
                       [](const BadInformation& bad) { return bad.smallest_eigenvalue < 0.0; });
 }
@@ -252,10 +255,11 @@ std::string Diagnosis::text(const Graph& graph) const {
         << (bad.smallest_eigenvalue < 0.0 ? " is indefinite" : " is singular")
         << " (smallest eigenvalue " << bad.smallest_eigenvalue << ")\n";
   }
+  if (!complete) out << "the diagnosis was ended before it had looked at everything\n";
   return out.str();
 }
 
-Diagnosis diagnose(Graph& graph, const Bindings& bindings) {
+Diagnosis diagnose(Graph& graph, const Bindings& bindings, const Termination& termination) {
   Diagnosis diagnosis;
   const std::vector<Component> parts = components(graph);
   for (const Component& part : parts) diagnosis.parts.push_back({part, 0, {}});
@@ -270,9 +274,10 @@ Diagnosis diagnose(Graph& graph, const Bindings& bindings) {
     diagnosis.not_finite = edges_without_numbers(workspace);
     return diagnosis;
   }
-  diagnosis.jacobians = wrong_jacobians(workspace);
+  diagnosis.jacobians = wrong_jacobians(workspace, termination);
   workspace.linearise();
-  find_free_directions(workspace, part_of_slot(graph, parts), diagnosis.parts);
+  diagnosis.complete =
+      find_free_directions(workspace, part_of_slot(graph, parts), termination, diagnosis.parts);
   return diagnosis;
 }
 

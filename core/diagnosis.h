@@ -8,6 +8,7 @@
 /// Free directions are the null space of H = JᵀΩJ (null_space.h) at the present state, of the
 /// vertices that are not fixed. Allocates.
 
+#include <locograph/common/termination.h>
 #include <locograph/core/connectivity.h>
 #include <locograph/core/graph.h>
 
@@ -45,16 +46,20 @@ struct Diagnosis {
   /// Those that differ by more than a hundredth: of each type of edge the one that does most, the
   /// worst first.
   std::vector<WrongJacobian> jacobians;
+  /// False: the termination ended it before Jacobians and free directions were all looked at.
+  bool complete = true;
 
   int free_directions() const;
-  /// Nothing is free, every error a number, no information indefinite, no Jacobian wrong.
+  /// Everything was looked at: nothing is free, every error a number, no information indefinite, no
+  /// Jacobian wrong.
   bool healthy() const;
   /// A few lines, each ended by a newline; empty for a healthy graph in one part.
   std::string text(const Graph& graph) const;
 };
 
 /// Does not change the graph.
-Diagnosis diagnose(Graph& graph, const Bindings& bindings = {});
+Diagnosis diagnose(Graph& graph, const Bindings& bindings = {},
+                   const Termination& termination = {});
 
 /// "EDGE_SE2 3 4 (line 17)", for messages.
 std::string edge_text(const Graph& graph, EdgeId edge);

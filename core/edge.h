@@ -37,11 +37,12 @@
 ///     LOCOGRAPH_REGISTER_EDGE("CENTROID_XY", EdgeCentroid)
 ///
 /// Optional members: fields() names what is saved besides ids and information (without it nothing
-/// is); bind(const Parameters&) looks up shared parameters before use; predict_first/predict_second
-/// (binary edges) give one vertex's view from the other's, for initial guesses. An error size known
-/// at run time only is Eigen::Dynamic and hides dimension(). kRowsPerVertex (DynamicEdge): the
-/// error has so many rows for each of the many vertices, and files count the vertices, not the
-/// rows. Every edge carries its vertices, information and robust kernel by value.
+/// is); bind(const Parameters&) looks up shared parameters before use; check(const Graph&) const
+/// throws Error for vertices that it does not fit, when it is read or added; predict_first and
+/// predict_second (binary edges) give one vertex's view from the other's, for initial guesses. An
+/// error size known at run time only is Eigen::Dynamic and hides dimension(). kRowsPerVertex
+/// (DynamicEdge): the error has so many rows for each of the many vertices, and files count the
+/// vertices, not the rows. Every edge carries its vertices, information and robust kernel by value.
 ///
 /// An edge that reads a parameter which a workspace may stand another one in for (bindings.h) takes
 /// const Bindings& as the last argument of error() and of jacobians(), and asks it:

@@ -7,8 +7,9 @@
 ///
 /// Ω is the upper triangle row by row; weights are `scalar w` when all are equal, `scalar w without
 /// k row…` when k of many rows have none and the others are equal (rows from 0, ascending),
-/// `diagonal w…` otherwise. Included by typed_edge_pool.h only.
+/// `diagonal w…` otherwise; each from 0 to ranges::kWeight. Included by typed_edge_pool.h only.
 
+#include <locograph/common/ranges.h>
 #include <locograph/core/edge_evaluation.h>
 
 #include <string>
@@ -58,8 +59,15 @@ void read_weights(E& edge, int size, FieldReader& in) {
   }
   edge.weights.resize(size);
   for (int r = 0; r < size; ++r) {
-    edge.weights[r] = kind == "scalar" && r > 0 ? edge.weights[0] : in.number();
+    if (kind == "scalar" && r > 0) {
+      edge.weights[r] = edge.weights[0];
+      continue;
+    }
+    const std::string_view weight = in.peek();
+    edge.weights[r] = in.number();
     if (edge.weights[r] < 0.0) in.fail("a negative weight", "weights >= 0");
+    if (edge.weights[r] > ranges::kWeight)
+      in.fail("the weight " + std::string(weight), "at most 1e30");
   }
   if (kind != "scalar" || in.peek() != "without") return;
   in.word();

@@ -23,6 +23,7 @@
 #include <memory>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace locograph {
@@ -217,6 +218,7 @@ class Graph {
     } else {
       check_edge(edge.vertices, edge.information, edge.dimension());
     }
+    if constexpr (requires { std::as_const(edge).check(*this); }) std::as_const(edge).check(*this);
     const int pool = edge_pool_of<E>();
     std::vector<E>& edges = static_cast<TypedEdgePool<E>&>(*edge_pools_[pool]).edges;
     edges.push_back(std::move(edge));

@@ -37,7 +37,8 @@ std::vector<int> first_of_component(const BlockPattern& pattern) {
 
 }  // namespace
 
-NullSpace::NullSpace(Workspace& workspace) : workspace_(workspace) {
+NullSpace::NullSpace(Workspace& workspace, const Termination& termination)
+    : workspace_(workspace), termination_(termination) {
   const int n = workspace.problem().dimension();
   if (n == 0) return;
   const Sparse hessian = scaled_hessian();
@@ -49,11 +50,16 @@ NullSpace::NullSpace(Workspace& workspace) : workspace_(workspace) {
   upper.selfadjointView<Eigen::Upper>() = hessian.selfadjointView<Eigen::Upper>().twistedBy(order_);
   analyse(upper);
   factorise(upper);
-  if (candidate_rows_.empty()) return;
+  if (!complete_ || candidate_rows_.empty()) return;
   std::vector<Group> groups = make_groups();
   refine(groups);
-  for (const Group& group : groups) keep_free(group);
+  for (const Group& group : groups) {
+    if (goes_on()) keep_free(group);
+  }
+  if (!complete_) parts_.clear();
 }
+
+bool NullSpace::goes_on() { return complete_ = complete_ && !termination_.ended(); }
 
 int NullSpace::dimension() const {
   int sum = 0;
@@ -119,7 +125,7 @@ void NullSpace::factorise(const Sparse& upper) {
   std::vector<int> mark(n), pattern(n), path(n);
   pivot_.resize(n);
   column_size_.assign(n, 0);
-  for (int k = 0; k < n; ++k) {
+  for (int k = 0; k < n && goes_on(); ++k) {
     int top = n;
     mark[k] = k;
     for (Sparse::InnerIterator entry(upper, k); entry; ++entry) {
@@ -231,7 +237,9 @@ void NullSpace::refine(std::vector<Group>& groups) {
         residual.row(group.anchors[a]) -= group.v.row(group.anchors[a]);
         residual(group.anchors[a], static_cast<Eigen::Index>(a)) += 1.0;
       }
-      for (Eigen::Index c = 0; c < residual.cols(); ++c) solve(group, residual.col(c), scratch);
+      for (Eigen::Index c = 0; c < residual.cols() && goes_on(); ++c) {
+        solve(group, residual.col(c), scratch);
+      }
       group.v += residual;
     }
     sum_edges(groups);
@@ -248,7 +256,7 @@ void NullSpace::sum_edges(std::vector<Group>& groups) {
   for (std::size_t p = 0; p < problem.edges().size(); ++p) {
     EdgePool& pool = *problem.graph().edge_pools()[p];
     const CompiledEdges& compiled = problem.edges()[p];
-    for (int k = 0; k < static_cast<int>(compiled.edges.size()); ++k) {
+    for (int k = 0; k < static_cast<int>(compiled.edges.size()) && goes_on(); ++k) {
       int number = -1;
       for (int s = compiled.slot_begin[k]; s < compiled.slot_begin[k + 1] && number < 0; ++s) {
         const int row = compiled.slots[s].tangent_offset;

@@ -15,8 +15,9 @@
 /// of suffering that of H; V is refined with residuals of the same kind. What stays below 1e-17 of
 /// the scaled length is free. An anchor weaker than that counts as none.
 ///
-/// Costs a few iterations of a general sparse solver.
+/// Costs a few iterations of a general sparse solver; much more where many rows are candidates.
 
+#include <locograph/common/termination.h>
 #include <locograph/core/workspace.h>
 
 #include <Eigen/Core>
@@ -35,8 +36,10 @@ class NullSpace {
     Eigen::MatrixXd directions;  ///< steps, one in each column; rows of the blocks in their order
   };
 
-  explicit NullSpace(Workspace& workspace);
+  explicit NullSpace(Workspace& workspace, const Termination& termination = {});
 
+  /// False: the termination ended it, and it has no parts.
+  bool complete() const { return complete_; }
   /// Those that have any.
   std::span<const Part> parts() const { return parts_; }
   int dimension() const;
@@ -52,6 +55,8 @@ class NullSpace {
     Eigen::MatrixXd v, product, energy;  ///< V, JᵀΩJV, VᵀJᵀΩJV
   };
 
+  /// Whether the termination lets it; from the first time that it does not complete() is false.
+  bool goes_on();
   Sparse scaled_hessian();
   void analyse(const Sparse& upper);
   void factorise(const Sparse& upper);
@@ -62,6 +67,8 @@ class NullSpace {
   void keep_free(const Group& group);
 
   Workspace& workspace_;
+  Termination termination_;
+  bool complete_ = true;
   Eigen::VectorXd scale_;  ///< D^-½
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order_;
   std::vector<int> parent_, column_size_, row_;

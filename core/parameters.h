@@ -17,7 +17,11 @@
 
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
+#include <type_traits>
+#include <typeindex>
 #include <typeinfo>
 
 namespace locograph {
@@ -34,15 +38,20 @@ class Parameters {
  public:
   /// line: of the file that it was read from. Throws Error when the number is taken.
   void set(int number, std::shared_ptr<const Parameter> parameter, int line = 0) {
-    if (!all_.emplace(number, std::move(parameter)).second) {
+    if (all_.contains(number)) {
       throw Error("parameter " + std::to_string(number) + " is given twice", "one definition");
     }
+    replace(number, std::move(parameter));
     if (line > 0) lines_[number] = line;
   }
   void replace(int number, std::shared_ptr<const Parameter> parameter) {
+    forget_type(number);
+    const Parameter& added = *parameter;
+    numbers_[typeid(added)].insert(number);
     all_[number] = std::move(parameter);
   }
   void remove(int number) {
+    forget_type(number);
     all_.erase(number);
     lines_.erase(number);
   }
@@ -64,13 +73,25 @@ class Parameters {
     return typed;
   }
 
-  /// The first parameter of type P in order of number, null when there is none.
+  /// Of the parameters of type P, ascending; does not look at others.
+  template <class P>
+  const std::set<int>& numbers_of() const {
+    static_assert(std::is_final_v<P>, "a type that others derive from has no list of its own");
+    static const std::set<int> none;
+    const auto found = numbers_.find(typeid(P));
+    return found == numbers_.end() ? none : found->second;
+  }
+  /// The lowest of them, if there is any.
+  template <class P>
+  std::optional<int> number_of() const {
+    const std::set<int>& numbers = numbers_of<P>();
+    return numbers.empty() ? std::nullopt : std::optional(*numbers.begin());
+  }
+  /// That parameter, null when there is none.
   template <class P>
   std::shared_ptr<const P> find() const {
-    for (const auto& [number, parameter] : all_) {
-      if (auto typed = std::dynamic_pointer_cast<const P>(parameter)) return typed;
-    }
-    return nullptr;
+    const std::optional<int> number = number_of<P>();
+    return number ? get<P>(*number) : nullptr;
   }
 
   const std::map<int, std::shared_ptr<const Parameter>>& all() const { return all_; }
@@ -81,7 +102,15 @@ class Parameters {
   }
 
  private:
+  void forget_type(int number) {
+    const auto found = all_.find(number);
+    if (found == all_.end()) return;
+    const Parameter& old = *found->second;
+    numbers_[typeid(old)].erase(number);
+  }
+
   std::map<int, std::shared_ptr<const Parameter>> all_;
+  std::map<std::type_index, std::set<int>> numbers_;
   std::map<int, int> lines_;
 };
 

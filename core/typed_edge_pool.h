@@ -176,6 +176,9 @@ class TypedEdgePool final : public EdgePool {
   void bind([[maybe_unused]] int index, [[maybe_unused]] const Parameters& parameters) override {
     if constexpr (requires(E & e) { e.bind(parameters); }) edges[index].bind(parameters);
   }
+  void check([[maybe_unused]] int index, [[maybe_unused]] const Graph& graph) const override {
+    if constexpr (requires(const E& e) { e.check(graph); }) edges[index].check(graph);
+  }
 
   int read(std::span<const int> vertices, FieldReader& in) override {
     E edge;

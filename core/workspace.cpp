@@ -127,11 +127,43 @@ Cost Workspace::evaluate(const std::vector<double>& state) {
                                                   state.data(), *derived_[p]);
     });
   }
-  return sum_chunks([&](int chunk, std::size_t p) {
+  try {
+    return sum_chunks([&](int chunk, std::size_t p) {
+      const CompiledEdges& edges = problem_->edges()[p];
+      return problem_->graph().edge_pools()[p]->cost(
+          edges, edges.chunk_begin[chunk], edges.chunk_begin[chunk + 1], evaluation(state, chunk));
+    });
+  } catch (const Error&) {
+    throw_with_line(state);
+    throw;
+  }
+}
+
+/// The Error of an edge that cannot be evaluated, with the line that it was read from.
+void Workspace::throw_with_line(const std::vector<double>& state) {
+  const Graph& graph = problem_->graph();
+  const auto line_of = [&graph](std::size_t pool, int index) {
+    for (int slot = 0; slot < graph.edge_slots(); ++slot) {
+      const Graph::EdgeRecord& record = graph.edge_record(slot);
+      if (!graph.edge_alive(slot) || record.index != index) continue;
+      if (record.pool == static_cast<int>(pool)) return record.line;
+    }
+    return 0;
+  };
+  Eigen::VectorXd e;
+  for (std::size_t p = 0; p < problem_->edges().size(); ++p) {
     const CompiledEdges& edges = problem_->edges()[p];
-    return problem_->graph().edge_pools()[p]->cost(
-        edges, edges.chunk_begin[chunk], edges.chunk_begin[chunk + 1], evaluation(state, chunk));
-  });
+    for (std::size_t k = 0; k < edges.edges.size(); ++k) {
+      e.resize(graph.edge_pools()[p]->dimension(edges.edges[k]));
+      try {
+        graph.edge_pools()[p]->error(edges, static_cast<int>(k), evaluation(state, 0), e.data());
+      } catch (const Error& error) {
+        const int line = line_of(p, edges.edges[k]);
+        if (line == 0 || error.line() > 0) throw;
+        throw Error("", line, error.what(), "");
+      }
+    }
+  }
 }
 
 Cost Workspace::linearise() {

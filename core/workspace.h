@@ -50,7 +50,7 @@ class Workspace {
   void accept_trial() { state_.swap(trial_); }
 
   /// Derives the quantities of `state` and sums the cost. Returns a non-finite cost for a state
-  /// that cannot be evaluated.
+  /// that cannot be evaluated. What an edge throws gets the line that the edge was read from.
   Cost evaluate(const std::vector<double>& state);
   /// evaluate(state()) after a run whose last trial may have been refused: does nothing where the
   /// state was evaluated last, as it is when the last trial was accepted.
@@ -85,6 +85,7 @@ class Workspace {
     void assign(const VertexPool& other, std::span<const ActiveVertex> active);
   };
 
+  void throw_with_line(const std::vector<double>& state);
   Evaluation evaluation(const std::vector<double>& state, int chunk) {
     return {state.data(),
             derived_,

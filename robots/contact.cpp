@@ -122,8 +122,7 @@ void require_sound_effector(const Robot& robot, const EndEffector& effector) {
   kind.require_sound(robot, effector);
 }
 
-void require_sound_contact(const Robot& robot, const Contact& contact) {
-  require_sound_effector(robot, contact.effector);
+void require_sound_place(const Contact& contact) {
   const std::string name = contact_of(contact.effector);
   if (!contact.position.allFinite()) {
     throw Error(name + " is at a place that is not finite", "finite numbers");
@@ -137,6 +136,11 @@ void require_sound_contact(const Robot& robot, const Contact& contact) {
     throw Error(name + " is locked", "wheels only are");
   }
   axes_in_world(contact);
+}
+
+void require_sound_contact(const Robot& robot, const Contact& contact) {
+  require_sound_effector(robot, contact.effector);
+  require_sound_place(contact);
 }
 
 void require_sound_stance(const Robot& robot, const Stance& stance) {

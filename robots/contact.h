@@ -116,8 +116,11 @@ double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 /// centre is not on its axle.
 void require_sound_effector(const Robot& robot, const EndEffector& effector);
 
-/// The same for its end effector, and throws Error for a place that is not finite, a normal that is
-/// zero or along forward, a rung without forward, and a lock on what is no wheel.
+/// Throws Error for a place that is not finite, a normal that is zero or along forward, a rung
+/// without forward, and a lock on what is no wheel. Of the end effector nothing is asked.
+void require_sound_place(const Contact& contact);
+
+/// Both for a contact and its end effector.
 void require_sound_contact(const Robot& robot, const Contact& contact);
 
 /// The same for every contact, and throws Error for a stance without contacts or without one that

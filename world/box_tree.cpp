@@ -29,7 +29,7 @@ void BoxTree::build(const std::vector<Eigen::AlignedBox3d>& boxes, std::span<int
     bounds.extend(box(number));
     centres.extend(box(number).center());
   }
-  nodes_.push_back({bounds, -1, numbers.front()});
+  nodes_.push_back({bounds, -1, *std::ranges::min_element(numbers)});
   if (numbers.size() == 1) return;
   Eigen::Index axis = 0;
   centres.sizes().maxCoeff(&axis);
@@ -83,12 +83,10 @@ std::vector<int> solids_of_surfaces(const World& world) {
   constexpr double kRounding_m = 1e-6;
   std::vector<int> solids;
   for (const Surface& surface : world.surfaces) {
-    const std::vector<int> near =
-        tree.touching(box_around(surface.world_from_surface.translation(), kRounding_m));
-    const auto box = std::ranges::find_if(near, [&](int number) {
-      return is_part_of(world.solids[static_cast<std::size_t>(number)], surface);
-    });
-    solids.push_back(box == near.end() ? -1 : *box);
+    solids.push_back(tree.first_touching(
+        box_around(surface.world_from_surface.translation(), kRounding_m), [&](int number) {
+          return is_part_of(world.solids[static_cast<std::size_t>(number)], surface);
+        }));
   }
   return solids;
 }

@@ -10,6 +10,7 @@
 #include <locograph/world/world.h>
 
 #include <Eigen/Geometry>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -29,12 +30,23 @@ class BoxTree {
     for (const int number : endless_) f(number);
     if (!nodes_.empty()) visit(0, box, f);
   }
+  /// The lowest number among them that is(number) holds for, -1: none. Where boxes lie on each
+  /// other it does not ask for all of them.
+  template <class F>
+  int first_touching(const Eigen::AlignedBox3d& box, F&& is) const {
+    int first = std::numeric_limits<int>::max();
+    for (const int number : endless_) {
+      if (number < first && is(number)) first = number;
+    }
+    if (!nodes_.empty()) visit_first(0, box, is, first);
+    return first == std::numeric_limits<int>::max() ? -1 : first;
+  }
 
  private:
   struct Node {
     Eigen::AlignedBox3d bounds;
     int right = -1;   ///< the right child; the left one follows its parent; -1: a leaf
-    int number = -1;  ///< of a leaf's box
+    int number = -1;  ///< of a leaf's box; else the lowest below
   };
 
   void build(const std::vector<Eigen::AlignedBox3d>& boxes, std::span<int> numbers);
@@ -49,6 +61,19 @@ class BoxTree {
     visit(index + 1, box, f);
     visit(node.right, box, f);
   }
+  template <class F>
+  void visit_first(int index, const Eigen::AlignedBox3d& box, F& is, int& first) const {
+    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    if (node.number >= first || !node.bounds.intersects(box)) return;
+    if (node.right < 0) {
+      if (is(node.number)) first = node.number;
+      return;
+    }
+    const bool left = number(index + 1) < number(node.right);
+    visit_first(left ? index + 1 : node.right, box, is, first);
+    visit_first(left ? node.right : index + 1, box, is, first);
+  }
+  int number(int node) const { return nodes_[static_cast<std::size_t>(node)].number; }
 
   std::vector<Node> nodes_;
   std::vector<int> endless_;  ///< boxes that are near everywhere, or nearly

@@ -2,6 +2,7 @@
 #include <locograph/world/collision_world.h>
 #include <locograph/world/convex_shape.h>
 #include <locograph/world/link_solid.h>
+#include <locograph/world/require_metres.h>
 #include <locograph/world/world_solids.h>
 
 #include <algorithm>
@@ -73,8 +74,7 @@ void CollisionWorld::Parts::take_robot(const Robot& robot) {
 CollisionWorld::CollisionWorld(const Robot& robot, std::shared_ptr<const WorldSolids> solids,
                                const CollisionWorldOptions& options)
     : parts_(std::make_unique<Parts>()) {
-  if (!std::isfinite(options.cutoff_m) || options.cutoff_m <= 0.0)
-    throw Error("cutoff_m is " + std::to_string(options.cutoff_m), "a positive number of metres");
+  require_metres(options.cutoff_m, "cutoff_m");
   if (!std::isfinite(options.floor_z_m)) throw Error("floor_z_m is not finite", "a height");
   parts_->options = options;
   parts_->take_robot(robot);

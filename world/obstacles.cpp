@@ -1,5 +1,6 @@
 #include <locograph/common/error.h>
 #include <locograph/world/obstacle_way.h>
+#include <locograph/world/require_metres.h>
 
 #include <algorithm>
 #include <cmath>
@@ -160,9 +161,7 @@ DistanceSample Obstacle::sample(const Eigen::Vector3d& point, double time_s) con
 void Obstacle::validate() const {
   const std::string owner = name.empty() ? "obstacle" : "obstacle '" + name + "'";
   const int sizes = shape == Shape::kBox ? 3 : shape == Shape::kSphere ? 1 : 2;
-  for (int i = 0; i < sizes; ++i)
-    if (!std::isfinite(size[i]) || size[i] <= 0.0)
-      throw Error(owner + ": size " + std::to_string(size[i]), "a positive number of metres");
+  for (int i = 0; i < sizes; ++i) require_metres(size[i], (owner + ": size").c_str());
   require_pose(world_from_obstacle, owner);
   double last = 0.0;
   for (const KeyFrame& frame : motion) {

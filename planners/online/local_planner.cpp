@@ -1,4 +1,4 @@
-#include <locograph/common/error.h>
+#include <locograph/common/check_option.h>
 #include <locograph/planners/online/local_planner.h>
 #include <locograph/planners/online/window_cause.h>
 
@@ -16,7 +16,7 @@ Horizon horizon_of(const LocalPlannerOptions& options) {
 void LocalPlannerOptions::validate() const {
   horizon_of(*this).validate();
   solver.validate();
-  if (proposal_pause < 0) throw Error("proposal_pause is negative", "0 or more");
+  check_option(proposal_pause >= 0, "proposal_pause", "0 or more");
 }
 
 LocalPlanner::LocalPlanner(Graph& graph, const LocalPlannerOptions& options)

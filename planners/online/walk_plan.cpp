@@ -1,5 +1,6 @@
 #include <locograph/check/limits.h>
 #include <locograph/check/motion_curve.h>
+#include <locograph/common/check_option.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/online/window_cause.h>
 #include <locograph/planners/plan/slope_limits.h>
@@ -241,17 +242,13 @@ class Walk {
   WalkReport report_;
 };
 
-void require_tolerance(double tolerance) {
-  if (!(tolerance >= 0.0)) throw Error("the tolerance of the goal is negative", "0 or more");
-}
-
 }  // namespace
 
 void WalkOptions::validate() const {
   planner.validate();
-  require_tolerance(goal_tolerance_m);
-  require_tolerance(goal_tolerance_rad);
-  if (!(cycle_deadline_s >= 0.0)) throw Error("the deadline is negative", "0 (none) or more");
+  check_option(goal_tolerance_m >= 0.0, "goal_tolerance_m", "0 or more");
+  check_option(goal_tolerance_rad >= 0.0, "goal_tolerance_rad", "0 or more");
+  check_option(cycle_deadline_s >= 0.0, "cycle_deadline_s", "0 (none) or more");
   termination.validate();
 }
 

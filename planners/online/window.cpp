@@ -1,4 +1,4 @@
-#include <locograph/common/error.h>
+#include <locograph/common/check_option.h>
 #include <locograph/planners/online/window.h>
 
 #include <algorithm>
@@ -13,8 +13,8 @@ void add_once(std::vector<int>& slots, int slot) {
 }  // namespace
 
 void Horizon::validate() const {
-  if (steps < 1) throw Error("horizon " + std::to_string(steps), "1 or more");
-  if (!(seconds >= 0.0)) throw Error("the horizon in seconds is negative", "0 (off) or more");
+  check_option(steps >= 1, "horizon", "1 or more");
+  check_option(seconds >= 0.0, "horizon_s", "0 (off) or more");
 }
 
 int Window::last_after(int executed) const {

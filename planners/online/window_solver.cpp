@@ -1,4 +1,4 @@
-#include <locograph/common/error.h>
+#include <locograph/common/check_option.h>
 #include <locograph/planners/online/window_solver.h>
 #include <locograph/solvers/linear_solvers.h>
 
@@ -34,10 +34,10 @@ bool cut_short(const OptimiserResult& result, const Termination& termination,
 }  // namespace
 
 void WindowSolverOptions::validate() const {
-  if (max_iterations < 1) throw Error("max_iterations is less than 1", "1 or more");
-  if (max_rounds < 0) throw Error("max_rounds is negative", "0 or more");
-  if (!(raise > 1.0)) throw Error("penalties are not raised", "a factor > 1");
-  if (!(max_raise >= 1.0)) throw Error("max_raise is less than 1", "a factor of 1 or more");
+  check_option(max_iterations >= 1, "max_iterations", "1 or more");
+  check_option(max_rounds >= 0, "max_rounds", "0 or more");
+  check_option(raise > 1.0, "raise", "a factor > 1");
+  check_option(max_raise >= 1.0, "max_raise", "a factor of 1 or more");
 }
 
 WindowSolver::WindowSolver(const WindowSolverOptions& options)

@@ -59,6 +59,31 @@ std::shared_ptr<const RobotParameter> robot_of(
   return theirs_loaded;
 }
 
+std::shared_ptr<const Task> load_task(const std::string& scenario_name, const Plan& plan,
+                                      const JudgingRequest& request) {
+  const Scenario scenario = load_scenario(scenario_name, request.data_folder);
+  return std::make_shared<const Task>(
+      task_of(scenario, robot_of(scenario, plan.robot), plan.moves, request.deadline));
+}
+
+template <class P>
+int line_of(const Parameters& parameters) {
+  return parameters.line(parameters.number_of<P>().value());
+}
+
+/// Of the scenario that the plan names: where that is not there, or is one of another robot, the
+/// line that names it is wrong.
+std::shared_ptr<const Task> own_task(const Graph& graph, const Plan& plan,
+                                     const JudgingRequest& request) {
+  const std::string& name = graph.parameters().find<ScenarioParameter>()->scenario;
+  try {
+    return load_task(name, plan, request);
+  } catch (const Error& error) {
+    if (error.line() > 0 || (!error.file().empty() && error.file() != name)) throw;
+    throw Error("", line_of<ScenarioParameter>(graph.parameters()), error.what(), "");
+  }
+}
+
 /// Worked out anew: nothing is shared with what plans drives.
 PlannedTask ends_of(const DriveTask& drive) {
   const double turned = drive.curvature_1_m * drive.distance_m;
@@ -99,9 +124,9 @@ void judge_ends(const Motion& motion, const Judging& judging, CheckReport& repor
 /// How high the ground is does not come from the plan: one that says otherwise was planned for
 /// another world.
 void require_same_ground(const Graph& graph, const World& world) {
-  for (const auto& [number, parameter] : graph.parameters().all()) {
-    const auto seen = std::dynamic_pointer_cast<const WorldParameter>(parameter);
-    if (!seen || !seen->ground_z_m) continue;
+  for (const int number : graph.parameters().numbers_of<WorldParameter>()) {
+    const auto seen = graph.parameters().get<WorldParameter>(number);
+    if (!seen->ground_z_m) continue;
     const double ground = ground_height(world);
     constexpr double kSame_m = 1e-9;
     if (std::abs(*seen->ground_z_m - ground) <= kSame_m) continue;
@@ -138,16 +163,13 @@ Judging judging_of(const Graph& graph, const Plan& plan, const JudgingRequest& r
   const auto origin = graph.parameters().find<ScenarioParameter>();
   const auto contacts = graph.parameters().find<ContactsParameter>();
   if (origin && contacts) {
-    throw Error("a plan with both a PARAMS_SCENARIO and a PARAMS_CONTACTS", "one of them");
+    throw Error("", line_of<ContactsParameter>(graph.parameters()),
+                "a plan with both a PARAMS_SCENARIO and a PARAMS_CONTACTS", "one of them");
   }
   const bool other = !request.scenario.empty();
   std::shared_ptr<const Task> task = other ? nullptr : request.task;
-  if (!task && (other || origin)) {
-    const Scenario scenario =
-        load_scenario(other ? request.scenario : origin->scenario, request.data_folder);
-    task = std::make_shared<const Task>(
-        task_of(scenario, robot_of(scenario, plan.robot), plan.moves, request.deadline));
-  }
+  if (!task && other) task = load_task(request.scenario, plan, request);
+  if (!task && origin) task = own_task(graph, plan, request);
   Judging judging;
   if (task) {
     judging = judging_of(task);

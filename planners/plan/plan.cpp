@@ -20,18 +20,13 @@ const VertexConfiguration& configuration(const Graph& graph, int slot) {
 /// The only parameter of its type, null if there is none.
 template <class P>
 std::shared_ptr<const P> only(const Parameters& parameters) {
-  std::shared_ptr<const P> found;
-  int first_line = 0;
-  for (const auto& [number, parameter] : parameters.all()) {
-    auto typed = std::dynamic_pointer_cast<const P>(parameter);
-    if (!typed) continue;
-    const int line = parameters.line(number);
-    if (found) {
-      throw Error("", std::max(line, first_line),
-                  "a second " + std::string(typed->tag()) + " in a plan", "one");
-    }
-    found = std::move(typed);
-    first_line = line;
+  const std::set<int>& numbers = parameters.numbers_of<P>();
+  auto found = parameters.find<P>();
+  if (numbers.size() > 1) {
+    throw Error(
+        "",
+        std::max(parameters.line(*numbers.begin()), parameters.line(*std::next(numbers.begin()))),
+        "a second " + std::string(found->tag()) + " in a plan", "one");
   }
   return found;
 }
@@ -46,7 +41,8 @@ void require_wrenches_of_stances(const Graph& graph, const Plan& plan) {
     for (const int slot : plan.index.wrenches[i]) {
       for (const int contact : graph.vertex(VertexId<VertexWrenches>{slot}).contact_numbers) {
         if (holds(i, contact) || (i > 0 && holds(i - 1, contact))) continue;
-        throw Error("configuration " + std::to_string(graph.vertex_record(plan.slots[i]).id) +
+        throw Error("", graph.vertex_record(slot).line,
+                    "configuration " + std::to_string(graph.vertex_record(plan.slots[i]).id) +
                         " has wrenches at contact " + std::to_string(contact) +
                         ", which no stance of it has",
                     "contacts of its stances");
@@ -92,9 +88,8 @@ struct GivenSegment {
 /// In their order.
 std::vector<GivenSegment> given_segments(const Parameters& parameters) {
   std::vector<GivenSegment> given;
-  for (const auto& [number, parameter] : parameters.all()) {
-    auto segment = std::dynamic_pointer_cast<const SegmentParameter>(parameter);
-    if (segment) given.push_back({std::move(segment), number, parameters.line(number)});
+  for (const int number : parameters.numbers_of<SegmentParameter>()) {
+    given.push_back({parameters.get<SegmentParameter>(number), number, parameters.line(number)});
   }
   std::ranges::stable_sort(given, {}, [](const GivenSegment& g) { return g.segment->segment; });
   return given;
@@ -215,9 +210,7 @@ Plan plan_of(const Graph& graph) {
   plan.incomplete = format->incomplete;
   plan.moves = format->moves;
   plan.world = only<WorldParameter>(parameters);
-  for (const auto& [number, parameter] : parameters.all()) {
-    if (plan.world && parameter == plan.world) plan.world_number = number;
-  }
+  if (plan.world) plan.world_number = *parameters.number_of<WorldParameter>();
   only<RobotParameter>(parameters);
   plan.stances_only = format->stances_only && is_stance_sequence(graph, plan.slots);
   if (!plan.stances_only) {
@@ -229,7 +222,8 @@ Plan plan_of(const Graph& graph) {
   for (const int slot : plan.slots) {
     const VertexConfiguration& vertex = configuration(graph, slot);
     if (vertex.robot != plan.robot) {
-      throw Error("the plan has configurations of several robots", "one robot");
+      throw Error("", graph.vertex_record(slot).line,
+                  "the plan has configurations of several robots", "one robot");
     }
     const bool known = vertex.stance_number != kNoStance;
     plan.stance_from.push_back(known ? parameters.get<StanceParameter>(vertex.stance_number)
@@ -273,14 +267,12 @@ std::vector<int> contacts_at(const std::vector<std::shared_ptr<const StanceParam
 
 void mark_incomplete(Graph& graph) {
   cut_segments(graph);
-  for (const auto& [number, parameter] : graph.parameters().all()) {
-    const auto format = std::dynamic_pointer_cast<const PlanParameter>(parameter);
-    if (!format) continue;
-    const auto marked = std::make_shared<PlanParameter>(*format);
-    marked->incomplete = true;
-    graph.parameters().replace(number, marked);
-    return;
-  }
+  const auto number = graph.parameters().number_of<PlanParameter>();
+  if (!number) return;
+  const auto marked =
+      std::make_shared<PlanParameter>(*graph.parameters().get<PlanParameter>(*number));
+  marked->incomplete = true;
+  graph.parameters().replace(*number, marked);
 }
 
 Motion motion_of(const Graph& graph, const Plan& plan) {

@@ -75,14 +75,6 @@ int world_number(Graph& graph, const Plan& plan) {
   return number;
 }
 
-/// The number of the plan's PARAMS_PLACES; -1: it has none.
-int places_number(const Graph& graph) {
-  for (const auto& [number, parameter] : graph.parameters().all()) {
-    if (std::dynamic_pointer_cast<const PlacesParameter>(parameter)) return number;
-  }
-  return -1;
-}
-
 /// The stance whose contacts balance a configuration.
 const StanceParameter* bearing_stance(const Plan& plan, std::size_t i) {
   const StanceParameter* left_in = plan.stance_from[i].get();
@@ -107,7 +99,7 @@ class PlanEdges {
         plan_(plan_of(graph)),
         robot_(*plan_.robot->robot),
         world_number_(world_number(graph, plan_)),
-        places_number_(places_number(graph)),
+        places_number_(graph.parameters().number_of<PlacesParameter>()),
         track_(robot_.tangent_size()),
         steps_(robot_.tangent_size()),
         state_(plan_.robot),
@@ -222,10 +214,12 @@ class PlanEdges {
 
   int stance_number(std::size_t i) const { return graph_.vertex(ids_[i]).stance_number; }
 
-  /// Nothing where no stance is known, or where two without a common contact meet.
+  /// Nothing where no stance is known, or where two without a common contact meet. Configurations
+  /// come one after the other.
   void add_surface_distance(std::size_t i) {
     const std::size_t before = i == 0 ? i : i - 1;
-    if (places_number_ < 0 || !plan_.stance_from[before] || !plan_.stance_from[i]) return;
+    if (i == 0 || stance_number(before) != stance_number(i)) begin_stance(before, i);
+    if (!places_number_ || !plan_.stance_from[before] || !plan_.stance_from[i]) return;
     const auto holds = [&](std::size_t step, int number) {
       return std::ranges::count(plan_.stance_from[step]->contact_numbers, number) > 0;
     };
@@ -237,7 +231,7 @@ class PlanEdges {
     std::vector<int> near = near_contacts(i);
     if (!surfaces_ || surfaces_->before_number != stance_number(before) ||
         surfaces_->after_number != stance_number(i) || surfaces_->near_numbers.all != near) {
-      surfaces_.emplace(*plan_.robot, places_number_, stance_number(before), stance_number(i),
+      surfaces_.emplace(*plan_.robot, *places_number_, stance_number(before), stance_number(i),
                         options_.surface_margin_m, options_.limit_weight, std::move(near));
       surfaces_->bind(graph_.parameters());
     }
@@ -248,13 +242,18 @@ class PlanEdges {
     graph_.add_edge(std::move(edge), ids_[i]);
   }
 
+  void begin_stance(std::size_t before, std::size_t i) {
+    other_before_ = before;
+    other_after_ = i;
+    while (other_after_ + 1 < ids_.size() && stance_number(other_after_) == stance_number(i)) {
+      ++other_after_;
+    }
+  }
+
   /// Of the stances before and after that of a configuration, contacts that it has just left or is
   /// about to make.
   std::vector<int> near_contacts(std::size_t i) const {
     if (plan_.stances_only) return {};
-    std::size_t first = i, end = i;
-    while (first > 0 && stance_number(first) == stance_number(i)) --first;
-    while (end + 1 < ids_.size() && stance_number(end) == stance_number(i)) ++end;
     const std::vector<int> closed = contacts_at(plan_.stance_from, i);
     const auto is_closed = [&](const ContactParameter& contact) {
       return std::ranges::any_of(closed, [&](int number) {
@@ -263,7 +262,7 @@ class PlanEdges {
       });
     };
     std::vector<int> near;
-    for (const std::size_t other : {first, end}) {
+    for (const std::size_t other : {other_before_, other_after_}) {
       if (!plan_.stance_from[other]) continue;
       for (std::size_t c = 0; c < plan_.stance_from[other]->contacts.size(); ++c) {
         const ContactParameter& contact = *plan_.stance_from[other]->contacts[c];
@@ -380,13 +379,16 @@ class PlanEdges {
   const JobControl& job_;
   const Plan plan_;
   const Robot& robot_;
-  int world_number_, places_number_;
+  int world_number_;
+  std::optional<int> places_number_;      // none: the plan does not say what may be touched
   Eigen::VectorXd track_, goal_, steps_;  // weights
   std::vector<Configuration> ids_;
   std::vector<Eigen::VectorXd> configurations_;
   int free_id_ = 0;
   ConfigurationState state_, before_, after_;
   std::optional<EdgeSurfaceDistance> surfaces_;  // of the configuration before
+  /// The nearest configurations that are left in another stance, else the ends of the plan.
+  std::size_t other_before_ = 0, other_after_ = 0;
 };
 
 }  // namespace

@@ -30,7 +30,10 @@ class ContactsReader {
                          "as many as a robot has use for");
       }
       stance.contacts.push_back(read_contact(element));
-      if (robot_ == nullptr) continue;
+      if (robot_ == nullptr) {
+        blame(xml_, element, [&] { require_directions(stance.contacts.back()); });
+        continue;
+      }
       // Whatever contradicts the contacts before is this one's mistake.
       blame(xml_, element, [&] { require_sound_stance(*robot_, all_loaded(stance)); });
     }
@@ -39,6 +42,12 @@ class ContactsReader {
   }
 
  private:
+  /// What can be told without the robot.
+  static void require_directions(const Contact& contact) {
+    if (contact_kind_entry(contact.effector.kind).axes_on_link) axes_in_link(contact.effector);
+    require_sound_place(contact);
+  }
+
   static Stance all_loaded(Stance stance) {
     for (Contact& contact : stance.contacts) contact.bears_load = true;
     return stance;

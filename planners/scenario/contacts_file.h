@@ -15,7 +15,8 @@ namespace locograph {
 
 Stance load_contacts(const std::filesystem::path& file, const Robot& robot);
 
-/// The same without a robot: whether its links exist and can touch all at once stays open.
+/// The same without a robot: whether its links exist and can touch all at once, and wheels turn,
+/// stays open.
 Stance load_contacts(const std::filesystem::path& file);
 
 }  // namespace locograph

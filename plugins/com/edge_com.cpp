@@ -14,14 +14,11 @@ EdgeCom::EdgeCom(const Eigen::Vector3d& target_, const Eigen::Vector3d& weights_
 void EdgeCom::bind(const Parameters& parameters) const {
   if (!target.allFinite())
     throw locograph::Error("EDGE_COM with a target that is not finite", "a point");
-  bool robots = false;
-  for (const auto& [number, parameter] : parameters.all()) {
-    const auto* robot = dynamic_cast<const RobotParameter*>(parameter.get());
-    if (robot == nullptr) continue;
-    if (robot->robot->total_mass() > 0.0) return;
-    robots = true;
+  const std::set<int>& robots = parameters.numbers_of<RobotParameter>();
+  for (const int number : robots) {
+    if (parameters.get<RobotParameter>(number)->robot->total_mass() > 0.0) return;
   }
-  if (robots) {
+  if (!robots.empty()) {
     throw locograph::Error("EDGE_COM for a robot without a mass",
                            "an <inertial> with a positive mass in at least one link of the URDF");
   }

@@ -1,5 +1,6 @@
 #pragma once
-/// Whether an edge fits the robot of its vertices: as many rows, and the same robot throughout.
+/// Whether an edge fits the robot of its vertices: as many rows, and the same robot throughout. And
+/// whether its margin is one.
 ///
 ///     const auto rows_of = [](const RobotParameter& p) { return p.robot->active_joint_count(); };
 ///     require_fitting_robot(parameters, kTag, dimension, rows_of);     // in bind(parameters)
@@ -9,6 +10,7 @@
 /// robots. What several robots leave open is settled where the edge is evaluated, before anything
 /// is read or written out of bounds. All throw Error.
 
+#include <locograph/common/ranges.h>
 #include <locograph/core/parameters.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
 
@@ -30,16 +32,17 @@ inline void require_same_robot(std::string_view tag, const std::shared_ptr<const
   if (a != b) detail::refuse_robot(tag);
 }
 
+/// Metres or radians, from `least` to ranges::kCoordinate_m.
+void require_margin(std::string_view tag, double margin, double least = 0.0);
+
 /// rows_of(const RobotParameter&): the rows that an edge on this robot has. A graph without a
 /// PARAMS_ROBOT says nothing.
 template <class RowsOf>
 void require_fitting_robot(const Parameters& parameters, std::string_view tag, long rows,
                            RowsOf rows_of) {
   std::string expected;
-  for (const auto& [number, parameter] : parameters.all()) {
-    const auto* robot = dynamic_cast<const RobotParameter*>(parameter.get());
-    if (robot == nullptr) continue;
-    const long wanted = rows_of(*robot);
+  for (const int number : parameters.numbers_of<RobotParameter>()) {
+    const long wanted = rows_of(*parameters.get<RobotParameter>(number));
     if (wanted == rows) return;
     expected += (expected.empty() ? "" : " or ") + std::to_string(wanted);
   }

@@ -22,6 +22,7 @@ struct EdgeGroundDistance : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
   double margin_m = 0.0;
   auto fields() { return std::tie(margin_m); }
   void bind(const Parameters& parameters) {
+    require_margin(kTag, margin_m);
     require_fitting_robot(parameters, kTag, dimension(), [](const RobotParameter& p) {
       return static_cast<long>(p.spheres.size());
     });

@@ -39,6 +39,7 @@ EdgeLinkHeight::EdgeLinkHeight(int number, std::string link, double margin, doub
 }
 
 void EdgeLinkHeight::bind(const Parameters& parameters) {
+  require_margin(kTag, margin_m);
   robot = parameters.get<RobotParameter>(robot_number);
   const int link = robot->robot->link_index(link_name);
   if (!solids) solids = std::make_shared<const LinkSolids>(*robot->robot, link);

@@ -20,6 +20,7 @@ struct EdgeJointLimits : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
   double margin = 0.0;
   auto fields() { return std::tie(margin); }
   void bind(const Parameters& parameters) {
+    require_margin(kTag, margin);
     require_fitting_robot(parameters, kTag, dimension(),
                           [](const RobotParameter& p) { return p.robot->active_joint_count(); });
   }

@@ -23,6 +23,7 @@ struct EdgeObstacleDistance : WeightedEdge<Eigen::Dynamic, VertexConfiguration> 
   std::shared_ptr<const WorldParameter> world;  ///< looked up by bind()
   auto fields() { return std::tie(world_number, margin_m); }
   void bind(const Parameters& parameters) {
+    require_margin(kTag, margin_m);
     world = parameters.get<WorldParameter>(world_number);
     require_fitting_robot(parameters, kTag, dimension(), [](const RobotParameter& p) {
       return static_cast<long>(p.spheres.size());

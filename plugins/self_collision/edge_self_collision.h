@@ -25,9 +25,10 @@ namespace locograph {
 struct EdgeSelfCollision : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
   static constexpr bool kOneSided = true;
   static constexpr std::string_view kTag = "EDGE_SELF_COLLISION";
-  double margin_m = 0.01;
+  double margin_m = 0.01;  ///< below 0: how deep capsules may be in each other
   auto fields() { return std::tie(margin_m); }
   void bind(const Parameters& parameters) {
+    require_margin(kTag, margin_m, -ranges::kCoordinate_m);
     require_fitting_robot(parameters, kTag, dimension(), [](const RobotParameter& p) {
       return static_cast<long>(p.self_collision.pairs.size());
     });

@@ -1,3 +1,4 @@
+#include <locograph/core/graph.h>
 #include <locograph/plugins/configuration/edge_fit.h>
 #include <locograph/plugins/static_balance/edge_contact_wrench.h>
 
@@ -37,6 +38,11 @@ void each_row(const WrenchesState& wrenches, F&& f) {
 
 EdgeContactWrench::EdgeContactWrench(const ContactList& contacts, double weight) {
   weights.setConstant(rows_of(contacts), weight);
+}
+
+void EdgeContactWrench::check(const Graph& graph) const {
+  const VertexWrenches& wrenches = graph.vertex(VertexId<VertexWrenches>{vertices[0]});
+  require_rows(kTag, dimension(), rows_of(*wrenches.contacts));
 }
 
 void EdgeContactWrench::error(const WrenchesState& wrenches, Eigen::Ref<Eigen::VectorXd> e) const {

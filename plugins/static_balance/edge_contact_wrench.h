@@ -33,6 +33,8 @@ struct EdgeContactWrench : WeightedEdge<Eigen::Dynamic, VertexWrenches> {
   EdgeContactWrench() = default;
   EdgeContactWrench(const ContactList& contacts, double weight);
 
+  /// Throws Error for other rows than the contacts of the vertex have.
+  void check(const Graph& graph) const;
   void error(const WrenchesState& wrenches, Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const WrenchesState& wrenches, JacobianRef<EdgeContactWrench, 0> j) const;
   RowLabel row_label(int row, const VertexWrenches& wrenches) const;

@@ -1,3 +1,4 @@
+#include <locograph/core/graph.h>
 #include <locograph/plugins/configuration/edge_fit.h>
 #include <locograph/plugins/configuration/row_labels.h>
 #include <locograph/plugins/static_balance/edge_wrench_norm.h>
@@ -5,6 +6,10 @@
 namespace locograph {
 
 template class TypedEdgePool<EdgeWrenchNorm>;
+
+void EdgeWrenchNorm::check(const Graph& graph) const {
+  require_rows(kTag, dimension(), graph.dimension(vertices[0]));
+}
 
 void EdgeWrenchNorm::error(const WrenchesState& wrenches, Eigen::Ref<Eigen::VectorXd> e) const {
   require_rows(kTag, e.size(), wrenches.components.size());

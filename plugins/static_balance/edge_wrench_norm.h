@@ -20,6 +20,8 @@ struct EdgeWrenchNorm : WeightedEdge<Eigen::Dynamic, VertexWrenches> {
     weights.setConstant(wrenches.dimension(), weight);
   }
 
+  /// Throws Error for other rows than the vertex has components.
+  void check(const Graph& graph) const;
   void error(const WrenchesState& wrenches, Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const WrenchesState& wrenches, JacobianRef<EdgeWrenchNorm, 0> j) const;
   RowLabel row_label(int row, const VertexWrenches& wrenches) const;

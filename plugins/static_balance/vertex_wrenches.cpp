@@ -1,7 +1,9 @@
+#include <locograph/common/ranges.h>
 #include <locograph/core/graph.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace locograph {
 
@@ -41,7 +43,13 @@ void VertexWrenches::read(FieldReader& in) {
   std::vector<int> numbers;
   for (int i = 0; i < count; ++i) numbers.push_back(in.integer());
   *this = VertexWrenches(*in.parameters(), std::move(numbers));
-  for (Eigen::Index i = 0; i < state.size(); ++i) state[i] = in.number();
+  for (double& component : state) {
+    const std::string_view text = in.peek();
+    component = in.number();
+    if (std::abs(component) > ranges::kWrench) {
+      in.fail("a wrench of " + std::string(text) + " is beyond all forces", "up to 1e9");
+    }
+  }
 }
 
 void VertexWrenches::write(FieldWriter& out) const {

@@ -59,6 +59,7 @@ EdgeSurfaceDistance::EdgeSurfaceDistance(const RobotParameter& robot, int of_pla
 }
 
 void EdgeSurfaceDistance::bind(const Parameters& parameters) {
+  require_margin(kTag, margin_m);
   const auto places_now = parameters.get<PlacesParameter>(places_number);
   const auto before_now = parameters.get<StanceParameter>(before_number);
   const auto after_now = parameters.get<StanceParameter>(after_number);

@@ -57,8 +57,9 @@ struct EdgeSurfaceDistance : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
   auto fields() {
     return std::tie(places_number, before_number, after_number, margin_m, near_numbers);
   }
-  /// Throws Error for stances and contacts of another robot, for two stances that have no contact
-  /// in common, and for a near contact of an end effector that has a closed one.
+  /// Throws Error for a negative margin, for stances and contacts of another robot, for two stances
+  /// that have no contact in common, and for a near contact of an end effector that has a closed
+  /// one.
   void bind(const Parameters& parameters);
 
   EdgeSurfaceDistance() = default;

@@ -13,8 +13,7 @@ EdgeSweptObstacleDistance::EdgeSweptObstacleDistance(const RobotParameter& robot
 }
 
 void EdgeSweptObstacleDistance::bind(const Parameters& parameters) {
-  if (!(margin_m >= 0.0))
-    throw locograph::Error("margin " + std::to_string(margin_m), "0 m or more");
+  require_margin(kTag, margin_m);
   if (samples < 1 || samples > kMostSamples) {
     throw locograph::Error("number of samples " + std::to_string(samples),
                            "1 to " + std::to_string(kMostSamples));

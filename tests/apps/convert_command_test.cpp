@@ -120,6 +120,19 @@ TEST(ConvertCommand, AMotionWithSegmentsComesBackAndIsJudgedAlike) {
   }
 }
 
+TEST(ConvertCommand, TakesWhatMayBeTouchedFromTheScenarioOfAPlanThatDoesNotSayIt) {
+  PlanText plan = standing_segments();
+  plan.parameters.push_back("PARAMS_SCENARIO 3 standing_up");
+  const Converted runner(plan);
+  ASSERT_EQ(runner.run("convert plan.json -o back.g2o").exit_code, 0);
+  const std::string back = runner.read("back.g2o");
+  EXPECT_NE(lines_of(back, "PARAMS_PLACES 22 0 ").find(" surface "), std::string::npos);
+  EXPECT_NE(lines_of(back, "EDGE_SURFACE_DISTANCE"), "");
+  ASSERT_EQ(runner.run("convert back.g2o -o back.json").exit_code, 0);
+  ASSERT_EQ(runner.run("convert back.json -o again.g2o").exit_code, 0);
+  EXPECT_EQ(runner.read("again.g2o"), back);
+}
+
 TEST(ConvertCommand, TheWrenchesOfAPostureComeBackFromJson) {
   const Converted runner("posture coman_plus --contacts '" LOCOGRAPH_SOURCE_DIR
                          "/examples/posture/coman_plus_wall.xml'");
@@ -350,8 +363,10 @@ TEST(ConvertCommand, WhatItDoesNotConvert) {
                 [](const std::string& line) { return line.starts_with("PARAMS_SEGMENT"); });
   at_once.configurations[3].time_s = at_once.configurations[2].time_s;
   runner.write("at_once.g2o", at_once.text());
-  expect_refusal(runner.run("convert at_once.g2o -o x.json"), "at_once.g2o",
+  const std::string later = "at_once.g2o:" + std::to_string(at_once.parameters.size() + 4);
+  expect_refusal(runner.run("convert at_once.g2o -o x.json"), later,
                  "expected times that increase");
+  expect_refusal(runner.run("plot at_once.g2o -o x.svg"), later, "expected times that increase");
 }
 
 }  // namespace

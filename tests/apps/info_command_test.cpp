@@ -306,6 +306,10 @@ TEST(Info, DescribesContacts) {
   EXPECT_NE(runner.run("info " + file).out.find("max_force: 1000 N"), std::string::npos);
   runner.write("bad.xml", "<contacts version=\"1\">\n<contact kind=\"foot\"/>\n</contacts>\n");
   expect_refusal(runner.run("info bad.xml"), "bad.xml:2", "foot");
+  runner.write("flat.xml",
+               "<contacts version=\"1\">\n<contact link=\"foot\" kind=\"point\" mu=\"0.5\" "
+               "max_force=\"1\" position=\"0 0 0\" normal=\"0 0 0\"/>\n</contacts>\n");
+  expect_refusal(runner.run("info flat.xml"), "flat.xml:2", "normal of length zero");
 }
 
 TEST(Info, DescribesBundleAdjustment) {

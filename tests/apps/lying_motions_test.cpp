@@ -116,12 +116,48 @@ TEST(LyingMotion, APlanOfStancesHasSegments) {
   EXPECT_NE(violated_by(plan).find(" velocity_limits "), std::string::npos);
 }
 
+TEST(LyingMotion, WrenchesActWhereNoStanceIs) {
+  PlanText plan = standing_segments();
+  std::erase_if(plan.parameters,
+                [](const std::string& line) { return line.starts_with("PARAMS_SEGMENT"); });
+  for (std::string& line : plan.parameters) {
+    if (line.starts_with("PARAMS_STANCE 6")) line = "PARAMS_STANCE 6 1 4";
+    if (line.starts_with("PARAMS_STANCE 8")) line = "PARAMS_STANCE 8 1 4";
+  }
+  const std::size_t lines = plan.parameters.size() + plan.configurations.size();
+  const CommandRunner runner;
+  runner.write("lie.g2o", plan.text() +
+                              "VERTEX_WRENCHES 20 2 4 5 0 0 0 0 0 0 0 0 0 0 0 0\n"
+                              "EDGE_BALANCE 7 20 scalar 1\n");
+  expect_refusal(runner.run("check lie.g2o"), "lie.g2o:" + std::to_string(lines + 1),
+                 "configuration 7 has wrenches at contact 5, which no stance of it has");
+}
+
+TEST(LyingMotion, NamesAScenarioThatIsNone) {
+  PlanText plan = standing_segments();
+  plan.parameters.push_back("PARAMS_SCENARIO 3 stadning_up");
+  const CommandRunner runner;
+  runner.write("lie.g2o", plan.text());
+  expect_refusal(runner.run("check lie.g2o"), "lie.g2o:" + std::to_string(plan.parameters.size()),
+                 "stadning_up: no such scenario");
+}
+
 TEST(LyingMotion, TimesStandStill) {
   PlanText plan = standing_segments();
   std::erase_if(plan.parameters,
                 [](const std::string& line) { return line.starts_with("PARAMS_SEGMENT"); });
   plan.configurations[3].time_s = plan.configurations[2].time_s;
   EXPECT_NE(violated_by(plan).find(" time_order "), std::string::npos);
+  const CommandRunner runner;
+  // An edge over them that needs a duration: for who evaluates it, it is the one that is wrong.
+  runner.write("lie.g2o", plan.text() + "EDGE_ACCELERATION_LIMITS 8 9 10 30" +
+                              " 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1"
+                              " scalar 1\n");
+  const std::string line =
+      "lie.g2o:" + std::to_string(plan.parameters.size() + plan.configurations.size() + 1);
+  for (const char* command : {"optimize lie.g2o --lenient --quiet", "info lie.g2o"}) {
+    expect_refusal(runner.run(command), line, "expected times that increase");
+  }
 }
 
 TEST(LyingMotion, AConfigurationThatWasEditedMissesItsContacts) {

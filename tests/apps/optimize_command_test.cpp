@@ -129,6 +129,34 @@ TEST(Optimize, DiagnosesAHealthyGraphWhenAsked) {
   EXPECT_FALSE(runner.run("optimize a.g2o --json").json().contains("diagnosis"));
 }
 
+TEST(Optimize, EndsADiagnosisOnASignal) {
+  if (std::system("command -v script >/dev/null") != 0) GTEST_SKIP() << "no script (bsdutils)";
+  const CommandRunner runner;
+  // Two of three directions are free at each of many poses: half a minute of work.
+  std::string chain;
+  for (int i = 0; i < 3000; ++i) {
+    const std::string id = std::to_string(i);
+    chain += "VERTEX_SE2 " + id + ' ' + id + " 0 0\n";
+    if (i > 0) chain += "EDGE_SE2 " + std::to_string(i - 1) + ' ' + id + " 1 0 0 1 0 0 0 0 0\n";
+  }
+  runner.write("a.g2o", chain);
+  // SIGTERM, as what a shell runs in the background ignores SIGINT.
+  runner.write("job.sh",
+               "'" LOCOGRAPH_COMMAND
+               "' optimize a.g2o --initial-guess none --diagnose -o b.g2o --json >out & job=$!\n"
+               "until grep -q diagnosing seen || ! kill -0 $job; do sleep 0.1; done\n"
+               "kill $job; wait $job\n");
+  const std::string line =
+      "cd '" + runner.folder().string() + "' && script -qec 'sh job.sh' /dev/null >seen </dev/null";
+  const int status = std::system(line.c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 1) << runner.read("seen");
+  const nlohmann::json json = nlohmann::json::parse(runner.read("out"));
+  EXPECT_EQ(json["reason"], "interrupted");
+  EXPECT_EQ(json["diagnosis"]["complete"], false);
+  EXPECT_FALSE(runner.exists("b.g2o"));
+}
+
 TEST(Optimize, GivesTheWholeGraphToCeres) {
   const CommandRunner runner;
   runner.write("a.g2o", kTriangle);
@@ -324,14 +352,20 @@ TEST(Optimize, DoesNotBelieveAWrongLoopClosureForTheChordalGuessEither) {
   EXPECT_NEAR(with_kernel.json()["final_cost"].get<double>(), 1.0 / 3.0 + 3.0, 1e-3);
 }
 
-TEST(Optimize, SaysNoWhenTheIterationsRunOutAndStillWritesWhatItHas) {
+TEST(Optimize, SaysNoWhenTheIterationsRunOutAndWritesNothing) {
   const CommandRunner runner;
   runner.write("a.g2o", kTriangle);
+  runner.write("b.g2o", "what was there");
   const Outcome outcome = runner.run("optimize a.g2o --iterations 1 -o b.g2o --json");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_EQ(outcome.json()["converged"], false);
   EXPECT_EQ(outcome.json()["reason"], "the number of iterations is used up");
-  EXPECT_TRUE(runner.exists("b.g2o"));
+  EXPECT_FALSE(outcome.json().contains("output"));
+  EXPECT_EQ(runner.read("b.g2o"), "what was there");
+  const Outcome told = runner.run("optimize a.g2o --iterations 1 -o b.g2o");
+  EXPECT_EQ(told.exit_code, 1);
+  EXPECT_NE(told.out.find("not written: b.g2o"), std::string::npos) << told.out;
+  EXPECT_EQ(runner.files(), 2);
 }
 
 TEST(Optimize, NamesTheVertexWhereTheSystemIsSingular) {

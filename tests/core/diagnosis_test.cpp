@@ -4,6 +4,7 @@
 #include <locograph/types/standard_types.h>
 
 #include <algorithm>
+#include <atomic>
 
 #include "core/toy_graphs.h"
 
@@ -126,6 +127,22 @@ TEST(Diagnosis, NamesTheEdgeWhoseErrorIsNotANumber) {
   ASSERT_EQ(diagnosis.not_finite.size(), 1u);
   EXPECT_EQ(diagnosis.not_finite[0], bad);
   EXPECT_EQ(diagnosis.text(graph), "the error of TOY_NOT_A_NUMBER 7 is not a number\n");
+}
+
+TEST(Diagnosis, SaysThatItWasEndedBeforeItHadLookedAtEverything) {
+  Graph graph = helix_3d(50);
+  graph.set_fixed(0, false);
+  const std::atomic<bool> stop = true;
+  for (const Termination& termination :
+       {Termination{.stop = &stop}, Termination{.deadline = Deadline::after(0.0)}}) {
+    const Diagnosis diagnosis = diagnose(graph, {}, termination);
+    EXPECT_FALSE(diagnosis.complete);
+    EXPECT_FALSE(diagnosis.healthy());
+    EXPECT_EQ(diagnosis.free_directions(), 0);
+    EXPECT_NE(diagnosis.text(graph).find("ended before"), std::string::npos);
+  }
+  const std::atomic<bool> go_on = false;
+  EXPECT_EQ(diagnose(graph, {}, {.stop = &go_on}).free_directions(), 6);
 }
 
 TEST(Diagnosis, FindsTheGaugeOfAPoseGraphFile) {

@@ -213,7 +213,7 @@ TEST(GraphFile, IntoAMissingFolderIsAnErrorAndNothingIsWritten) {
 }
 
 /// A parameter that holds a path, as robots and maps do.
-struct PathParameter : Parameter {
+struct PathParameter final : Parameter {
   std::string path;
   std::string_view tag() const override { return "PARAMS_PATH"; }
   void read(FieldReader& in) override { path = in.word(); }
@@ -232,6 +232,28 @@ TEST(GraphFile, AHashInsideAQuotedWordIsNoComment) {
         read_graph_text(write_graph_text(graph) + "# \"comment\n", "test.g2o", {}, types);
     EXPECT_EQ(again.parameters().get<PathParameter>(0)->path, path);
   }
+}
+
+TEST(Parameters, AreListedByTheirType) {
+  struct Other final : Parameter {
+    std::string_view tag() const override { return "PARAMS_OTHER"; }
+    void read(FieldReader&) override {}
+    void write(FieldWriter&) const override {}
+  };
+  const std::set<int> none;
+  Parameters parameters;
+  EXPECT_EQ(parameters.numbers_of<PathParameter>(), none);
+  EXPECT_FALSE(parameters.find<PathParameter>());
+  for (const int number : {7, -2, 3}) parameters.set(number, std::make_shared<PathParameter>());
+  parameters.set(1, std::make_shared<Other>());
+  EXPECT_EQ(parameters.numbers_of<PathParameter>(), (std::set<int>{-2, 3, 7}));
+  EXPECT_EQ(parameters.find<PathParameter>(), parameters.get<PathParameter>(-2));
+  parameters.replace(-2, std::make_shared<Other>());
+  parameters.remove(3);
+  EXPECT_EQ(parameters.numbers_of<PathParameter>(), (std::set<int>{7}));
+  EXPECT_EQ(parameters.number_of<Other>(), -2);
+  EXPECT_THROW(parameters.set(7, std::make_shared<Other>()), Error);
+  EXPECT_EQ(parameters.numbers_of<PathParameter>(), (std::set<int>{7}));
 }
 
 class EveryPoseGraph : public testing::TestWithParam<const char*> {};

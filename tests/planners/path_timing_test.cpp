@@ -581,8 +581,8 @@ TEST(PathTiming, RefusesWhatMakesNoSense) {
   expect_timing_error("nothing limits what moves at s = 0", time(way, none));
   none.velocity.resize(1);
   expect_timing_error("1 limits of velocity, expected 2", time(way, none));
-  expect_timing_error("0 intervals", time(way, good, {.intervals = 0}));
-  expect_timing_error("0 intervals", time(way, good, {.intervals_per_step = 0}));
+  expect_timing_error("option intervals is", time(way, good, {.intervals = 0}));
+  expect_timing_error("option intervals_per_step", time(way, good, {.intervals_per_step = 0}));
   expect_timing_error("smoothing_s", time(way, good, {.smoothing_s = -1.0}));
   expect_timing_error("rows of timing of another number",
                       time(way, good, {}, [](const auto& point) {

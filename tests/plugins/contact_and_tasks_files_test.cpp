@@ -201,6 +201,7 @@ TEST(ContactsOfTwoRobots, AreNotMixedUp) {
       {"EDGE_ACCELERATION_LIMITS 0 1 3 5 1 1 1 1 1 scalar 1", "configurations of different robots"},
       {"EDGE_ACCELERATION_LIMITS 0 1 2 3 1 1 1 scalar 1", "EDGE_ACCELERATION_LIMITS with n = 3"},
       {"EDGE_ACCELERATION_LIMITS 2 1 0 5 1 1 1 1 1 scalar 1", "times that increase"}};
+  const int line = 1 + static_cast<int>(std::ranges::count(std::string(kCartsAndFrames), '\n'));
   for (const auto& bad : cases) {
     Graph graph = read_graph(
         folder.write("plan.g2o", std::string(kCartsAndFrames) + bad.edge + "\n"), robot_types());
@@ -214,6 +215,7 @@ TEST(ContactsOfTwoRobots, AreNotMixedUp) {
       FAIL() << "was evaluated: " << bad.edge;
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find(bad.message), std::string::npos) << error.what();
+      EXPECT_EQ(error.line(), line) << error.what();
     }
   }
 }

@@ -214,9 +214,14 @@ const BadLine kBadLines[] = {
     {"WrenchesTwiceAtAContact", "VERTEX_WRENCHES 9 2 2 2 0 0 0 0 0 0", "contact 2 twice"},
     {"WrenchesWithTooFewComponents", "VERTEX_WRENCHES 9 2 1 2 0 0 0", "too few fields"},
     {"WrenchesWithTooManyComponents", "VERTEX_WRENCHES 9 1 3 1 2 3 4 5 6", "too many fields"},
+    {"WrenchBeyondAllForces", "VERTEX_WRENCHES 9 1 2 0 0 -1e300",
+     "a wrench of -1e300 is beyond all forces, expected up to 1e9"},
     {"WrenchThatIsNotANumber", "VERTEX_WRENCHES 9 1 2 nan 0 0", "'nan' is not finite"},
     {"BalanceOfTwoWrenches", "EDGE_BALANCE 1 1 scalar 1",
      "vertex 1 is a VERTEX_WRENCHES, expected a VERTEX_CONFIGURATION"},
+    {"ConeOfAnotherSize", "EDGE_CONTACT_WRENCH 1 26 scalar 1", "EDGE_CONTACT_WRENCH with n = 26"},
+    {"NormOfAnotherSize", "EDGE_WRENCH_NORM 1 8 scalar 1",
+     "EDGE_WRENCH_NORM with n = 8, expected n = 9"},
     {"TorqueLimitsOfAnotherSize", "EDGE_TORQUE_LIMITS 0 1 4 1 scalar 1",
      "EDGE_TORQUE_LIMITS with n = 4"},
     {"TorqueLimitsOfNothing", "EDGE_TORQUE_LIMITS 0 1 3 0 scalar 1", "fraction of 0"},
@@ -258,9 +263,6 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 TEST(BadBalance, IsAnErrorWhereTheVerticesShowIt) {
-  EXPECT_NE(evaluation_error("EDGE_CONTACT_WRENCH 1 26 scalar 1\n").find("n = 26"),
-            std::string::npos);
-  EXPECT_NE(evaluation_error("EDGE_WRENCH_NORM 1 8 scalar 1\n").find("n = 8"), std::string::npos);
   EXPECT_NE(evaluation_error("EDGE_BALANCE 0 1 scalar 1\n").find("mass"), std::string::npos);
   EXPECT_NE(evaluation_error("PARAMS_ROBOT 8 cart.urdf - floating 0\n"
                              "VERTEX_CONFIGURATION 9 8 0 - 0 0 0 0 0 0 1 0.1 0.2 0.3\n"

@@ -419,6 +419,16 @@ const BadLine kBadPlaces[] = {
      "number of contacts -1"},
     {"EdgeNearWhatItHasClosed", "EDGE_SURFACE_DISTANCE 0 4 30 20 20 0.05 1 10 scalar 1",
      "'left' both closed and near"},
+    {"EdgeWithANaNMargin", "EDGE_SURFACE_DISTANCE 0 4 30 20 20 nan 0 scalar 1",
+     "'nan' is not finite"},
+    {"EdgeWithANegativeMargin", "EDGE_SURFACE_DISTANCE 0 4 30 20 20 -0.05 0 scalar 1",
+     "EDGE_SURFACE_DISTANCE with a margin of -0.05, expected 0 to 1e+06"},
+    {"EdgeWithAnAbsurdMargin", "EDGE_SURFACE_DISTANCE 0 4 30 20 20 1e9 0 scalar 1",
+     "with a margin of 1e+09"},
+    {"EdgeWithANegativeWeight", "EDGE_SURFACE_DISTANCE 0 4 30 20 20 0.05 0 scalar -1",
+     "a negative weight"},
+    {"EdgeWithAnAbsurdWeight", "EDGE_SURFACE_DISTANCE 0 4 30 20 20 0.05 0 scalar 1e99",
+     "the weight 1e99, expected at most 1e30"},
     {"EdgeWithoutWeights", "EDGE_SURFACE_DISTANCE 0 4 30 20 20 0.05 0", "too few fields"},
 };
 

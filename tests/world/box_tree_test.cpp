@@ -2,6 +2,7 @@
 #include <locograph/common/uniform.h>
 #include <locograph/world/box_tree.h>
 
+#include <algorithm>
 #include <random>
 
 namespace locograph {
@@ -37,6 +38,30 @@ TEST(BoxTree, FindsTheBoxesThatTouchInTheirOrder) {
     found += expected.size();
   }
   EXPECT_GT(found, 50u);
+}
+
+TEST(BoxTree, FindsTheFirstThatTouchesAndIsWhatIsAskedFor) {
+  std::mt19937_64 random(4);
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (int i = 0; i < 500; ++i) boxes.push_back(random_box(random, 2.0));
+  const BoxTree tree(boxes);
+  const auto is = [](int number) { return number % 3 == 1; };
+  int found = 0;
+  for (int query = 0; query < 300; ++query) {
+    const Eigen::AlignedBox3d box = random_box(random, 2.0);
+    const std::vector<int> touching = tree.touching(box);
+    const auto expected = std::ranges::find_if(touching, is);
+    EXPECT_EQ(tree.first_touching(box, is), expected == touching.end() ? -1 : *expected);
+    found += expected == touching.end() ? 0 : 1;
+  }
+  EXPECT_GT(found, 20);
+}
+
+TEST(BoxTree, AsksForTheFirstOfManyBoxesAtOnePlaceOnly) {
+  const BoxTree tree(std::vector<Eigen::AlignedBox3d>(1000, box_around({0, 0, 0}, 1.0)));
+  int asked = 0;
+  EXPECT_EQ(tree.first_touching(box_around({0, 0, 0}, 0.1), [&](int) { return ++asked > 0; }), 0);
+  EXPECT_EQ(asked, 1);
 }
 
 TEST(BoxTree, OfNothingFindsNothing) {

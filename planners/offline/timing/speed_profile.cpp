@@ -1,4 +1,4 @@
-#include <locograph/common/error.h>
+#include <locograph/common/check_option.h>
 #include <locograph/planners/offline/timing/speed_polygon.h>
 #include <locograph/planners/offline/timing/speed_profile.h>
 
@@ -256,9 +256,8 @@ TimingLimits timing_limits(const Robot& robot, const CheckOptions& limits) {
 }
 
 void GridSize::validate() const {
-  for (const int count : {intervals, intervals_per_step}) {
-    if (count < 1) throw Error(std::to_string(count) + " intervals", "1 or more");
-  }
+  check_option(intervals >= 1, "intervals", "1 or more");
+  check_option(intervals_per_step >= 1, "intervals_per_step", "1 or more");
 }
 
 FastestProfile fastest_profile(const PathSpline& path, const TimingLimits& limits,

@@ -86,6 +86,21 @@ TEST(ContactsFile, TheExamplesThatComeAlongLoad) {
       3U);
 }
 
+TEST(ContactsFile, RefusesDirectionsThatAreNoneWithoutTheRobot) {
+  const TemporaryFolder folder;
+  const auto read = [](const auto& path) { load_contacts(path); };
+  for (const Mistake& mistake :
+       {Mistake{"", "normal=\"-1 0 0\"", "normal=\"0 0 0\"", 3, "normal of length zero"},
+        Mistake{"", "\"0 0 2\"", "\"0 nan 2\"", 2, "3 finite numbers"},
+        Mistake{"", "forward=\"1 0 0\"", "forward=\"0 0 1\"", 2, "along its normal"},
+        Mistake{"", "link_normal=\"0 1 0\"", "link_normal=\"0 0 0\"", 4, "normal of length zero"},
+        Mistake{"", " forward=\"1 0 0\" link_normal", " link_normal", 4, "rung without forward"}}) {
+    expect_refused(folder.write("contacts.xml", with(kGood, mistake.find, mistake.replace)),
+                   mistake, read);
+  }
+  EXPECT_EQ(load_contacts(folder.write("contacts.xml", kGood)).contacts.size(), 3U);
+}
+
 class ContactsFileMistakes : public testing::TestWithParam<Mistake> {};
 
 TEST_P(ContactsFileMistakes, AreRefusedWithTheirLine) {
