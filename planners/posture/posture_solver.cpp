@@ -16,8 +16,8 @@
 namespace locograph {
 namespace {
 
-/// Of the polygon of balance.
-constexpr double kResolution_m = 5e-3;
+/// Of the polygon of balance; of one that is too narrow for it.
+constexpr double kResolution_m = 5e-3, kFineResolution_m = 1e-4;
 /// Polygons after wheels that rolled, for each start.
 constexpr int kMostPolygons = 4;
 
@@ -163,9 +163,11 @@ class Search {
     const Stopwatch watch;
     ++polygons_;
     const std::vector<BearingContact> contacts = bearing();
+    const double mass_kg = robot_.total_mass();
+    region_ = balance_region(mass_kg, contacts, options_.wrench_margin, kResolution_m);
     for (const double margin : {options_.wrench_margin, 0.0}) {
-      region_ = balance_region(robot_.total_mass(), contacts, margin, kResolution_m);
       if (!region_.empty()) break;
+      region_ = balance_region(mass_kg, contacts, margin, kFineResolution_m);
     }
     asked_.balance = region_.empty() ? nullptr : &region_;
     balances_nowhere_ = region_.empty() && !rolls_;

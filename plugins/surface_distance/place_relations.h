@@ -45,8 +45,8 @@ class PlaceRelations {
   /// links may be near what they touch, near_m above it at least.
   void set_contacts(std::span<const Contact> closed, std::span<const Contact> held = {},
                     std::span<const Contact> near = {}, double near_m = 0.0);
-  /// False: contacts may be on what is not among the places. Their links touch that, and come as
-  /// near as kBesideAbove_m to any surface or solid. Until the next call.
+  /// False: contacts may be on what is none of the places. Their links come as near to surfaces and
+  /// solids as kBesideAbove_m.
   void set_places_known(bool known);
   /// Ascending: all places that have to do with a robot in this box, and a few more. Valid until
   /// the next call.
@@ -63,11 +63,11 @@ class PlaceRelations {
   double deepest_m(std::size_t i, std::size_t bound) const {
     return deepest_m_[i * places_->robot()->bounds.size() + bound];
   }
-  /// Whether the link touches something else near the place, see set_places_known().
+  static constexpr double kBesideAbove_m = 2e-5;
+  /// Whether the link may touch what is none of the places, beside this one.
   bool is_beside(std::size_t i, std::size_t bound) const {
     return deepest_m(i, bound) == -kBesideAbove_m;
   }
-  static constexpr double kBesideAbove_m = 2e-5;
   /// Whether the link may touch something.
   bool touches(std::size_t bound) const;
 
