@@ -89,7 +89,9 @@ class Search {
   /// only.
   void attempt() {
     optimise();
-    if (found_.success() && asked_.balance == nullptr && !is_balanced() && ask_balance()) {
+    const bool ended = options_.termination.ended(result_.statistics.iterations);
+    if (!ended && found_.success() && asked_.balance == nullptr && !is_balanced() &&
+        ask_balance()) {
       asked_.start = found_.configuration;
       optimise();
     }
@@ -101,7 +103,7 @@ class Search {
       result_.status = PlannerStatus::kSolved;
       result_.reason = "found";
     }
-    if (report_.feasible || amount < least_) {
+    if (report_.feasible || !(amount >= least_)) {
       least_ = amount;
       result_.configuration = found_.configuration;
       result_.report = report_;
@@ -119,7 +121,7 @@ class Search {
   /// From where the last attempt ended, with what the check misses there. False: nothing is left to
   /// ask for.
   bool ask_more() {
-    if (!found_.success()) return false;
+    if (!found_.success() || balances_nowhere_) return false;
     asked_.start = found_.configuration;
     if (!asked_.exact_pairs && report_.constraint("self_collision").violated) {
       asked_.exact_pairs = true;
