@@ -6,8 +6,10 @@
 // Prints one JSON object. Sets are drawn as benchmarks/planners/random_contact_sets.h says, until N
 // of them are known to be feasible: the posture they were drawn from passes the whole check. The
 // others, of which nobody knows, are solved as well and counted under `unknown`. Found is what the
-// check accepts. Times are in seconds, of PostureSolver::solve().
+// check accepts. Times are in seconds, of PostureSolver::solve(); those of
+// whole solves are the processor's.
 #include <algorithm>
+#include <ctime>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -18,6 +20,12 @@ namespace locograph {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+double processor_s() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
 
 double quantile(std::vector<double> values, double part) {
   if (values.empty()) return 0.0;
@@ -81,8 +89,10 @@ Json campaign(const std::string& name, int wanted, std::uint64_t seed, PostureOp
     const test::ContactSet set = sets.draw();
     const bool feasible = judge.check(set.drawn, set.stance, options.check).feasible;
     options.seed = static_cast<std::uint64_t>(known.sets + unknown.sets);
-    const PostureResult result =
-        solver.solve({set.stance, placed_at(robot.model(), robot.home, set.stance)}, options);
+    const PostureProblem problem{set.stance, placed_at(robot.model(), robot.home, set.stance)};
+    const double before_s = processor_s();
+    PostureResult result = solver.solve(problem, options);
+    result.statistics.total_s = processor_s() - before_s;
     // The judgement once more, by a judge of our own and all of it.
     if (result.success() &&
         !judge.check(result.configuration, set.stance, options.check).feasible) {

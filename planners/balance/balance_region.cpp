@@ -5,29 +5,33 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace locograph {
 namespace {
 
-/// Corners that are nearer to each other, or less far out, are left out.
+/// Corners that are nearer to each other are one.
 constexpr double kSame_m = 1e-4;
 constexpr int kMostProgrammes = 40;
 
 using Wrench = Eigen::Matrix<double, 6, 1>;
 
-/// The linear programme: forces at the contacts in parts of the weight, then x and y of the centre
-/// of mass about `origin`.
+/// The linear programme: forces at the contacts in parts of the weight, then, unless it is given, x
+/// and y of the centre of mass about `origin`.
 class CentreOfMassProgramme {
  public:
-  CentreOfMassProgramme(double weight_N, std::span<const BearingContact> contacts, double margin)
+  CentreOfMassProgramme(double weight_N, std::span<const BearingContact> contacts, double margin,
+                        const std::optional<Eigen::Vector2d>& centre_of_mass = {})
       : weight_N_(weight_N), margin_(margin) {
     for (const BearingContact& bearing : contacts) origin_ += bearing.contact.position;
     origin_ /= static_cast<double>(contacts.size());
     for (const BearingContact& bearing : contacts) {
       if (bearing.contact.bears_load) add(bearing);
     }
-    build();
+    build(centre_of_mass);
   }
+
+  bool is_feasible() { return programme_.dual() == LinearAnswer::kOptimal; }
 
   /// The furthest point along a direction; false where nothing balances.
   bool furthest(const Eigen::Vector2d& direction, Eigen::Vector2d& point) {
@@ -61,7 +65,7 @@ class CentreOfMassProgramme {
     }
   }
 
-  void build() {
+  void build(const std::optional<Eigen::Vector2d>& centre_of_mass) {
     const int rows = 6 + limits_;
     LinearColumns columns;
     for (const Column& column : columns_) {
@@ -70,14 +74,20 @@ class CentreOfMassProgramme {
       columns.end(column.lower, column.upper);
     }
     // The weight at (x, y): moment (x, y, .) x (0, 0, -1) = (-y, x, 0).
-    columns.put(4, 1.0);
-    columns.end(-kNoBound, kNoBound);
-    columns.put(3, -1.0);
-    columns.end(-kNoBound, kNoBound);
+    if (!centre_of_mass) {
+      columns.put(4, 1.0);
+      columns.end(-kNoBound, kNoBound);
+      columns.put(3, -1.0);
+      columns.end(-kNoBound, kNoBound);
+    }
     std::vector<double> row_lower(static_cast<std::size_t>(rows), -kNoBound), row_upper;
     std::fill_n(row_lower.begin(), 6, 0.0);
     row_upper.assign(6, 0.0);
     row_lower[2] = row_upper[2] = 1.0;
+    if (centre_of_mass) {
+      row_lower[3] = row_upper[3] = centre_of_mass->y() - origin_.y();
+      row_lower[4] = row_upper[4] = origin_.x() - centre_of_mass->x();
+    }
     row_upper.insert(row_upper.end(), most_.begin(), most_.end());
     programme_.load(columns, row_lower, row_upper);
   }
@@ -93,20 +103,20 @@ class CentreOfMassProgramme {
 
 /// Appends the corners between two, counter-clockwise.
 void corners_between(CentreOfMassProgramme& programme, const Eigen::Vector2d& from,
-                     const Eigen::Vector2d& to, int& programmes,
+                     const Eigen::Vector2d& to, double resolution_m, int& programmes,
                      std::vector<Eigen::Vector2d>& corners) {
   const Eigen::Vector2d along = to - from;
-  if (along.norm() < kSame_m || ++programmes > kMostProgrammes) return;
+  if (along.norm() < resolution_m || ++programmes > kMostProgrammes) return;
   const Eigen::Vector2d out = Eigen::Vector2d(along.y(), -along.x()).normalized();
   Eigen::Vector2d corner;
-  if (!programme.furthest(out, corner) || out.dot(corner - from) < kSame_m) return;
-  corners_between(programme, from, corner, programmes, corners);
+  if (!programme.furthest(out, corner) || out.dot(corner - from) < resolution_m) return;
+  corners_between(programme, from, corner, resolution_m, programmes, corners);
   corners.push_back(corner);
-  corners_between(programme, corner, to, programmes, corners);
+  corners_between(programme, corner, to, resolution_m, programmes, corners);
 }
 
 /// Counter-clockwise; fewer than three where there is no area.
-std::vector<Eigen::Vector2d> corners_of(CentreOfMassProgramme& programme) {
+std::vector<Eigen::Vector2d> corners_of(CentreOfMassProgramme& programme, double resolution_m) {
   Eigen::Vector2d left, right;
   if (!programme.furthest(-Eigen::Vector2d::UnitX(), left) ||
       !programme.furthest(Eigen::Vector2d::UnitX(), right)) {
@@ -114,10 +124,15 @@ std::vector<Eigen::Vector2d> corners_of(CentreOfMassProgramme& programme) {
   }
   int programmes = 2;
   std::vector<Eigen::Vector2d> corners = {left};
-  corners_between(programme, left, right, programmes, corners);
+  corners_between(programme, left, right, resolution_m, programmes, corners);
   corners.push_back(right);
-  corners_between(programme, right, left, programmes, corners);
+  corners_between(programme, right, left, resolution_m, programmes, corners);
   return corners;
+}
+
+bool any_bears(std::span<const BearingContact> contacts) {
+  return std::any_of(contacts.begin(), contacts.end(),
+                     [](const BearingContact& bearing) { return bearing.contact.bears_load; });
 }
 
 }  // namespace
@@ -132,14 +147,11 @@ double BalanceRegion::depth_m(const Eigen::Vector2d& centre_of_mass) const {
 }
 
 BalanceRegion balance_region(double mass_kg, std::span<const BearingContact> contacts,
-                             double margin) {
+                             double margin, double resolution_m) {
   BalanceRegion region;
-  if (std::none_of(contacts.begin(), contacts.end(),
-                   [](const BearingContact& bearing) { return bearing.contact.bears_load; })) {
-    return region;
-  }
+  if (!any_bears(contacts)) return region;
   CentreOfMassProgramme programme(mass_kg * standard_gravity().norm(), contacts, margin);
-  const std::vector<Eigen::Vector2d> corners = corners_of(programme);
+  const std::vector<Eigen::Vector2d> corners = corners_of(programme, resolution_m);
   if (corners.size() < 3) return region;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Eigen::Vector2d along = corners[(i + 1) % corners.size()] - corners[i];
@@ -157,6 +169,13 @@ BalanceRegion balance_region(double mass_kg, std::span<const BearingContact> con
   }
   if (!(region.width_m > kSame_m)) region.sides.clear();
   return region;
+}
+
+bool balances(double mass_kg, std::span<const BearingContact> contacts, double margin,
+              const Eigen::Vector2d& centre_of_mass) {
+  return any_bears(contacts) && CentreOfMassProgramme(mass_kg * standard_gravity().norm(), contacts,
+                                                      margin, centre_of_mass)
+                                    .is_feasible();
 }
 
 }  // namespace locograph

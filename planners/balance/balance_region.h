@@ -5,6 +5,8 @@
 ///     const BalanceRegion region = balance_region(robot.total_mass(), bearing, 0.1);
 ///     const bool hopeless = region.empty();             // nothing that stands like this balances
 ///     double room_m = region.depth_m(state.center_of_mass().head<2>());      // < 0: outside
+///     const bool stands = balances(robot.total_mass(), bearing, 0.1,
+///                                  state.center_of_mass().head<2>());        // that point alone
 ///
 /// Bretl and Lall, "Testing static equilibrium for legged robots", IEEE Transactions on Robotics
 /// 24(4), 2008: gravity has no moment about the vertical through the centre of mass, so that its
@@ -37,8 +39,14 @@ struct BalanceRegion {
   double depth_m(const Eigen::Vector2d& centre_of_mass) const;
 };
 
-/// margin: the part of friction, areas and limits of force that is left unused.
+/// margin: the part of friction, areas and limits of force that is left unused. resolution_m:
+/// corners that are nearer to each other, or less far out, are left out.
 BalanceRegion balance_region(double mass_kg, std::span<const BearingContact> contacts,
-                             double margin);
+                             double margin, double resolution_m = 1e-4);
+
+/// Whether the region holds the centre of mass: one linear programme instead of those of all
+/// corners.
+bool balances(double mass_kg, std::span<const BearingContact> contacts, double margin,
+              const Eigen::Vector2d& centre_of_mass);
 
 }  // namespace locograph

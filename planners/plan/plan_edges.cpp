@@ -3,6 +3,7 @@
 #include <locograph/plugins/acceleration_limits/edge_acceleration_limits.h>
 #include <locograph/plugins/contact/edge_contact.h>
 #include <locograph/plugins/joint_limits/edge_joint_limits.h>
+#include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/plugins/rolling/edge_rolling.h>
 #include <locograph/plugins/rolling/edge_steering_slip.h>
@@ -136,6 +137,7 @@ class PlanEdges {
                                              options_.acceleration_weight),
                       ids_[i - 2], ids_[i - 1], ids_[i]);
     }
+    if (ids_.size() == 1 && !plan_.stances_only) add_obstacle_distance();
     return true;
   }
 
@@ -199,6 +201,22 @@ class PlanEdges {
       std::swap(before, after);
     }
     return edge;
+  }
+
+  /// Of a posture. Spheres that are nearer than the margin have no weight, as swept ones.
+  void add_obstacle_distance() {
+    if (!plan_.world) return;
+    const World& world = plan_.world->snapshot->world();
+    if (!world.map && world.obstacles.empty()) return;
+    EdgeObstacleDistance edge(*plan_.robot, world_number_, options_.obstacle_margin_m,
+                              options_.limit_weight);
+    edge.bind(graph_.parameters());
+    ConfigurationState state = graph_.vertex(ids_.front()).make_derived();
+    graph_.vertex(ids_.front()).derive(graph_.state(ids_.front().slot), state);
+    Eigen::VectorXd lack(edge.weights.size());
+    edge.error(state, lack, Bindings());
+    edge.weights = (lack.array() > 0.0).select(0.0, edge.weights);
+    graph_.add_edge(std::move(edge), ids_.front());
   }
 
   void add_to_configuration(std::size_t i) {

@@ -12,7 +12,8 @@
 /// velocity limits, rolling where it has wheels and distances to the world on the way; each two
 /// steps acceleration limits; each configuration whose wrenches are known balance, friction, the
 /// least wrenches and, where they are enforced, torque limits. Nothing moves between the
-/// configurations of a plan of stances: it has no edges of steps.
+/// configurations of a plan of stances: it has no edges of steps. A posture, a plan of one
+/// configuration, has its distances to the world there.
 ///
 /// So a feasible plan is the optimum of its graph, up to micrometres, and refining it needs nothing
 /// added.

@@ -34,9 +34,10 @@ inline CheckOptions posture_check() {
 struct PostureOptions {
   std::uint64_t seed = 0;
   int max_restarts = 8;
-  int max_iterations = 60;  ///< of each attempt
-  /// An attempt ends when this many iterations have not lowered its worst violation by a tenth.
-  int patience = 6;
+  int max_iterations = 40;  ///< of each attempt
+  /// An attempt ends when this many iterations have not lowered the sum of its violations by a
+  /// tenth.
+  int patience = 12;
   Termination termination = {};
   /// Limits the torques to the efforts of the URDF; false: the result tells them.
   bool enforce_torque_limits = true;

@@ -1,12 +1,10 @@
-#include <locograph/common/uniform.h>
-#include <locograph/core/optimiser.h>
 #include <locograph/planners/plan/plan.h>
-#include <locograph/planners/posture/posture_graph.h>
+#include <locograph/planners/plan/plan_edges.h>
 #include <locograph/planners/posture/posture_solver.h>
+#include <locograph/planners/posture/transition_solver.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
-#include <locograph/plugins/self_collision/edge_self_collision.h>
+#include <locograph/plugins/surface_distance/places_parameter.h>
 #include <locograph/robots/contact_kinds.h>
-#include <locograph/solvers/linear_solvers.h>
 #include <locograph/world/distance_view.h>
 
 #include <algorithm>
@@ -18,30 +16,10 @@
 namespace locograph {
 namespace {
 
-/// Pairs of RobotParameter::self_collision that the edges would keep apart where the exact shapes
-/// do not touch.
-std::vector<bool> coarse_pairs(const std::shared_ptr<const RobotParameter>& robot,
-                               const Judge& judge) {
-  const Robot& model = *robot->robot;
-  const std::size_t pairs = robot->self_collision.pairs.size();
-  std::vector<bool> coarse(pairs, false);
-  std::vector<Eigen::VectorXd> examples = {model.neutral_configuration()};
-  for (const std::string& name : model.configuration_names()) {
-    examples.push_back(model.named_configuration(name));
-  }
-  const EdgeSelfCollision edge(*robot, 0.0, 1.0);
-  Eigen::VectorXd depth(static_cast<Eigen::Index>(pairs));
-  ConfigurationState state(robot);
-  for (const Eigen::VectorXd& q : examples) {
-    state.update(q.data());
-    if (judge.self_distance_m(state.kinematics) < 0.0) continue;
-    edge.error(state, depth);
-    for (std::size_t p = 0; p < pairs; ++p) {
-      if (depth[static_cast<Eigen::Index>(p)] > 0.0) coarse[p] = true;
-    }
-  }
-  return coarse;
-}
+/// Of the polygon of balance; of one that is too narrow for it.
+constexpr double kResolution_m = 5e-3, kFineResolution_m = 1e-4;
+/// Polygons after wheels that rolled, for each start.
+constexpr int kMostPolygons = 4;
 
 std::shared_ptr<const WorldParameter> parameter_of(World world, const WorldFiles& files) {
   const double height = ground_height(world);
@@ -50,101 +28,162 @@ std::shared_ptr<const WorldParameter> parameter_of(World world, const WorldFiles
       std::isfinite(height) ? std::optional(height) : std::nullopt);
 }
 
-/// One solve: the graph compiled once, attempts on it.
+/// As it is at time 0, which a posture is judged at.
+World at_rest(World world) {
+  for (Obstacle& obstacle : world.obstacles) obstacle.motion.clear();
+  return world;
+}
+
+bool rolls(const Contact& contact) {
+  return contact_kind_entry(contact.effector.kind).rolls && !contact.locked;
+}
+
+/// One solve. Asked for are first contacts, limits and distances alone, which are cheap and mostly
+/// enough; balance, torques and exact distances between links, each from there on where a posture
+/// lacks them.
 class Search {
  public:
-  Search(const std::shared_ptr<const RobotParameter>& robot,
-         const std::shared_ptr<const WorldParameter>& seen, const Judge& judge,
-         const PostureProblem& problem, const PostureOptions& options, const PostureShapes& shapes,
-         Workspace& workspace)
-      : robot_(*robot->robot),
+  Search(const Robot& robot, const Judge& judge, const PostureProblem& problem,
+         const PostureOptions& options, TransitionSolver& solver)
+      : robot_(robot),
         judge_(judge),
         problem_(problem),
         options_(options),
         random_(options.seed),
-        posture_(robot, seen, problem, options, shapes),
-        solver_(make_linear_solver("dense")),
-        workspace_(workspace) {
-    compiled_.compile(posture_.graph);
-    workspace_.allocate(compiled_);
-    watched_ = posture_.watch(compiled_);
+        solver_(solver),
+        state_(robot),
+        rolls_(std::ranges::any_of(problem.stance.contacts, rolls)) {
+    asked_.closed = problem.stance.contacts;
+    asked_.preferred = problem.preferred;
+    asked_.preferred.segment<4>(3).normalize();
+    asked_.start = asked_.preferred;
+    asked_.places_known = asked_.exact_pairs = false;
+    how_.max_iterations = options.max_iterations;
+    how_.patience = options.patience;
+    how_.joint_margin_rad = options.joint_margin_rad;
+    how_.self_margin_m = options.self_margin_m;
+    how_.surface_margin_m = options.ground_margin_m;
+    how_.obstacle_margin_m = options.obstacle_margin_m;
+    how_.torque_margin = options.torque_margin;
   }
 
   PostureResult run() {
-    result_.statistics.build_s = watch_.seconds();
-    Eigen::VectorXd start = problem_.preferred;
+    const Stopwatch watch;
     for (;;) {
-      attempt(start);
+      attempt();
       if (result_.success()) break;
       const auto end = end_by(options_.termination, result_.statistics.iterations);
-      if (end || result_.statistics.restarts >= options_.max_restarts) {
+      if (!end && ask_more()) continue;
+      if (end || balances_nowhere_ || result_.statistics.restarts >= options_.max_restarts) {
         explain(end);
         break;
       }
-      ++result_.statistics.restarts;
-      start = perturbed();
+      restart();
     }
-    result_.statistics.total_s = watch_.seconds();
+    result_.statistics.total_s = watch.seconds();
     return std::move(result_);
   }
 
  private:
-  /// Optimises from `start`. The check has the last word, also on what lacks a margin only.
-  void attempt(const Eigen::VectorXd& start) {
-    posture_.set_start(start);
-    workspace_.load_state();
-    std::vector<double> worst_by_iteration;
-    bool closed = false;
-    OptimiserOptions lm;
-    lm.scale_by_diagonal = true;
-    lm.initial_lambda = 1e-4;
-    lm.refused_lambda = 1e-2;
-    lm.max_iterations =
-        options_.termination.left_of(options_.max_iterations, result_.statistics.iterations);
-    lm.gain = 1e-4;
-    lm.deadline = options_.termination.deadline;
-    lm.on_iteration = [&](const OptimiserResult&) {
-      const double worst = watched_.worst(workspace_);
-      closed = worst <= 1.0;
-      worst_by_iteration.push_back(worst);
-      return !closed && !options_.termination.stopped() && !stalled(worst_by_iteration);
-    };
-    const Stopwatch watch;
-    Optimiser optimiser(lm);
-    optimiser.start(workspace_, *solver_);
-    while (optimiser.iterate()) {
+  /// Optimises from where it is asked to. The check has the last word, also on what lacks a margin
+  /// only.
+  void attempt() {
+    optimise();
+    const bool ended = options_.termination.ended(result_.statistics.iterations);
+    if (!ended && found_.success() && asked_.balance == nullptr && !is_balanced() &&
+        ask_balance()) {
+      asked_.start = found_.configuration;
+      optimise();
     }
-    workspace_.evaluate(workspace_.state());
-    const double worst = watched_.worst(workspace_);
-    workspace_.store_state();
-    result_.statistics.optimise_s += watch.seconds();
-    result_.statistics.iterations += optimiser.result().iterations;
-    violated_ = watched_.violated(workspace_);
-    const bool best = worst < best_;
-    if (best) {
-      best_ = worst;
-      result_.configuration = posture_.configuration();
-      checked_ = false;
-    }
+    const double amount = found_.success() ? 0.0 : found_.amount;
     CheckOptions asked = options_.check;
     asked.certify_only_if_rest_holds = true;
-    CheckReport report = checked(posture_.configuration(), asked);
-    if (report.feasible) {
+    report_ = checked(found_.configuration, asked);
+    if (report_.feasible) {
       result_.status = PlannerStatus::kSolved;
       result_.reason = "found";
     }
-    if (best || report.feasible) {
-      result_.configuration = posture_.configuration();
-      result_.report = std::move(report);
-      checked_ = true;
+    if (report_.feasible || !(amount >= least_)) {
+      least_ = amount;
+      result_.configuration = found_.configuration;
+      result_.report = report_;
     }
   }
 
-  /// The worst violation, in tolerances, has not come down by a tenth in a few iterations.
-  bool stalled(const std::vector<double>& worst) const {
-    if (static_cast<int>(worst.size()) <= options_.patience) return false;
-    const auto split = worst.end() - options_.patience;
-    return *std::min_element(split, worst.end()) > 0.9 * *std::min_element(worst.begin(), split);
+  void optimise() {
+    const Stopwatch watch;
+    how_.termination = options_.termination.after(result_.statistics.iterations);
+    found_ = solver_.solve(asked_, how_);
+    result_.statistics.iterations += found_.statistics.iterations;
+    result_.statistics.optimise_s += watch.seconds();
+  }
+
+  /// From where the last attempt ended, with what the check misses there. False: nothing is left to
+  /// ask for.
+  bool ask_more() {
+    if (!found_.success() || balances_nowhere_) return false;
+    asked_.start = found_.configuration;
+    if (!asked_.exact_pairs && report_.constraint("self_collision").violated) {
+      asked_.exact_pairs = true;
+      return true;
+    }
+    const Violation& balance = report_.constraint("static_balance");
+    if (!balance.judged || !balance.violated) return false;
+    if (asked_.balance == nullptr || (rolls_ && polygons_ < kMostPolygons)) return ask_balance();
+    if (!options_.enforce_torque_limits || asked_.torques != nullptr) return false;
+    const Stopwatch watch;
+    torques_.emplace(robot_, bearing(), options_.check.effort_scale, options_.wrench_margin);
+    asked_.torques = &*torques_;
+    result_.statistics.build_s += watch.seconds();
+    return true;
+  }
+
+  /// The contacts that bear, a wheel where it touches now.
+  std::vector<BearingContact> bearing() {
+    std::vector<BearingContact> bearing;
+    if (rolls_) state_.update(found_.configuration.data());
+    for (const Contact& contact : problem_.stance.contacts) {
+      bearing.push_back({contact});
+      if (!rolls(contact)) continue;
+      bearing.back().contact.position =
+          contact_kind_entry(contact.effector.kind).touching_point(state_, contact);
+    }
+    return bearing;
+  }
+
+  bool is_balanced() {
+    const Stopwatch watch;
+    state_.update(found_.configuration.data());
+    const bool is = balances(robot_.total_mass(), bearing(), options_.wrench_margin,
+                             state_.center_of_mass().head<2>());
+    result_.statistics.build_s += watch.seconds();
+    return is;
+  }
+
+  /// Without the margin where nothing balances with it. False: nor without.
+  bool ask_balance() {
+    const Stopwatch watch;
+    ++polygons_;
+    const std::vector<BearingContact> contacts = bearing();
+    const double mass_kg = robot_.total_mass();
+    region_ = balance_region(mass_kg, contacts, options_.wrench_margin, kResolution_m);
+    for (const double margin : {options_.wrench_margin, 0.0}) {
+      if (!region_.empty()) break;
+      region_ = balance_region(mass_kg, contacts, margin, kFineResolution_m);
+    }
+    asked_.balance = region_.empty() ? nullptr : &region_;
+    balances_nowhere_ = region_.empty() && !rolls_;
+    result_.statistics.build_s += watch.seconds();
+    return !region_.empty();
+  }
+
+  /// From the preferred configuration, with what was violated moved at random, further from one
+  /// restart to the next.
+  void restart() {
+    ++result_.statistics.restarts;
+    polygons_ = 0;
+    const double reach = std::min(1.0, 0.25 * result_.statistics.restarts);
+    asked_.start = solver_.perturbed(asked_.preferred, reach, random_);
   }
 
   CheckReport checked(const Eigen::VectorXd& q, const CheckOptions& options) {
@@ -156,73 +195,59 @@ class Search {
 
   /// end: of the search, if the termination ended it.
   void explain(const std::optional<PlannerAnswer>& end) {
-    if (!checked_) result_.report = checked(result_.configuration, options_.check);
+    if (!result_.report.constraint("static_balance").judged) {
+      result_.report = checked(result_.configuration, options_.check);
+    }
     result_.reason = "no posture found: " + violation_text(result_.report.worst());
     if (!end) return;
     result_.status = end->status;
     result_.reason += "; " + end->reason;
   }
 
-  /// The preferred configuration with what was violated moved at random, further from one restart
-  /// to the next.
-  Eigen::VectorXd perturbed() {
-    Eigen::VectorXd q = problem_.preferred;
-    const int base = robot_.base_configuration_size();
-    const double reach = std::min(1.0, 0.25 * result_.statistics.restarts);
-    Eigen::VectorXd tangent = Eigen::VectorXd::Zero(robot_.tangent_size());
-    if (violated_.base) {
-      for (int i = 0; i < 3; ++i) tangent[i] = uniform(random_, -0.2, 0.2) * reach;
-      for (int i = 3; i < 6; ++i) tangent[i] = uniform(random_, -0.6, 0.6) * reach;
-    }
-    robot_.integrate(q.data(), tangent.data(), q.data());
-    for (int i = 0; i < robot_.active_joint_count(); ++i) {
-      if (!violated_.joints[static_cast<std::size_t>(i)]) continue;
-      const Joint& joint = robot_.active_joint(i);
-      const double span = joint.type == JointType::kPrismatic ? 0.2 : 1.5;
-      const double lower = std::max(joint.lower, q[base + i] - span * reach);
-      const double upper = std::min(joint.upper, q[base + i] + span * reach);
-      if (lower < upper) q[base + i] = uniform(random_, lower, upper);
-    }
-    return q;
-  }
-
   const Robot& robot_;
   const Judge& judge_;
   const PostureProblem& problem_;
   const PostureOptions& options_;
-  const Stopwatch watch_;
   std::mt19937_64 random_;
-  PostureGraph posture_;
-  std::unique_ptr<LinearSolver> solver_;
-  Problem compiled_;
-  Workspace& workspace_;
-  WatchedRows watched_;
-  Violated violated_;
-  double best_ = std::numeric_limits<double>::infinity();
-  bool checked_ = false;
+  TransitionSolver& solver_;
+  RobotState state_;
+  bool rolls_;  ///< a wheel may: where it bears depends on the posture
+  TransitionProblem asked_;
+  TransitionOptions how_;
+  BalanceRegion region_;
+  int polygons_ = 0;
+  bool balances_nowhere_ = false;
+  std::optional<TorqueProgramme> torques_;
+  TransitionResult found_;  ///< of the last attempt
+  CheckReport report_;      ///< likewise
+  double least_ = std::numeric_limits<double>::infinity();
   PostureResult result_;
 };
 
 }  // namespace
 
-/// Workspaces that no solve uses at the moment: their memory takes longer to get than most solves.
-class PostureSolver::Workspaces {
+/// Those that no solve uses at the moment: copies of one.
+class PostureSolver::Solvers {
  public:
-  std::unique_ptr<Workspace> take() {
+  Solvers(const std::shared_ptr<const RobotParameter>& robot, World world)
+      : first_(robot, std::move(world)) {}
+
+  std::unique_ptr<TransitionSolver> take() {
     const std::lock_guard lock(mutex_);
-    if (free_.empty()) return std::make_unique<Workspace>();
-    std::unique_ptr<Workspace> workspace = std::move(free_.back());
+    if (free_.empty()) return std::make_unique<TransitionSolver>(first_);
+    std::unique_ptr<TransitionSolver> solver = std::move(free_.back());
     free_.pop_back();
-    return workspace;
+    return solver;
   }
-  void give_back(std::unique_ptr<Workspace> workspace) {
+  void give_back(std::unique_ptr<TransitionSolver> solver) {
     const std::lock_guard lock(mutex_);
-    free_.push_back(std::move(workspace));
+    free_.push_back(std::move(solver));
   }
 
  private:
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Workspace>> free_;
+  const TransitionSolver first_;
+  std::vector<std::unique_ptr<TransitionSolver>> free_;
 };
 
 World posture_world(World in_the_way) {
@@ -234,20 +259,14 @@ PostureSolver::PostureSolver(std::shared_ptr<const RobotParameter> robot, World 
                              const WorldFiles& files)
     : robot_(std::move(robot)),
       world_(parameter_of(std::move(world), files)),
-      judge_(robot_->robot, world_->snapshot),
-      workspaces_(std::make_unique<Workspaces>()) {
-  auto shapes = std::make_unique<PostureShapes>();
-  shapes->coarse_pairs = coarse_pairs(robot_, judge_);
+      judge_(robot_->robot, world_->snapshot) {
   const Robot& model = *robot_->robot;
-  for (int link = 0; link < static_cast<int>(model.links().size()); ++link)
-    shapes->solids.push_back(std::make_shared<const LinkSolids>(model, link));
-  shapes_ = std::move(shapes);
-  world_->snapshot->distance();  // now rather than in the first solve
   if (!model.floating_base()) {
     throw Error("a posture of a robot with a fixed base", "a floating base");
   }
   RobotState(model).require_mass();
   model.require_collision_shapes();
+  solvers_ = std::make_unique<Solvers>(robot_, at_rest(world_->snapshot->world()));
 }
 
 PostureSolver::~PostureSolver() = default;
@@ -261,29 +280,37 @@ PostureResult PostureSolver::solve(const PostureProblem& problem,
     throw Error("a preferred configuration that is none of " + robot().name(),
                 std::to_string(robot().configuration_size()) + " finite numbers");
   }
-  std::unique_ptr<Workspace> workspace = workspaces_->take();
-  PostureResult result =
-      Search(robot_, world_, judge_, problem, options, *shapes_, *workspace).run();
-  workspaces_->give_back(std::move(workspace));
+  std::unique_ptr<TransitionSolver> solver = solvers_->take();
+  PostureResult result = Search(robot(), judge_, problem, options, *solver).run();
+  solvers_->give_back(std::move(solver));
   return result;
 }
 
 Graph PostureSolver::graph(const PostureProblem& problem, const PostureResult& result,
                            const PostureOptions& options) const {
-  PostureOptions exact = options;
-  exact.joint_margin_rad = exact.self_margin_m = exact.obstacle_margin_m = 0.0;
-  exact.ground_margin_m = exact.wrench_margin = exact.torque_margin = 0.0;
-  // What it stays near is itself: the graph is at rest.
-  const PostureProblem found{problem.stance, result.configuration, problem.file};
-  PostureGraph posture(robot_, world_, found, exact, *shapes_);
-  const std::optional<BalanceCertificate>& balance = result.report.balance;
-  posture.set(result.configuration, balance ? balance->wrenches : StanceWrenches());
+  Graph graph;
+  graph.parameters().set(kRobotNumber, robot_);
+  graph.parameters().set(kWorldNumber, world_);
   if (!problem.file.empty()) {
     const auto contacts = std::make_shared<ContactsParameter>();
     contacts->file = problem.file;
-    posture.graph.parameters().set(kContactsNumber, contacts);
+    graph.parameters().set(kContactsNumber, contacts);
   }
-  return std::move(posture.graph);
+  graph.parameters().set(kPlacesNumber, std::make_shared<const PlacesParameter>(
+                                            robot_, kRobotNumber, world_->snapshot->world()));
+  const int stance = add_stances(graph, robot_, {problem.stance}).front();
+  graph.add_vertex(0, VertexConfiguration(kRobotNumber, robot_, 0.0, result.configuration, stance));
+  CheckOptions check = options.check;
+  check.enforce_torque_limits = options.enforce_torque_limits;
+  PlanEdgeOptions edges = motion_edges(check);
+  edges.joint_margin_rad = edges.self_margin_m = 0.0;
+  edges.obstacle_margin_m = edges.surface_margin_m = 0.0;
+  const std::optional<BalanceCertificate>& balance = result.report.balance;
+  const std::size_t contacts = problem.stance.contacts.size();
+  add_plan_edges(
+      graph, edges,
+      {balance ? balance->wrenches : StanceWrenches(contacts, StanceWrenches::value_type::Zero())});
+  return graph;
 }
 
 Eigen::VectorXd placed_at(const Robot& robot, const Eigen::VectorXd& configuration,

@@ -9,18 +9,18 @@
 ///     if (!result.success()) std::cerr << result.reason;
 ///     else write_graph(solver.graph(problem, result), "standing.g2o");
 ///
-/// A posture is a small graph: one configuration, one VERTEX_WRENCHES, the edges of contact
-/// closure, joint limits, balance, friction, torque limits, self-collision, ground and obstacles,
-/// and a weak pull to the preferred configuration. Levenberg-Marquardt solves it from there, then
-/// from a bounded number of seeded restarts that move what was violated: the chains that collide or
-/// do not reach, the base when balance fails (the idea of Rossini et al. 2021). An attempt ends as
-/// soon as its worst violation no longer comes down. What counts as found is decided by
-/// the judge alone (check/judge.h), never by cost.
+/// The solver of stance planning's transitions (transition_solver.h) with one stance on both sides,
+/// from the preferred configuration, then from a bounded number of seeded restarts that move what
+/// was violated: the chains that collide or do not reach, the base when balance fails (the idea of
+/// Rossini et al. 2021). What counts as found is decided by the judge alone (check/judge.h), never
+/// by cost.
 ///
 /// Constraints are solved with margins (PostureOptions), so that what the check asks for holds with
-/// room to spare. Pairs of links whose covering shapes overlap although the links do not, in a
-/// named configuration of the robot, are left to the check. Links that touch something near the
-/// ground which is not the ground, as stones, are kept out of it by their exact shapes.
+/// room to spare. What most postures have anyway is only asked for where one lacks it, from there
+/// on: balance, where a linear programme says that the centre of mass is not over the contacts;
+/// torques, and distances of links whose covering shapes overlap although the links do not, where
+/// the check refuses them. Links that touch something near the ground which is not the ground, as
+/// stones, are kept out of it by their exact shapes.
 /// Deterministic but for the deadline, up to rounding that depends on where vectors lie in memory:
 /// a program that makes the same calls gets the same bits. Thread-safe.
 
@@ -38,9 +38,9 @@ namespace locograph {
 /// With the plane z = 0 as the ground, and nothing else that may be touched.
 World posture_world(World in_the_way = {});
 
-struct PostureStatistics : PlannerStatistics {  // iterations: of Levenberg-Marquardt
+struct PostureStatistics : PlannerStatistics {  // iterations: steps of all attempts
   int restarts = 0;
-  /// The graph, Levenberg-Marquardt, exact geometry, balance certificates.
+  /// What contacts balance, the steps, exact geometry, balance certificates.
   double build_s = 0.0, optimise_s = 0.0, geometry_s = 0.0, balance_s = 0.0;
 };
 
@@ -51,8 +51,6 @@ struct PostureResult : PlannerAnswer {
   CheckReport report;  ///< of that configuration; its wrenches are the certificate's
   PostureStatistics statistics;
 };
-
-struct PostureShapes;
 
 class PostureSolver {
  public:
@@ -70,19 +68,17 @@ class PostureSolver {
   PostureResult solve(const PostureProblem& problem, const PostureOptions& options = {}) const;
 
   /// The posture as a plan of one configuration, without margins: the configuration, which is also
-  /// the one it stays near, its stance, and the certificate's wrenches.
+  /// the one it stays near, its stance, the certificate's wrenches, and the edges of plan_edges.h.
   Graph graph(const PostureProblem& problem, const PostureResult& result,
               const PostureOptions& options = {}) const;
 
  private:
-  /// Memory of the solves before.
-  class Workspaces;
+  class Solvers;
 
   std::shared_ptr<const RobotParameter> robot_;
   std::shared_ptr<const WorldParameter> world_;
   Judge judge_;
-  std::unique_ptr<const PostureShapes> shapes_;
-  std::unique_ptr<Workspaces> workspaces_;
+  std::unique_ptr<Solvers> solvers_;
 };
 
 /// `configuration` moved as a whole, so that its contact points are as near as possible to their

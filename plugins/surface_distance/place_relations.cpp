@@ -49,6 +49,11 @@ void PlaceRelations::set_contacts(std::span<const Contact> closed, std::span<con
   for (const Contact& contact : near) add_touch(contact, false, false, near_m);
 }
 
+void PlaceRelations::set_places_known(bool known) {
+  places_known_ = known;
+  related_ = false;
+}
+
 void PlaceRelations::add_touch(const Contact& contact, bool is_closed, bool is_held,
                                double above_m) {
   const RobotParameter& robot = *places_->robot();
@@ -118,6 +123,18 @@ void PlaceRelations::find_relations() {
                 Relation::kNone);
   }
   for (const Touch& touch : touches_) relate(touch);
+  if (places_known_) return;
+  for (std::size_t i = 0; i < near_.size(); ++i) {
+    if (!places_->is_surface(near_[i]) && !places_->is_solid(near_[i])) continue;
+    for (const Touch& touch : touches_) {
+      for (const int bound : touch.bounds) {
+        const std::size_t at = i * bounds + static_cast<std::size_t>(bound);
+        if (relations_[at] != Relation::kApart) continue;
+        relations_[at] = Relation::kTouches;
+        deepest_m_[at] = -kBesideAbove_m;
+      }
+    }
+  }
 }
 
 void PlaceRelations::relate(const Touch& touch) {

@@ -45,6 +45,9 @@ class PlaceRelations {
   /// links may be near what they touch, near_m above it at least.
   void set_contacts(std::span<const Contact> closed, std::span<const Contact> held = {},
                     std::span<const Contact> near = {}, double near_m = 0.0);
+  /// False: contacts may be on what is none of the places. Their links come as near to surfaces and
+  /// solids as kBesideAbove_m.
+  void set_places_known(bool known);
   /// Ascending: all places that have to do with a robot in this box, and a few more. Valid until
   /// the next call.
   const std::vector<int>& near(const Eigen::AlignedBox3d& robot);
@@ -59,6 +62,11 @@ class PlaceRelations {
   /// How deep a link that touches may be, less what rows may be off; negative: how far above [m].
   double deepest_m(std::size_t i, std::size_t bound) const {
     return deepest_m_[i * places_->robot()->bounds.size() + bound];
+  }
+  static constexpr double kBesideAbove_m = 2e-5;
+  /// Whether the link may touch what is none of the places, beside this one.
+  bool is_beside(std::size_t i, std::size_t bound) const {
+    return deepest_m(i, bound) == -kBesideAbove_m;
   }
   /// Whether the link may touch something.
   bool touches(std::size_t bound) const;
@@ -91,7 +99,7 @@ class PlaceRelations {
   std::vector<Touch> touches_;
   Eigen::AlignedBox3d searched_;
   std::vector<int> near_;
-  bool related_ = false;
+  bool related_ = false, places_known_ = true;
   std::vector<Relation> relations_;  ///< near_ by bounds
   std::vector<double> deepest_m_;
 };

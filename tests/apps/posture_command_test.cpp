@@ -145,7 +145,7 @@ TEST(PostureCommand, IsNotBelievedByCheckOfARobotWithoutShapes) {
   std::istringstream posture(runner.read("out.g2o"));
   std::string rest;
   for (std::string line; std::getline(posture, line);) {
-    const bool counts = line.starts_with("EDGE_SELF_") || line.starts_with("EDGE_GROUND_");
+    const bool counts = line.starts_with("EDGE_SELF_") || line.starts_with("EDGE_SURFACE_");
     if (!counts) rest += line + '\n';
   }
   runner.write("out.g2o", rest);

@@ -23,14 +23,13 @@
 #include <locograph/planners/offline/stance/stance_tree.h>
 #include <locograph/planners/offline/stance/standing_wheels.h>
 #include <locograph/planners/offline/stance/started_task.h>
-#include <locograph/planners/offline/stance/transition_rows.h>
 #include <locograph/planners/offline/timing/path_timing.h>
 #include <locograph/planners/online/sideways_detour.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
-#include <locograph/planners/posture/posture_graph.h>
 #include <locograph/planners/posture/posture_solver.h>
+#include <locograph/planners/posture/transition_rows.h>
 #include <locograph/planners/scenario/bar_place.h>
 #include <locograph/planners/scenario/contact_place.h>
 #include <locograph/planners/scenario/contacts_file.h>
@@ -371,12 +370,12 @@ struct Context : TimingContext {
   const PathSpline path = timing_path(robot, waypoints, limits);
 };
 }  // namespace offline_timing_speed_profile_h
-namespace offline_stance_transition_rows_h {
+namespace posture_transition_rows_h {
 struct Context : TransitionContext {
   const TransitionProblem problem = transition();
   double worst = 1.0;
 };
-}  // namespace offline_stance_transition_rows_h
+}  // namespace posture_transition_rows_h
 namespace offline_stance_stance_graph_h {
 struct Context : StepContext {
   const StancePlan& plan = step_stances();
@@ -385,14 +384,14 @@ struct Context : StepContext {
 namespace offline_stance_stance_space_h {
 using Context = StepContext;
 }
-namespace offline_stance_transition_problem_h {
+namespace posture_transition_problem_h {
 struct Context : TransitionContext {
   const Stance& larger = stance;
   const Eigen::VectorXd& home = q;
 };
-}  // namespace offline_stance_transition_problem_h
-namespace offline_stance_transition_solver_h {
-using Context = offline_stance_transition_problem_h::Context;
+}  // namespace posture_transition_problem_h
+namespace posture_transition_solver_h {
+using Context = posture_transition_problem_h::Context;
 }
 namespace online_detour_search_h {
 /// A box on the way, after two metres.
@@ -577,22 +576,6 @@ struct Context : StepContext {
   const PostureProblem problem = {.stance = stance, .preferred = q};
 };
 }  // namespace answer_planner_answer_h
-namespace posture_posture_graph_h {
-struct Context : StepContext {
-  const std::shared_ptr<const RobotParameter>& robot = task.robot;
-  const std::shared_ptr<const WorldParameter> seen = std::make_shared<const WorldParameter>();
-  const PostureProblem problem = {.stance = stance, .preferred = q};
-  const PostureOptions options;
-  PostureShapes shapes;
-  Context() {
-    shapes.coarse_pairs.assign(robot->self_collision.pairs.size(), false);
-    for (std::size_t link = 0; link < robot->robot->links().size(); ++link) {
-      shapes.solids.push_back(
-          std::make_shared<const LinkSolids>(*robot->robot, static_cast<int>(link)));
-    }
-  }
-};
-}  // namespace posture_posture_graph_h
 namespace posture_posture_problem_h {
 using Context = StepContext;
 }

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <locograph/check/judge.h>
 #include <locograph/common/uniform.h>
-#include <locograph/planners/offline/stance/transition_rows.h>
+#include <locograph/planners/posture/transition_rows.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 #include <locograph/check/judge.h>
 #include <locograph/common/error.h>
 #include <locograph/common/uniform.h>
-#include <locograph/planners/offline/stance/transition_rows.h>
-#include <locograph/planners/offline/stance/transition_solver.h>
+#include <locograph/planners/posture/transition_rows.h>
+#include <locograph/planners/posture/transition_solver.h>
 
 #include <cmath>
 #include <map>

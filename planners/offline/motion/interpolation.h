@@ -1,6 +1,6 @@
 #pragma once
 /// The cheapest planner of segments: configurations half-way, again and again, by the solver of
-/// transitions (stance/transition_solver.h).
+/// transitions (posture/transition_solver.h).
 ///
 /// What swings from one place to another follows an arc: up along the normal of the one, over, and
 /// down along the normal of the other. Where configurations on that arc are not found, soles may

@@ -12,8 +12,8 @@
 
 #include <locograph/planners/balance/balance_region.h>
 #include <locograph/planners/balance/torque_programme.h>
-#include <locograph/planners/offline/stance/transition_rows.h>
-#include <locograph/planners/offline/stance/transition_solver.h>
+#include <locograph/planners/posture/transition_rows.h>
+#include <locograph/planners/posture/transition_solver.h>
 
 #include <Eigen/Core>
 #include <memory>

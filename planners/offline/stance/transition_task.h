@@ -8,7 +8,7 @@
 /// The outcome depends on the task alone, bit for bit: not on what was solved before.
 
 #include <locograph/planners/offline/stance/footing.h>
-#include <locograph/planners/offline/stance/transition_solver.h>
+#include <locograph/planners/posture/transition_solver.h>
 #include <locograph/planners/task/task.h>
 
 #include <mutex>

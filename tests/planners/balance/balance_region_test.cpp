@@ -228,6 +228,28 @@ TEST(BalanceRegion, LimitsOfForceKeepTheCentreOfMassFromOneFoot) {
   EXPECT_TRUE(with_part_of_weight(0.45).empty()) << "both together are too weak";
 }
 
+TEST(BalanceRegion, OneProgrammeSaysWhetherItHoldsAPoint) {
+  const std::vector<BearingContact> feet = {{sole({0.0, 0.12, 0.0})}, {sole({0.2, -0.12, 0.1})}};
+  const BalanceRegion region = balance_region(kMass_kg, feet, kMargin);
+  int inside = 0, points = 0;
+  for (double x = -0.3; x < 0.5; x += 0.037) {
+    for (double y = -0.3; y < 0.3; y += 0.037) {
+      const double depth_m = region.depth_m({x, y});
+      if (std::abs(depth_m) < 1e-3) continue;
+      ++points;
+      inside += depth_m > 0.0;
+      EXPECT_EQ(balances(kMass_kg, feet, kMargin, {x, y}), depth_m > 0.0) << x << ' ' << y;
+    }
+  }
+  EXPECT_GT(inside, 10);
+  EXPECT_GT(points - inside, 10);
+  // Fewer corners lie inside.
+  const BalanceRegion coarse = balance_region(kMass_kg, feet, kMargin, 0.02);
+  EXPECT_LE(coarse.sides.size(), region.sides.size());
+  EXPECT_LE(coarse.depth_m({0.1, 0.0}), region.depth_m({0.1, 0.0}) + kNear_m);
+  EXPECT_GT(coarse.depth_m({0.1, 0.0}), region.depth_m({0.1, 0.0}) - 0.02);
+}
+
 TEST(BalanceRegion, OnlyWhatOfASoleLiesOnSomethingBears) {
   const BearingContact half = {sole(Vector3d::Zero()),
                                {{0.0, 0.05}, {0.1, 0.05}, {0.1, -0.05}, {0.0, -0.05}}};

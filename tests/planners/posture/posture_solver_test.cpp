@@ -233,6 +233,16 @@ TEST(PostureSolver, KeepsClearOfObstacles) {
   EXPECT_GE(result.report.constraint("obstacle_distance").worst, 0.0);
 }
 
+// A stone that the contacts file says nothing of: the foot on it comes nearer to the ground than
+// links that keep away from it.
+TEST(PostureSolver, AFootStandsOnWhatIsJustAboveTheGround) {
+  PostureProblem problem = coman_standing();
+  problem.stance.contacts[0].position.z() = 1e-3;
+  const PostureResult result = solver_of("coman_plus").solve(problem);
+  ASSERT_TRUE(result.success()) << result.reason;
+  EXPECT_LT(result.report.constraint("contact_position").worst, 1e-4);
+}
+
 TEST(PostureSolver, SavesAGraphThatIsAtItsOptimum) {
   const PostureSolver& solver = solver_of("coman_plus");
   const PostureProblem problem = coman_standing();

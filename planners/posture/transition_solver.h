@@ -25,12 +25,13 @@
 /// thread; copies share what does not change.
 
 #include <locograph/planners/answer/planner_answer.h>
-#include <locograph/planners/offline/stance/transition_problem.h>
+#include <locograph/planners/posture/transition_problem.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
 #include <locograph/world/world.h>
 
 #include <Eigen/Core>
 #include <memory>
+#include <random>
 #include <vector>
 
 namespace locograph {
@@ -59,6 +60,10 @@ class TransitionSolver {
 
   /// Throws Error for contacts that are not sound and for options out of range.
   TransitionResult solve(const TransitionProblem& problem, const TransitionOptions& options = {});
+
+  /// `q` with what was violated where the last solve ended moved at random, by `reach` of the most;
+  /// where nothing was, everything.
+  Eigen::VectorXd perturbed(const Eigen::VectorXd& q, double reach, std::mt19937_64& random) const;
 
  private:
   struct Parts;

@@ -1,5 +1,5 @@
 #include <locograph/common/check_option.h>
-#include <locograph/planners/offline/stance/transition_problem.h>
+#include <locograph/planners/posture/transition_problem.h>
 
 #include <array>
 

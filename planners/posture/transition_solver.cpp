@@ -1,6 +1,6 @@
 #include <locograph/common/uniform.h>
-#include <locograph/planners/offline/stance/transition_rows.h>
-#include <locograph/planners/offline/stance/transition_solver.h>
+#include <locograph/planners/posture/transition_rows.h>
+#include <locograph/planners/posture/transition_solver.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -200,8 +200,8 @@ struct TransitionSolver::Parts {
     result.reason += amount;
   }
 
-  /// `q` with what is violated in rows() moved at random, by `reach` of the most.
-  Eigen::VectorXd perturbed(const Eigen::VectorXd& q, double reach, std::mt19937_64& random) {
+  /// See TransitionSolver::perturbed().
+  Eigen::VectorXd perturbed(const Eigen::VectorXd& q, double reach, std::mt19937_64& random) const {
     const Robot& robot = rows.robot();
     std::vector<bool> joints(static_cast<std::size_t>(robot.active_joint_count()), false);
     bool base = false;
@@ -227,6 +227,10 @@ struct TransitionSolver::Parts {
       chain(first);
       chain(second);
       base = base || row.kind != TransitionFailure::kSelf;
+    }
+    if (!base && std::find(joints.begin(), joints.end(), true) == joints.end()) {
+      base = true;
+      joints.assign(joints.size(), true);
     }
     Eigen::VectorXd tangent = Eigen::VectorXd::Zero(size);
     if (base) {
@@ -299,6 +303,11 @@ TransitionResult TransitionSolver::solve(const TransitionProblem& problem,
   }
   result.statistics.total_s = watch.seconds();
   return result;
+}
+
+Eigen::VectorXd TransitionSolver::perturbed(const Eigen::VectorXd& q, double reach,
+                                            std::mt19937_64& random) const {
+  return parts_->perturbed(q, reach, random);
 }
 
 }  // namespace locograph

@@ -10,7 +10,7 @@
 /// kept from reaching deeper into what they touch than the judge allows, by their exact shapes; the
 /// others are kept away by the spheres that cover them.
 
-#include <locograph/planners/offline/stance/transition_problem.h>
+#include <locograph/planners/posture/transition_problem.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
 #include <locograph/plugins/surface_distance/place_relations.h>
 #include <locograph/robots/contact_closure.h>
@@ -90,6 +90,7 @@ class TransitionRows {
   TransitionOptions options_;
   const BalanceRegion* balance_ = nullptr;
   TorqueProgramme* torques_ = nullptr;
+  bool exact_pairs_ = true;
   Eigen::VectorXd torque_gradient_;
   double balance_margin_m_ = 0.0;
   std::vector<ContactClosure> closures_;

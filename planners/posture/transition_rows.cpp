@@ -1,4 +1,4 @@
-#include <locograph/planners/offline/stance/transition_rows.h>
+#include <locograph/planners/posture/transition_rows.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
 #include <locograph/plugins/surface_distance/place_rows.h>
 #include <locograph/robots/kinematic_tree.h>
@@ -20,6 +20,9 @@ constexpr double kBand_m = 0.03, kBandJoint_rad = 0.5, kBandSurface_m = 0.1;
 constexpr double kAlong_m = 0.016;
 /// An effort that is exceeded by all of itself counts as so many metres.
 constexpr double kTorqueUnit_m = 0.1;
+/// How much more rows of links that touch something else near a place count: their margin is as
+/// much less than that of others.
+constexpr double kBesideScale = 20.0;
 
 }  // namespace
 
@@ -104,6 +107,7 @@ void TransitionRows::set_problem(const TransitionProblem& problem,
   options_ = options;
   balance_ = problem.balance;
   torques_ = problem.torques;
+  exact_pairs_ = problem.exact_pairs;
   if (balance_ != nullptr) {
     balance_margin_m_ = std::min(options.balance_margin_m, 0.25 * balance_->width_m);
   }
@@ -113,6 +117,7 @@ void TransitionRows::set_problem(const TransitionProblem& problem,
   contact_links_.clear();
   const std::size_t bounds = robot_->bounds.size();
   relations_.set_contacts(problem.closed, problem.held, problem.near, problem.near_m);
+  relations_.set_places_known(problem.places_known);
   exempt_.assign(bounds, false);
   const auto exempt = [&](const Contact& contact) {
     const std::vector<bool> links = touching_links(robot(), {&contact, 1});
@@ -213,6 +218,7 @@ void TransitionRows::add_self() {
                       near_[i].distance_m - options_.self_margin_m);
     std::copy_n(near_gradients_.data() + i * static_cast<std::size_t>(size_), size_, row);
   }
+  if (!exact_pairs_) return;
   const double limit = options_.self_margin_m + kBand_m;
   for (const CoarsePair& coarse : coarse_) {
     const SelfCollisionShapes::Pair& pair =
@@ -243,9 +249,11 @@ void TransitionRows::add_places() {
     for (std::size_t b = 0; b < robot_->bounds.size(); ++b) {
       const std::optional<PlaceRow> found = place_row(state_, relations_, near[i], i, b, bands);
       if (!found) continue;
-      double* row = add(TransitionFailure::kSurface, static_cast<int>(b), near[i], found->value);
+      const double scale = relations_.is_beside(i, b) ? kBesideScale : 1.0;
+      double* row =
+          add(TransitionFailure::kSurface, static_cast<int>(b), near[i], scale * found->value);
       state_.kinematics.add_point_gradient(robot_->bounds[b].link, found->point, found->gradient,
-                                           1.0, row);
+                                           scale, row);
     }
   }
 }

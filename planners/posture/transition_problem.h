@@ -47,6 +47,11 @@ struct TransitionProblem {
   /// been lifted or is about to come down. near_m: how far above it, at least.
   std::span<const Contact> near = {};
   double near_m = 0.0;
+  /// False: contacts may be on what the world does not describe, as in contacts files.
+  bool places_known = true;
+  /// Whether links are kept apart by their exact shapes where the shapes that cover them cannot
+  /// tell. False: not at all.
+  bool exact_pairs = true;
 };
 
 /// What was violated most where no posture was found.
