@@ -1,7 +1,7 @@
 #pragma once
 /// A depth camera on a link of a robot: where it is, its pixels, and the depths that it can see.
 ///
-///     DepthCamera camera = depth_camera("chest", robot.link_index("DWYTorso"), 640, 480, 1.2);
+///     DepthCamera camera = depth_camera("belt", robot.link_index("Waist"), 640, 480, 1.2);
 ///     camera.link_from_optical = link_from_body * body_from_optical();
 ///     camera.validate();
 ///     const Eigen::Vector3d point = camera.point(320, 240, 1.5);   // in the optical frame [m]
