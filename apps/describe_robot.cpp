@@ -1,3 +1,4 @@
+#include <locograph/apps/camera_json.h>
 #include <locograph/apps/describe.h>
 #include <locograph/apps/robot_files.h>
 #include <locograph/apps/type_names.h>
@@ -79,6 +80,11 @@ Json describe_robot(const std::filesystem::path& path) {
     json["names_unknown_to_the_urdf"] = robot.warnings();
   }
   json["self_collision_pairs"] = robot.self_collision_pairs().size();
+  json["cameras"] = Json::array();
+  for (const DepthCamera& camera : cameras_of(robot)) {
+    json["cameras"].push_back(
+        camera_json(camera, robot.links()[static_cast<std::size_t>(camera.link)].name));
+  }
   Json limits = Json::object();
   for (int i = 0; i < robot.active_joint_count(); ++i) {
     limits[robot.active_joint(i).name] = joint_json(robot.active_joint(i));

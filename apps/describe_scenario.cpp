@@ -1,3 +1,4 @@
+#include <locograph/apps/camera_json.h>
 #include <locograph/apps/describe.h>
 #include <locograph/common/data_folder.h>
 #include <locograph/planners/scenario/contacts_file.h>
@@ -116,6 +117,10 @@ Json describe_scenario(const std::filesystem::path& path) {
                    {"srdf", file_json(scenario.srdf, missing)},
                    {"state", scenario.start_state},
                    {"effort_scale", scenario.effort_scale}};
+  json["cameras"] = Json::array();
+  for (const ScenarioCamera& one : scenario.cameras) {
+    json["cameras"].push_back(camera_json(one.camera, one.link));
+  }
   json["end_effectors"] = std::move(effectors);
   json["limits"] = {{"base_linear_m_s", scenario.limits.base_linear_m_s},
                     {"base_angular_rad_s", scenario.limits.base_angular_rad_s},

@@ -8,7 +8,7 @@ build=$1
 seeds=$build/fuzz/seeds
 data=$root/../shared/data
 rm -rf "$seeds"
-mkdir -p "$seeds"/{bal,cloud,contacts,graph,map,plan,obstacles,scenario,srdf,stl,urdf}
+mkdir -p "$seeds"/{bal,cloud,clouds,contacts,graph,image,map,plan,obstacles,scenario,srdf,stl,urdf}
 
 # raw_string FILE NAME: the text of a raw string literal NAME = R"(…)" of a test.
 raw_string() { sed -n "/$2 = R\"(/,/)\";/p" "$root/$1" | sed -e '1s/.*R"(//' -e '$s/)";.*//'; }
@@ -107,6 +107,27 @@ pcd() {
   printf '\x11\x00\x00\x00\x18\x00\x00\x00\x07\x00\x00\x80\x3f\x00\x00\x80\x3f'
   printf '\x03\x00\x00\x00\x40\xe0\x03\x03'
 } >"$seeds/cloud/compressed"
+{ pcd 'x y z' '4 4 4' 'F F F' '1 1 1' 4 ascii; printf '0 0 1\nnan 0 1\n0 1 2\n-1 0 1\n'; } |
+  sed 's/WIDTH 4/WIDTH 2/; s/HEIGHT 1/HEIGHT 2/; s/VIEWPOINT.*/VIEWPOINT 1 0 0 0.6 0.8 0 0/' \
+    >"$seeds/cloud/organised"
+printf 'time_s,camera,file\n0,head,a.pcd\n0.1,head,b.png\n' >"$seeds/clouds/both"
+
+# Images: 2 x 1 pixels, stored, with a stamp and with a camera.
+printf '\x89PNG\r\n\x1a\n' >"$seeds/image/texts"
+png_chunk() {
+  local data=$1 size crc
+  size=$(printf '%b' "$data" | wc -c)
+  crc=$(printf '%b' "$data" | gzip -c | tail -c 8 | head -c 4 | od -An -tx1 | awk '{print $4 $3 $2 $1}')
+  printf "$(printf '%08x' $((size - 4)) | sed 's/../\\x&/g')$data$(sed 's/../\\x&/g' <<<"$crc")"
+}
+{
+  png_chunk 'IHDR\x00\x00\x00\x02\x00\x00\x00\x01\x10\x00\x00\x00\x00'
+  for text in stamp_s=0.5 camera=head fx=2 fy=2 cx=0.5 cy=0 range_min_m=0.3 range_max_m=6; do
+    png_chunk "tEXt${text/=/\\x00}"
+  done
+  png_chunk 'IDAT\x78\x01\x01\x05\x00\xfa\xff\x00\x01\x2c\x00\x00\x00\x8d\x00\x2e'
+  png_chunk IEND
+} >>"$seeds/image/texts"
 
 # Binary files: of maps a root with leaves, a chain of nodes, log-odds; one triangle of a mesh.
 map() { printf '# Octomap OcTree %sfile\nid OcTree\nsize %s\nres %s\ndata\n' "$1" "$2" "$3"; }

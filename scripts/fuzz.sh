@@ -14,7 +14,7 @@ amount=${1:-5}
 shift || true
 targets=("$@")
 [ ${#targets[@]} -gt 0 ] ||
-  targets=(bal cloud contacts graph map obstacles scenario srdf stl urdf)
+  targets=(bal cloud clouds contacts graph image map obstacles scenario srdf stl urdf)
 
 limit=(-max_total_time="$amount")
 [[ $amount == *x ]] && limit=(-runs="${amount%x}")

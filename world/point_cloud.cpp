@@ -1,11 +1,12 @@
 #include <locograph/common/error.h>
 #include <locograph/common/input_file.h>
+#include <locograph/common/parse_number.h>
 #include <locograph/world/point_cloud.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -31,7 +32,7 @@ struct Field {
 struct PcdHeader {
   std::array<Field, 3> xyz;
   std::size_t words = 0, bytes = 0;  ///< of one point
-  std::size_t points = 0;
+  std::size_t width = 0, points = 0;
   Layout layout = Layout::kText;
   std::size_t data_begin = 0;
   int data_line = 0;  ///< the last of the header
@@ -56,13 +57,6 @@ std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
-template <typename Number>
-bool parse(std::string_view word, Number& number) {
-  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  return error == std::errc() && end == word.data() + word.size();
-}
-
 class PcdHeaderReader {
  public:
   PcdHeaderReader(const std::string& file, std::string_view content)
@@ -78,7 +72,28 @@ class PcdHeaderReader {
     sizes_and_types(fields);
     lay_out(fields, header);
     header.points = number_of_points();
+    header.width = number("WIDTH");
     return header;
+  }
+
+  /// After read(). The identity where the file has none.
+  Eigen::Isometry3d viewpoint() const {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    if (!entries_.contains("VIEWPOINT")) return pose;
+    const Entry& found = entries_.at("VIEWPOINT");
+    Eigen::Matrix<double, 7, 1> numbers = Eigen::Matrix<double, 7, 1>::Zero();
+    bool read = found.values.size() == 7;
+    for (int i = 0; read && i < 7; ++i) {
+      read = parse_number(found.values[static_cast<std::size_t>(i)], numbers[i]);
+    }
+    const Eigen::Quaterniond rotation(numbers[3], numbers[4], numbers[5], numbers[6]);
+    if (!read || !numbers.allFinite() || std::abs(rotation.norm() - 1.0) > 1e-3) {
+      fail(found.line, "VIEWPOINT is no pose",
+           "tx ty tz qw qx qy qz with a quaternion of length 1");
+    }
+    pose.translation() = numbers.head<3>();
+    pose.linear() = rotation.normalized().toRotationMatrix();
+    return pose;
   }
 
  private:
@@ -150,7 +165,7 @@ class PcdHeaderReader {
     const Entry& types = for_each_field("TYPE", fields);
     for (std::size_t f = 0; f < fields.size(); ++f) {
       Field& field = fields[f];
-      if (!parse(sizes.values[f], field.size) || !std::has_single_bit(field.size) ||
+      if (!parse_number(sizes.values[f], field.size) || !std::has_single_bit(field.size) ||
           field.size > 8) {
         fail(sizes.line, "SIZE " + printable(sizes.values[f]), "1, 2, 4 or 8");
       }
@@ -162,7 +177,7 @@ class PcdHeaderReader {
     if (!entries_.contains("COUNT")) return;
     const Entry& counts = for_each_field("COUNT", fields);
     for (std::size_t f = 0; f < fields.size(); ++f) {
-      if (!parse(counts.values[f], fields[f].count) || fields[f].count < 1 ||
+      if (!parse_number(counts.values[f], fields[f].count) || fields[f].count < 1 ||
           fields[f].count > content_.size()) {
         fail(counts.line, "COUNT " + printable(counts.values[f]),
              "a number from 1 that the file has room for");
@@ -198,7 +213,7 @@ class PcdHeaderReader {
   std::size_t number(const std::string& key) const {
     const Entry& found = entry(key);
     std::size_t value = 0;
-    if (found.values.size() != 1 || !parse(found.values[0], value)) {
+    if (found.values.size() != 1 || !parse_number(found.values[0], value)) {
       fail(found.line, "unreadable " + key, "one whole number");
     }
     return value;
@@ -229,10 +244,6 @@ class PcdHeaderReader {
   int line_ = 0;
 };
 
-void keep_if_finite(const Eigen::Vector3d& point, std::vector<Eigen::Vector3d>& points) {
-  if (point.allFinite()) points.push_back(point);
-}
-
 [[noreturn]] void fail_truncated(const std::string& file, int line, const std::string& found,
                                  std::size_t points) {
   throw Error(file, line, "truncated: " + found,
@@ -244,7 +255,7 @@ std::vector<Eigen::Vector3d> read_text(const std::string& file, const PcdHeader&
   std::vector<Eigen::Vector3d> points;
   // A line has a digit and a line end at least.
   points.reserve(std::min(header.points, data.size() / 2 + 1));
-  std::size_t read = 0, position = 0;
+  std::size_t position = 0;
   int line = header.data_line;
   while (position < data.size()) {
     const std::size_t end = std::min(data.find('\n', position), data.size());
@@ -252,7 +263,7 @@ std::vector<Eigen::Vector3d> read_text(const std::string& file, const PcdHeader&
     position = end + 1;
     ++line;
     if (words.empty()) continue;
-    if (read == header.points) {
+    if (points.size() == header.points) {
       throw Error(file, line, "more points than the header says", std::to_string(header.points));
     }
     if (words.size() != header.words) {
@@ -262,15 +273,14 @@ std::vector<Eigen::Vector3d> read_text(const std::string& file, const PcdHeader&
     Eigen::Vector3d point;
     for (int axis = 0; axis < 3; ++axis) {
       const std::string_view word = words[header.xyz[static_cast<std::size_t>(axis)].first_word];
-      if (!parse(word, point[axis])) {
+      if (!parse_number(word, point[axis])) {
         throw Error(file, line, "unreadable coordinate '" + printable(word) + "'", "a number");
       }
     }
-    keep_if_finite(point, points);
-    ++read;
+    points.push_back(point);
   }
-  if (read < header.points) {
-    fail_truncated(file, line, std::to_string(read) + " points", header.points);
+  if (points.size() < header.points) {
+    fail_truncated(file, line, std::to_string(points.size()) + " points", header.points);
   }
   return points;
 }
@@ -300,7 +310,7 @@ std::vector<Eigen::Vector3d> read_records(const std::string& file, const PcdHead
       const Field& field = header.xyz[axis];
       point[static_cast<int>(axis)] = coordinate(record + field.first_byte, field.size);
     }
-    keep_if_finite(point, points);
+    points.push_back(point);
   }
   return points;
 }
@@ -371,32 +381,48 @@ std::vector<Eigen::Vector3d> read_compressed(const std::string& file, const PcdH
       const char* first = fields.data() + field.first_byte * header.points;
       point[static_cast<int>(axis)] = coordinate(first + p * field.size, field.size);
     }
-    keep_if_finite(point, points);
+    points.push_back(point);
   }
   return points;
 }
 
-}  // namespace
+/// All of them, those that are not finite too.
+std::vector<Eigen::Vector3d> read_points(const std::string& file, const PcdHeader& header,
+                                         std::string_view data) {
+  switch (header.layout) {
+    case Layout::kText:
+      return read_text(file, header, data);
+    case Layout::kBinary:
+      return read_records(file, header, data);
+    case Layout::kCompressed:
+      return read_compressed(file, header, data);
+  }
+  return {};
+}
 
-std::vector<Eigen::Vector3d> load_point_cloud(const std::filesystem::path& path) {
+/// place: whether the viewpoint is wanted, and refused if it is damaged.
+PointCloud read_pcd(const std::filesystem::path& path, bool place) {
   const std::string file = path.string();
   const std::string content = read_file(path, kMostInputBytes, "a point cloud (PCD)");
   if (content.empty()) throw Error(file, 0, "is empty", "a point cloud (PCD)");
-  const PcdHeader header = PcdHeaderReader(file, content).read();
-  const std::string_view data = std::string_view(content).substr(header.data_begin);
-  std::vector<Eigen::Vector3d> points;
-  switch (header.layout) {
-    case Layout::kText:
-      points = read_text(file, header, data);
-      break;
-    case Layout::kBinary:
-      points = read_records(file, header, data);
-      break;
-    case Layout::kCompressed:
-      points = read_compressed(file, header, data);
-      break;
-  }
-  if (points.empty()) throw Error(file, 0, "holds no finite point", "points");
+  PcdHeaderReader reader(file, content);
+  const PcdHeader header = reader.read();
+  PointCloud cloud;
+  if (place) cloud.viewpoint = reader.viewpoint();
+  cloud.width = header.width;
+  cloud.height = header.points / header.width;
+  cloud.points = read_points(file, header, std::string_view(content).substr(header.data_begin));
+  return cloud;
+}
+
+}  // namespace
+
+PointCloud read_point_cloud(const std::filesystem::path& path) { return read_pcd(path, true); }
+
+std::vector<Eigen::Vector3d> load_point_cloud(const std::filesystem::path& path) {
+  std::vector<Eigen::Vector3d> points = read_pcd(path, false).points;
+  std::erase_if(points, [](const Eigen::Vector3d& point) { return !point.allFinite(); });
+  if (points.empty()) throw Error(path.string(), 0, "holds no finite point", "points");
   return points;
 }
 

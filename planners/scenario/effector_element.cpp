@@ -75,6 +75,24 @@ Eigen::Vector3d read_vector(const XmlFile& xml, const XmlFile::Element& element,
   return {numbers[0], numbers[1], numbers[2]};
 }
 
+Eigen::Matrix3d read_rotation(const XmlFile& xml, const XmlFile::Element& element) {
+  if (element.Attribute("rpy") == nullptr) return Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d rpy = read_vector(xml, element, "rpy");
+  return (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
+          Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+Eigen::Isometry3d read_pose(const XmlFile& xml, const XmlFile::Element& element) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = read_rotation(xml, element);
+  if (element.Attribute("position") != nullptr) {
+    pose.translation() = read_vector(xml, element, "position");
+  }
+  return pose;
+}
+
 double read_positive(const XmlFile& xml, const XmlFile::Element& element, const char* name,
                      double most, double least) {
   const double value = xml.number(element, name);

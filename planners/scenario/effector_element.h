@@ -32,6 +32,11 @@ EndEffector read_effector(const XmlFile& xml, const XmlFile::Element& element, C
 /// Three numbers within ±1e6: a place [m] or a direction.
 Eigen::Vector3d read_vector(const XmlFile& xml, const XmlFile::Element& element, const char* name);
 
+/// `rpy` as in URDF; without the attribute, none.
+Eigen::Matrix3d read_rotation(const XmlFile& xml, const XmlFile::Element& element);
+/// `position` and `rpy`, each of them optional.
+Eigen::Isometry3d read_pose(const XmlFile& xml, const XmlFile::Element& element);
+
 /// A number from `least`, or, where that is 0, above it, to `most`.
 double read_positive(const XmlFile& xml, const XmlFile::Element& element, const char* name,
                      double most, double least = 0.0);

@@ -29,16 +29,6 @@ std::vector<double> read_sizes(const XmlFile& xml, const Element& element, const
   return sizes;
 }
 
-/// As in URDF; without the attribute, none.
-Eigen::Matrix3d read_rotation(const XmlFile& xml, const Element& element) {
-  if (element.Attribute("rpy") == nullptr) return Eigen::Matrix3d::Identity();
-  const Eigen::Vector3d rpy = read_vector(xml, element, "rpy");
-  return (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
-          Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
-          Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
-      .toRotationMatrix();
-}
-
 class EnvironmentReader {
  public:
   explicit EnvironmentReader(const XmlFile& xml) : xml_(xml) {}
@@ -133,10 +123,7 @@ class EnvironmentReader {
   void read_mesh(const Element& mesh) {
     xml_.allow(mesh, {"name", "file", "position", "rpy", "scale", "friction"}, {});
     ScannedSurface& scanned = read_scanned(mesh, ScannedSurface::Kind::kMesh);
-    scanned.world_from_mesh.linear() = read_rotation(xml_, mesh);
-    if (mesh.Attribute("position") != nullptr) {
-      scanned.world_from_mesh.translation() = read_vector(xml_, mesh, "position");
-    }
+    scanned.world_from_mesh = read_pose(xml_, mesh);
     if (mesh.Attribute("scale") != nullptr) scanned.scale = read_size(xml_, mesh, "scale");
   }
 

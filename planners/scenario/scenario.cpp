@@ -1,4 +1,5 @@
 #include <locograph/common/suggestion.h>
+#include <locograph/planners/scenario/camera_element.h>
 #include <locograph/planners/scenario/contact_task_element.h>
 #include <locograph/planners/scenario/effector_element.h>
 #include <locograph/planners/scenario/environment_element.h>
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 
 namespace locograph {
@@ -20,7 +20,7 @@ namespace {
 
 using Element = XmlFile::Element;
 
-constexpr double kMostEffortScale = 1e3, kMostPixels = 1e5;
+constexpr double kMostEffortScale = 1e3;
 
 class ScenarioReader {
  public:
@@ -112,43 +112,7 @@ class ScenarioReader {
     if (robot->Attribute("state")) scenario_.start_state = xml_.attribute(*robot, "state");
     scenario_.robot.frozen_state = scenario_.start_state;
     scenario_.effort_scale = positive_or(*robot, "effort_scale", 1.0, kMostEffortScale);
-    read_cameras(*robot);
-  }
-
-  void read_cameras(const Element& robot) {
-    std::set<std::string> names;
-    for (const Element& camera : xml_.children(robot, "camera")) {
-      xml_.allow(
-          camera,
-          {"name", "link", "position", "rpy", "width", "height", "fov_x", "range_min", "range_max"},
-          {});
-      const std::string name = xml_.attribute(camera, "name");
-      if (!names.insert(name).second) {
-        throw xml_.error(camera, "a second camera '" + name + "'", "each name once");
-      }
-      scenario_.cameras.push_back({name, xml_.attribute(camera, "link"), camera.GetLineNum()});
-      for (const char* place : {"position", "rpy"}) {
-        if (camera.Attribute(place) != nullptr) read_vector(xml_, camera, place);
-      }
-      for (const char* pixels : {"width", "height"}) {
-        const double count = read_positive(xml_, camera, pixels, kMostPixels, 1.0);
-        if (count == std::floor(count)) continue;
-        throw xml_.error(camera,
-                         std::string(pixels) + "=\"" + xml_.attribute(camera, pixels) + "\"",
-                         "a whole number of pixels");
-      }
-      const double fov = xml_.number(camera, "fov_x");
-      if (!(fov > 0.0 && fov < std::numbers::pi)) {
-        throw xml_.error(camera, "fov_x=\"" + xml_.attribute(camera, "fov_x") + "\"",
-                         "an angle between 0 and pi");
-      }
-      const double nearest = xml_.number(camera, "range_min");
-      const double farthest = read_size(xml_, camera, "range_max");
-      if (!(nearest >= 0.0 && nearest < farthest)) {
-        throw xml_.error(camera, "range_min=\"" + xml_.attribute(camera, "range_min") + "\"",
-                         "zero or more, less than range_max");
-      }
-    }
+    scenario_.cameras = read_cameras(xml_, *robot);
   }
 
   void read_wheels(const Element* wheels) {
@@ -372,14 +336,18 @@ World world_of(const Scenario& scenario, const Deadline& deadline) {
   return world;
 }
 
-void require_camera_links(const Scenario& scenario, const Robot& robot) {
-  for (const GivenCamera& camera : scenario.cameras) {
+std::vector<DepthCamera> cameras_of(const Scenario& scenario, const Robot& robot) {
+  if (scenario.cameras.empty()) return cameras_of(robot);
+  std::vector<DepthCamera> cameras;
+  for (const ScenarioCamera& one : scenario.cameras) {
+    cameras.push_back(one.camera);
     try {
-      robot.link_index(camera.link);
+      cameras.back().link = robot.link_index(one.link);
     } catch (const Error& error) {
-      throw Error(scenario.source, camera.line, error.what(), "");
+      throw Error(scenario.source, one.line, error.what(), "");
     }
   }
+  return cameras;
 }
 
 std::vector<std::filesystem::path> files_of(const Scenario& scenario) {

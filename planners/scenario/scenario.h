@@ -10,6 +10,7 @@
 #include <locograph/common/deadline.h>
 #include <locograph/planners/scenario/contact_task.h>
 #include <locograph/planners/scenario/scanned_surface.h>
+#include <locograph/planners/scenario/scenario_camera.h>
 #include <locograph/robots/contact.h>
 #include <locograph/robots/robot.h>
 #include <locograph/world/world.h>
@@ -28,12 +29,6 @@ struct DriveTask {
   double curvature_1_m = 0.0;  ///< > 0 turns left
   double speed_m_s = 0.1;
   int configurations = 50;
-  int line = 0;
-};
-
-/// A camera of the scenario, as far as somebody has use for it.
-struct GivenCamera {
-  std::string name, link;
   int line = 0;
 };
 
@@ -57,10 +52,10 @@ struct Scenario {
   std::vector<EndEffector> end_effectors;  ///< each with its friction; the links are not looked for
   std::vector<int> end_effector_lines;     ///< of the file
   MotionLimits limits;
-  std::vector<GivenCamera> cameras;  ///< the links are not looked for
-  std::filesystem::path map;         ///< empty: none
-  std::filesystem::path obstacles;   ///< empty: none
-  std::vector<Surface> surfaces;     ///< that may be touched, in the order of the file
+  std::vector<ScenarioCamera> cameras;  ///< none: the robot's own
+  std::filesystem::path map;            ///< empty: none
+  std::filesystem::path obstacles;      ///< empty: none
+  std::vector<Surface> surfaces;        ///< that may be touched, in the order of the file
   std::vector<Bar> bars;
   std::vector<SolidBox> solids;         ///< whose faces are among the surfaces
   std::vector<ScannedSurface> scanned;  ///< where more of both are found
@@ -82,8 +77,9 @@ Scenario load_scenario(const std::string& name_or_file, const std::filesystem::p
 /// in them to stand on. Throws OutOfTime when the deadline passes first.
 World world_of(const Scenario& scenario, const Deadline& deadline = {});
 
-/// Throws Error with the line of the first camera that is on no link of the scenario's robot.
-void require_camera_links(const Scenario& scenario, const Robot& robot);
+/// The scenario's cameras on the links of its robot, or, without any, the robot's own. Throws Error
+/// with the line of the first one whose link the robot does not have.
+std::vector<DepthCamera> cameras_of(const Scenario& scenario, const Robot& robot);
 
 /// The files that it is made of: its own, unless it comes with locograph, and those it names.
 std::vector<std::filesystem::path> files_of(const Scenario& scenario);

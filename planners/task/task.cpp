@@ -29,8 +29,8 @@ Task task_of(const Scenario& scenario, const Deadline& deadline) {
 
 Task task_of(const Scenario& scenario, std::shared_ptr<const RobotParameter> robot,
              const ContactMoves& moves, const Deadline& deadline) {
-  require_camera_links(scenario, *robot->robot);
   Task task;
+  task.cameras = cameras_of(scenario, *robot->robot);
   task.scenario = scenario.source;
   task.robot = std::move(robot);
   task.world = std::make_shared<const WorldSnapshot>(

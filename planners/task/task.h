@@ -23,6 +23,7 @@ namespace locograph {
 struct Task {
   std::string scenario;  ///< that it was made from, see Scenario::source
   std::shared_ptr<const RobotParameter> robot;
+  std::vector<DepthCamera> cameras;            ///< the scenario's, else the robot's own
   std::shared_ptr<const WorldSnapshot> world;  ///< with the files of map and obstacles
   /// Of a drive whose scenario names nothing to stand on: the height of the ground.
   std::optional<double> ground_z_m;

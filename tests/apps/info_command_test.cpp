@@ -89,6 +89,7 @@ TEST(Info, DescribesARobotAndItsMissingMeshes) {
   EXPECT_EQ(json["limits"]["elbow"]["lower"], -1.0);
   EXPECT_EQ(json["limits"]["elbow"]["max_effort"], 4.0);
   EXPECT_TRUE(json["srdf"].is_null());
+  EXPECT_EQ(json["cameras"], nlohmann::json::array());
 }
 
 TEST(Info, DescribesTheRobotThatComesAlong) {
@@ -100,6 +101,12 @@ TEST(Info, DescribesTheRobotThatComesAlong) {
   EXPECT_EQ(json["links_without_collision"], nlohmann::json::array());
   EXPECT_EQ(json["names_unknown_to_the_urdf"], nlohmann::json::array());
   EXPECT_EQ(json["configurations"], nlohmann::json({"home"}));
+  ASSERT_EQ(json["cameras"].size(), 2u);
+  for (const nlohmann::json& camera : json["cameras"]) {
+    EXPECT_EQ(camera["link"], camera["name"].get<std::string>() + "_depth_optical_frame");
+    EXPECT_EQ(camera["width"], 640);
+    EXPECT_NEAR(camera["fov_x_rad"].get<double>(), 1.518, 1e-3);
+  }
 }
 
 TEST(Info, NamesWhatIsSeenAndCannotCollide) {
@@ -214,12 +221,26 @@ TEST(Info, DescribesAScenario) {
   EXPECT_EQ(drive["end_effectors"].size(), 4u);
   EXPECT_EQ(drive["end_effectors"][0]["touches_as"], "wheel");
   EXPECT_EQ(drive["missing_files"], nlohmann::json::array());
-  runner.write("s.xml",
-               "<scenario version=\"1\" name=\"s\">\n<robot urdf=\"arm.urdf\"/>\n"
-               "<wheels><wheel link=\"w\" radius=\"0.1\"/></wheels>\n"
-               "<environment map=\"hall.bt\"/>\n"
-               "<drive distance=\"2\" speed=\"0.1\" configurations=\"9\"/>\n</scenario>\n");
-  EXPECT_EQ(info(runner, "s.xml")["missing_files"].size(), 2u);
+  EXPECT_EQ(drive["cameras"], nlohmann::json::array());
+  runner.write(
+      "s.xml",
+      "<scenario version=\"1\" name=\"s\">\n<robot urdf=\"arm.urdf\">"
+      "<camera name=\"eye\" link=\"hand\" position=\"0 0 0.1\" rpy=\"0 0 0.5\" width=\"64\""
+      " height=\"48\" fov_x=\"1.2\" range_min=\"0.2\" range_max=\"5\"/></robot>\n"
+      "<wheels><wheel link=\"w\" radius=\"0.1\"/></wheels>\n"
+      "<environment map=\"hall.bt\"/>\n"
+      "<drive distance=\"2\" speed=\"0.1\" configurations=\"9\"/>\n</scenario>\n");
+  const nlohmann::json other = info(runner, "s.xml");
+  EXPECT_EQ(other["missing_files"].size(), 2u);
+  ASSERT_EQ(other["cameras"].size(), 1u);
+  const nlohmann::json& eye = other["cameras"][0];
+  EXPECT_EQ(eye["name"], "eye");
+  EXPECT_EQ(eye["link"], "hand");
+  EXPECT_EQ(eye["position_m"], nlohmann::json({0.0, 0.0, 0.1}));
+  EXPECT_NEAR(eye["forward"][0].get<double>(), std::cos(0.5), 1e-12);
+  EXPECT_NEAR(eye["up"][2].get<double>(), 1.0, 1e-12);
+  EXPECT_NEAR(eye["fov_x_rad"].get<double>(), 1.2, 1e-12);
+  EXPECT_EQ(eye["range_max_m"], 5.0);
   runner.write("bad.xml", "<scenario version=\"1\" name=\"s\">\n<robto/>\n</scenario>\n");
   expect_refusal(runner.run("info bad.xml"), "bad.xml:2", "robto");
 }

@@ -604,6 +604,11 @@ struct Context {
   const Stance &start = step_task().start, &goal = step_task().goals[0];
 };
 }  // namespace scenario_contact_task_h
+namespace scenario_camera_element_h {
+struct Context {
+  Context() { write_example_file("hall.xml", kOneStep); }
+};
+}  // namespace scenario_camera_element_h
 namespace scenario_contact_task_element_h {
 struct Context {
   const std::vector<EndEffector> effectors = one_step().end_effectors;
@@ -636,6 +641,11 @@ struct Context : in_planners::Context {
   Context() { write_example_file("hall.xml", kOneStep); }
 };
 }  // namespace scenario_scenario_h
+namespace scenario_scenario_camera_h {
+struct Context : StepContext {
+  static void report(const std::string&) {}
+};
+}  // namespace scenario_scenario_camera_h
 namespace scenario_snap_to_places_h {
 struct Context : StepContext {
   ContactTask task = *scenario.contacts;

@@ -9,6 +9,9 @@
 #include <locograph/world/convex_shape.h>
 #include <locograph/world/distance_field.h>
 #include <locograph/world/octree.h>
+#include <locograph/world/perception/configuration_buffer.h>
+#include <locograph/world/perception/depth_image.h>
+#include <locograph/world/perception/depth_png.h>
 #include <locograph/world/point_cloud.h>
 #include <locograph/world/surfaces_of.h>
 #include <locograph/world/world_snapshot.h>
@@ -66,12 +69,52 @@ struct Context : in_world::Context {
   const Robot robot = small_arm();
 };
 }  // namespace link_pairs_h
+/// A camera of CENTAURO, and an image of its.
+struct CameraContext {
+  const Robot& robot = *centauro();
+  const DepthCamera camera = cameras_of(robot)[0];
+  DepthImage image;
+  const Eigen::VectorXd q = robot.named_configuration("home"), next_q = q;
+  const Eigen::Isometry3d link_from_body = Eigen::Isometry3d::Identity();
+
+  CameraContext() {
+    write_room_files();
+    image = depth_image_of(read_point_cloud("scan.pcd"), camera);
+  }
+  static void report(const std::string&) {}
+};
+namespace perception_clouds_folder_h {
+struct Context : CameraContext {
+  Context() {
+    std::filesystem::create_directory("run_7");
+    save_depth_png("run_7/0000.png", image, camera);
+    write_example_file("run_7/clouds.csv", "time_s,camera,file\n0," + camera.name + ",0000.png\n");
+  }
+};
+}  // namespace perception_clouds_folder_h
+namespace perception_configuration_buffer_h {
+using Context = CameraContext;
+}
+namespace perception_depth_camera_h {
+struct Context : CameraContext {
+  const Robot& robot = *coman_plus();
+};
+}  // namespace perception_depth_camera_h
+namespace perception_depth_image_h {
+using Context = CameraContext;
+}
+namespace perception_depth_png_h {
+using Context = CameraContext;
+}
 namespace planar_patches_h {
 struct Context : in_world::Context {
   const std::vector<Eigen::Vector3d> points = scanned_points();
   const Eigen::Vector3d camera_position = {0.0, 0.0, 1.5};
 };
 }  // namespace planar_patches_h
+namespace point_cloud_h {
+using Context = CameraContext;
+}
 namespace point_grid_h {
 struct Context : in_world::Context {
   const std::vector<Eigen::Vector3d> points = scanned_points();

@@ -183,12 +183,65 @@ TEST(PointCloud, FilesWithoutAPointAndForeignOnesAreErrors) {
   EXPECT_NE(error_text(folder.file("none.pcd")).find("cannot be opened"), std::string::npos);
 }
 
+std::string organised(const std::string& viewpoint) {
+  return "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nHEIGHT 3\n" + viewpoint +
+         "DATA ascii\n1 2 3\nnan nan nan\n4 5 6\n7 nan 9\n1 inf 1\n0 0 0\n";
+}
+
+TEST(PointCloud, AnOrganisedCloudKeepsItsRowsAndItsHoles) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.pcd", organised(""));
+  const PointCloud cloud = read_point_cloud(file);
+  EXPECT_EQ(cloud.width, 2u);
+  EXPECT_EQ(cloud.height, 3u);
+  ASSERT_EQ(cloud.points.size(), 6u);
+  EXPECT_EQ(cloud.points[2], Eigen::Vector3d(4, 5, 6));
+  for (const std::size_t hole : {1u, 3u, 4u}) EXPECT_FALSE(cloud.points[hole].allFinite()) << hole;
+  EXPECT_TRUE(cloud.viewpoint.matrix().isIdentity()) << "there is none in the file";
+  EXPECT_EQ(load_point_cloud(file).size(), 3u);
+}
+
+TEST(PointCloud, ACloudOfHolesIsReadAndHasNoPoints) {
+  const TemporaryFolder folder;
+  const auto file =
+      folder.write("a.pcd", header("x y z", "4 4 4", "F F F", 1, "ascii") + "nan nan nan\n");
+  EXPECT_EQ(read_point_cloud(file).points.size(), 1u);
+  EXPECT_THROW(load_point_cloud(file), Error);
+}
+
+TEST(PointCloud, TheViewpointIsReadWhereItIsAskedFor) {
+  const TemporaryFolder folder;
+  const double half = std::sqrt(0.5);
+  const PointCloud cloud =
+      read_point_cloud(folder.write("a.pcd", organised("VIEWPOINT 1 2 3 " + std::to_string(half) +
+                                                       " 0 0 " + std::to_string(half) + "\n")));
+  EXPECT_EQ(Eigen::Vector3d(cloud.viewpoint.translation()), Eigen::Vector3d(1, 2, 3));
+  EXPECT_LT((cloud.viewpoint.linear().col(0) - Eigen::Vector3d::UnitY()).norm(), 1e-6);
+  EXPECT_EQ(cloud.points[0], Eigen::Vector3d(1, 2, 3)) << "points are as stored";
+  for (const char* viewpoint : {"", "0 0 0 1 0 0", "0 0 0 0 0 0 0", "0 0 0 2 0 0 0",
+                                "0 0 nan 1 0 0 0", "0 0 0 1 0 0 x", "0 0 0 1 0 0 0 0"}) {
+    const auto file =
+        folder.write("bad.pcd", organised("VIEWPOINT " + std::string(viewpoint) + "\n"));
+    try {
+      read_point_cloud(file);
+      ADD_FAILURE() << viewpoint << " was accepted";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.line(), 7) << error.what();
+    }
+    EXPECT_EQ(load_point_cloud(file).size(), 3u) << "surfaces need none";
+  }
+}
+
 TEST(PointCloud, ReadsThePublicClouds) {
   const std::filesystem::path clouds =
       std::filesystem::path(LOCOGRAPH_SHARED_DATA) / "point_clouds";
   if (!std::filesystem::exists(clouds)) GTEST_SKIP() << clouds << " is missing";
   EXPECT_EQ(load_point_cloud(clouds / "table_scene_0.pcd").size(), 182292u);
   EXPECT_EQ(load_point_cloud(clouds / "table_scene_1.pcd").size(), 208763u);
+  const PointCloud table = read_point_cloud(clouds / "table_scene_0.pcd");
+  EXPECT_EQ(table.width, 640u);
+  EXPECT_EQ(table.height, 480u);
+  EXPECT_EQ(table.points.size(), 307200u);
   const auto terrain = load_point_cloud(clouds / "terrain_samp11.pcd");
   EXPECT_EQ(terrain.size(), 38010u);
   Eigen::AlignedBox3d bounds;

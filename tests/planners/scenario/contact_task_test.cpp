@@ -146,15 +146,6 @@ TEST(ContactTask, WithoutFrictionOfTheEnvironmentEndEffectorsHaveTheLargestOfAll
   EXPECT_EQ(scenario.bars[0].friction, 0.7);
 }
 
-TEST(ContactTask, CamerasAreReadAndSetAside) {
-  const std::string camera =
-      "<robot urdf=\"r.urdf\"><camera name=\"head\" link=\"head\" position=\"0.1 0 0\""
-      " rpy=\"0 0.5 0\" width=\"640\" height=\"480\" fov_x=\"1.2\" range_min=\"0.2\""
-      " range_max=\"5\"/></robot>";
-  EXPECT_NO_THROW(
-      scenario_of(with(kStones, "<robot urdf=\"r.urdf\" effort_scale=\"2\"/>", camera)));
-}
-
 class PublishedTask : public testing::TestWithParam<const char*> {};
 
 TEST_P(PublishedTask, StartsInThePublishedPostureOnItsContacts) {
@@ -220,7 +211,6 @@ const char kThings[] =
     "<plane name=\"floor\" center=\"1 2 0\" normal=\"0 0 2\" size=\"4 2\"/>\n"
     "<box name=\"stone\" center=\"1 0 0.1\" size=\"0.4 0.3 0.2\" friction=\"0.6\"/>\n"
     "<rung name=\"bar\" from=\"1 -0.5 1\" to=\"1 0.5 1\" radius=\"0.02\"/>\n";
-const char kTaskRobot[] = "<robot urdf=\"r.urdf\" effort_scale=\"2\"/>";
 const char kFootAtStart[] = "position=\"0 0 0\" normal=\"0 0 1\" forward=\"1 0 0\"";
 
 INSTANTIATE_TEST_SUITE_P(
@@ -301,21 +291,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"ABarWithoutLength", "to=\"1 0.5 1\"", "to=\"1 -0.5 1\"", 10,
                 "rung bar ends where it begins"},
         Mistake{"ABarWithoutRadius", " radius=\"0.02\"", "", 10, "<rung> without radius"},
-        Mistake{"ABarOfNegativeRadius", "\"0.02\"", "\"-0.02\"", 10, "radius is -0.02"},
-        Mistake{"ACameraWithoutALink", kTaskRobot,
-                "<robot urdf=\"r.urdf\"><camera name=\"c\"/></robot>", 2, "<camera> without link"},
-        Mistake{"ACameraThatSeesAllAround", kTaskRobot,
-                "<robot urdf=\"r.urdf\"><camera name=\"c\" link=\"l\" width=\"4\" height=\"3\" "
-                "fov_x=\"6.28\" range_min=\"0\" range_max=\"5\"/></robot>",
-                2, "fov_x=\"6.28\""},
-        Mistake{"ACameraOfHalfAPixel", kTaskRobot,
-                "<robot urdf=\"r.urdf\"><camera name=\"c\" link=\"l\" width=\"4.5\" height=\"3\" "
-                "fov_x=\"1\" range_min=\"0\" range_max=\"5\"/></robot>",
-                2, "a whole number of pixels"},
-        Mistake{"ACameraWithItsRangesExchanged", kTaskRobot,
-                "<robot urdf=\"r.urdf\"><camera name=\"c\" link=\"l\" width=\"4\" height=\"3\" "
-                "fov_x=\"1\" range_min=\"5\" range_max=\"0.2\"/></robot>",
-                2, "less than range_max"}),
+        Mistake{"ABarOfNegativeRadius", "\"0.02\"", "\"-0.02\"", 10, "radius is -0.02"}),
     mistake_name);
 
 }  // namespace
