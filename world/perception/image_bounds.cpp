@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace locograph {
 namespace {
@@ -41,13 +42,38 @@ ImageBounds bounds_of(const DepthCamera& camera, const Slopes& slopes, double ne
   return bounds;
 }
 
+/// Of a capsule that reaches behind the optical centre. What shows of it is at least as far from
+/// there as the whole capsule, and so has a least depth.
+ImageBounds bounds_beside(const DepthCamera& camera, const Capsule& capsule, double near_m,
+                          double far_m) {
+  const double distance = distance_to_axis(capsule, Eigen::Vector3d::Zero()) - capsule.radius;
+  const double wide = std::max(camera.cx, camera.width - 1 - camera.cx) / camera.fx;
+  const double high = std::max(camera.cy, camera.height - 1 - camera.cy) / camera.fy;
+  const double least_depth = distance / std::sqrt(1.0 + wide * wide + high * high);
+  if (least_depth <= kTooNear_m) return {0, camera.width, 0, camera.height, near_m, far_m};
+  if (far_m <= least_depth) return {};
+  // The axis where spheres around it reach that depth.
+  Eigen::Vector3d from = capsule.from, to = capsule.to;
+  const double cut = least_depth - capsule.radius;
+  if (from.z() > to.z()) std::swap(from, to);
+  if (from.z() < cut) from += (cut - from.z()) / (to.z() - from.z()) * (to - from);
+  Slopes slopes;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double least = std::min(from[axis], to[axis]) - capsule.radius;
+    const double most = std::max(from[axis], to[axis]) + capsule.radius;
+    slopes.add(axis, least / (least < 0.0 ? least_depth : far_m),
+               most / (most < 0.0 ? far_m : least_depth));
+  }
+  return bounds_of(camera, slopes, least_depth, far_m);
+}
+
 }  // namespace
 
 ImageBounds image_bounds(const DepthCamera& camera, const Capsule& capsule) {
   const double near_m = std::min(capsule.from.z(), capsule.to.z()) - capsule.radius;
   const double far_m = std::max(capsule.from.z(), capsule.to.z()) + capsule.radius;
   if (far_m <= 0.0) return {};
-  if (near_m <= kTooNear_m) return {0, camera.width, 0, camera.height, near_m, far_m};
+  if (near_m <= kTooNear_m) return bounds_beside(camera, capsule, near_m, far_m);
   Slopes slopes;
   for (const Eigen::Vector3d* end : {&capsule.from, &capsule.to}) {
     for (int axis = 0; axis < 2; ++axis) {

@@ -4,8 +4,8 @@
 ///     const ImageBounds bounds = image_bounds(camera, {{0, 0, 1}, {0, 0.5, 1}, 0.1});
 ///     for (int v = bounds.v_begin; v < bounds.v_end; ++v) look(v, bounds.u_begin, bounds.u_end);
 ///
-/// Shapes are given in the optical frame, metres. Never too small; what comes nearer to the camera
-/// than a millimetre, along its optical z, may show anywhere.
+/// Shapes are given in the optical frame, metres. Never too small: for all that shows, not for what
+/// is outside of the image. Close to the optical centre they are the whole image.
 
 #include <locograph/robots/capsule.h>
 #include <locograph/world/perception/depth_camera.h>

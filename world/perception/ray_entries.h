@@ -5,9 +5,9 @@
 ///     const CapsuleEntry entry(optical_from_shape, 0.05, 0.15);   // radius, half of its length
 ///     double depth_m = entry(0.1, -0.2);          // along (0.1, -0.2, 1); infinite: passes by
 ///
-/// Rays start at the origin along (x, y, 1): what they return is the depth along z. A solid that
-/// the origin lies in is not entered. Axes of capsules and cylinders are the local z, origins the
-/// middle; a sphere is a capsule without length.
+/// Rays start at the origin along (x, y, 1): what they return is the depth along z. The origin must
+/// not lie in the solid. Axes of capsules and cylinders are the local z, origins the middle; a
+/// sphere is a capsule without length.
 ///
 /// |t d - c| = r has t = (d.c -+ sqrt((d.c)^2 - d.d (c.c - r^2))) / d.d; of a cylinder both vectors
 /// lose their part along the axis first. A solid between pairs of planes is entered through the

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 
 namespace locograph {
 namespace {
@@ -18,8 +19,25 @@ struct PointTile {
   alignas(64) std::int32_t inside[kPixels];  // of any of the capsules
 };
 
-/// Whose a pixel is that is the robot's: a point in a capsule, or one that flies beside such.
-constexpr std::uint8_t kCapsule = 1, kEdge = 2;
+/// Why a pixel is the robot's: its point is in a capsule, it flies beside the robot, or it shows
+/// nothing because a capsule is too near there.
+constexpr std::uint8_t kCapsule = 1, kEdge = 2, kTooNear = 4;
+
+/// Calls f(u) for the bytes of a row that are not 0, which are few.
+template <class F>
+void each_set(const std::vector<std::uint8_t>& row, int begin, int end, F&& f) {
+  for (int u = begin; u < end;) {
+    std::uint64_t eight = 1;
+    if (u + 8 <= end) std::memcpy(&eight, &row[static_cast<std::size_t>(u)], sizeof eight);
+    if (eight == 0) {
+      u += 8;
+      continue;
+    }
+    for (const int last = std::min(u + 8, end); u < last; ++u) {
+      if (row[static_cast<std::size_t>(u)] != 0) f(u);
+    }
+  }
+}
 
 bool is_padding(double value) { return value >= 0.0 && std::isfinite(value); }
 
@@ -52,6 +70,7 @@ SelfFilter::SelfFilter(const Robot& robot, const SelfFilterOptions& options)
     padding_.push_back(padding[static_cast<std::size_t>(capsule.link)]);
   }
   placed_.reserve(capsules_.size());
+  too_near_.reserve(capsules_.size());
   in_band_.reserve(capsules_.size());
   in_tile_.reserve(capsules_.size());
 }
@@ -60,10 +79,12 @@ void SelfFilter::place(const RobotState& state, const DepthCamera& camera) {
   const Eigen::Isometry3d optical_from_world =
       (state.world_from_link(camera.link) * camera.link_from_optical).inverse();
   placed_.clear();
+  too_near_.clear();
   for (std::size_t c = 0; c < capsules_.size(); ++c) {
     Capsule capsule = transformed(optical_from_world * state.world_from_link(capsules_[c].link),
                                   capsules_[c].capsule);
     const double far_m = std::max(capsule.from.z(), capsule.to.z()) + capsule.radius;
+    const double bare_radius = capsule.radius;
     capsule.radius += padding_[c] + options_.padding_per_m2 * std::max(far_m, 0.0) * far_m;
     const ImageBounds bounds = image_bounds(camera, capsule);
     if (bounds.empty()) continue;
@@ -80,6 +101,8 @@ void SelfFilter::place(const RobotState& state, const DepthCamera& camera) {
     placed.near_mm = static_cast<int>(std::clamp(1000.0 * bounds.near_m - 1.0, 1.0, 1e6));
     placed.far_mm = static_cast<int>(std::clamp(1000.0 * bounds.far_m + 1.0, 0.0, 1e6));
     placed_.push_back(placed);
+    if (options_.edge_pixels > 0 && bounds.near_m < camera.range_min_m)
+      add_too_near(capsule, bare_radius, bounds);
   }
   // To whole tiles.
   x_.resize(static_cast<std::size_t>((camera.width + kWide - 1) / kWide * kWide));
@@ -204,6 +227,59 @@ void SelfFilter::mark_band(int v_begin, const DepthImage& image) {
   }
 }
 
+void SelfFilter::add_too_near(const Capsule& capsule, double bare_radius,
+                              const ImageBounds& bounds) {
+  // The optical centre may be within the padding, and is not seen from within a capsule.
+  const double distance = distance_to_axis(capsule, Eigen::Vector3d::Zero());
+  if (distance <= bare_radius) return;
+  const Eigen::Vector3d along = capsule.to - capsule.from;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translate(0.5 * (capsule.from + capsule.to));
+  pose.rotate(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), along));
+  const double radius = std::min(capsule.radius, bare_radius + 0.9 * (distance - bare_radius));
+  too_near_.push_back({CapsuleEntry(pose, radius, 0.5 * along.norm()), bounds});
+}
+
+void SelfFilter::mark_too_near(const DepthCamera& camera, const DepthImage& image) {
+  ImageBounds all{image.width, 0, image.height, 0};
+  for (const TooNear& near : too_near_) {
+    all.u_begin = std::min(all.u_begin, near.bounds.u_begin);
+    all.u_end = std::max(all.u_end, near.bounds.u_end);
+    all.v_begin = std::min(all.v_begin, near.bounds.v_begin);
+    all.v_end = std::max(all.v_end, near.bounds.v_end);
+  }
+  const auto is_hidden = [&](int u, int v) {
+    for (const TooNear& near : too_near_) {
+      if (u >= near.bounds.u_begin && u < near.bounds.u_end && v >= near.bounds.v_begin &&
+          v < near.bounds.v_end &&
+          near.entry(x_[static_cast<std::size_t>(u)], y_[static_cast<std::size_t>(v)]) <
+              camera.range_min_m)
+        return true;
+    }
+    return false;
+  };
+  for (int v = std::max(1, all.v_begin); v < std::min(image.height - 1, all.v_end); ++v) {
+    const std::size_t row = static_cast<std::size_t>(v) * static_cast<std::size_t>(image.width);
+    const std::uint16_t* const depth = &image.depth_mm[row];
+    const std::uint16_t* const above = depth - image.width;
+    const std::uint16_t* const below = depth + image.width;
+    // Only where an area that shows nothing ends: other pixels have no neighbours that could fly,
+    // or are lost alone.
+    std::uint8_t* const at_end = near_.data();
+    const int u_begin = std::max(1, all.u_begin), u_end = std::min(image.width - 1, all.u_end);
+    for (int u = u_begin; u < u_end; ++u) {
+      const int shown =
+          (above[u] != 0) + (below[u] != 0) + (depth[u - 1] != 0) + (depth[u + 1] != 0);
+      at_end[u] = (depth[u] == 0) & (shown != 0) & (shown != 4);
+    }
+    each_set(near_, u_begin, u_end, [&](int u) {
+      if (!is_hidden(u, v)) return;
+      robot_[row + static_cast<std::size_t>(u)] = kTooNear;
+      row_has_robot_[static_cast<std::size_t>(v)] = 1;
+    });
+  }
+}
+
 bool SelfFilter::is_supported(int u, int v, const DepthImage& image) const {
   const std::size_t at = static_cast<std::size_t>(v) * image.width + u;
   const int depth = image.depth_mm[at];
@@ -229,7 +305,6 @@ void SelfFilter::mark_edges(const DepthImage& image) {
     return pixels.data() + static_cast<std::size_t>(v) * static_cast<std::size_t>(width);
   };
   beside_.resize(robot_.size());
-  near_.resize(static_cast<std::size_t>(width));
   // Pixels within reach of the robot's: first along the rows, then along the columns.
   for (int v = 0; v < height; ++v) {
     if (row_has_robot_[static_cast<std::size_t>(v)] == 0) continue;
@@ -255,10 +330,10 @@ void SelfFilter::mark_edges(const DepthImage& image) {
     if (!any) continue;
     rows_with_edges_[static_cast<std::size_t>(v)] = 1;
     std::uint8_t* const robot = row_of(robot_, v);
-    for (int u = 0; u < width; ++u) near[u] &= robot[u] ^ kCapsule;
-    for (int u = 0; u < width; ++u) {
-      if (near[u] != 0 && !is_supported(u, v, image)) robot[u] = kEdge;
-    }
+    for (int u = 0; u < width; ++u) near[u] = (near[u] != 0) & (robot[u] == 0);
+    each_set(near_, 0, width, [&](int u) {
+      if (!is_supported(u, v, image)) robot[u] = kEdge;
+    });
   }
   row_has_robot_.swap(rows_with_edges_);
 }
@@ -284,7 +359,9 @@ void SelfFilter::remove(const RobotState& state, const DepthCamera& camera, Dept
   place(state, camera);
   robot_.assign(pixels, 0);
   row_has_robot_.assign(static_cast<std::size_t>(camera.height), 0);
+  near_.resize(static_cast<std::size_t>(camera.width));
   for (int v = 0; v < camera.height; v += kHigh) mark_band(v, image);
+  if (!too_near_.empty()) mark_too_near(camera, image);
   if (options_.edge_pixels > 0) mark_edges(image);
   if (taken != nullptr) {
     taken->stamp_s = image.stamp_s;

@@ -12,8 +12,9 @@
 /// shapes are not known: Robot::links_without_collision().
 ///
 /// At the silhouette a sensor mixes depths: such a flying pixel is neither in a capsule nor on what
-/// is beyond. Pixels close to the robot's (edge_pixels) are the robot's too, unless enough of their
-/// eight neighbours, the robot's left out, are as far away as they are.
+/// is beyond. Pixels close to the robot's (edge_pixels), also to those that show nothing because
+/// the robot is too near there, are the robot's too, unless enough of their eight neighbours, the
+/// robot's left out, are as far away as they are.
 ///
 /// Keeps a pointer to nothing. After the first image of a size remove() does not allocate.
 /// Thread-safety: one per thread.
@@ -23,6 +24,7 @@
 #include <locograph/world/perception/depth_camera.h>
 #include <locograph/world/perception/depth_image.h>
 #include <locograph/world/perception/image_bounds.h>
+#include <locograph/world/perception/ray_entries.h>
 
 #include <cstdint>
 #include <string>
@@ -69,8 +71,15 @@ class SelfFilter {
     int near_mm, far_mm;
   };
 
+  struct TooNear {  // what the camera does not see, being nearer than its range begins
+    CapsuleEntry entry;
+    ImageBounds bounds;
+  };
+
   void place(const RobotState& state, const DepthCamera& camera);
+  void add_too_near(const Capsule& capsule, double bare_radius, const ImageBounds& bounds);
   void mark_band(int v_begin, const DepthImage& image);
+  void mark_too_near(const DepthCamera& camera, const DepthImage& image);
   void mark_edges(const DepthImage& image);
   bool is_supported(int u, int v, const DepthImage& image) const;
 
@@ -79,6 +88,7 @@ class SelfFilter {
   std::vector<CollisionCapsule> capsules_;
   std::vector<double> padding_;  // of each capsule
   std::vector<Placed> placed_;
+  std::vector<TooNear> too_near_;
   std::vector<const Placed*> in_band_, in_tile_;
   std::vector<float> x_, y_;         // slopes of columns and rows
   std::vector<std::uint8_t> robot_;  // of each pixel: whose it is, 0: not the robot's
