@@ -6,6 +6,7 @@
 #include <locograph/world/perception/depth_camera.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <numbers>
 #include <string>
 
@@ -41,7 +42,13 @@ inline Eigen::Isometry3d looking(const Eigen::Vector3d& from, double down_rad) {
   return pose;
 }
 
-/// Base and arm, both as one of their collision shapes says, without ground.
+/// A robot that comes with locograph.
+inline Robot shipped(const std::string& name) {
+  const std::string stem = LOCOGRAPH_SOURCE_DIR "/robots/models/" + name + "/" + name;
+  return Robot::load(stem + ".urdf", stem + ".srdf");
+}
+
+/// A base without a shape, and an arm of one in front of it.
 inline Robot robot_of_shapes(const TemporaryFolder& folder, const std::string& arm_geometry) {
   return Robot::load(folder.write("arm.urdf", R"(<robot name="arm"><link name="base"/>
   <link name="arm"><collision><origin xyz="0.2 0.1 -0.1" rpy="0.3 0.7 -0.4"/><geometry>)" +

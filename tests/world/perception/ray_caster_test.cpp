@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 #include <locograph/common/error.h>
 #include <locograph/common/uniform.h>
-#include <locograph/robots/shipped_robot.h>
 #include <locograph/robots/triangle_tree.h>
 #include <locograph/world/link_solid.h>
 #include <locograph/world/octree.h>
@@ -114,8 +113,7 @@ struct Judge {
 };
 
 TEST(RayCaster, EndsWhereTheJudgeMeasuresNoDistance) {
-  const RobotFiles files = shipped_robot("centauro").value();
-  const Robot robot = Robot::load(files.urdf, files.srdf);
+  const Robot robot = test::shipped("centauro");
   RobotState state(robot);
   state.update(test::standing(robot, 0.7188).data());
   const World world = full_world();
@@ -282,8 +280,7 @@ TEST(RayCaster, LooksToTheEndOfTheRangeAndNotFromInside) {
 }
 
 TEST(RayCaster, GivesTheSameBitsOnAnyNumberOfThreads) {
-  const RobotFiles files = shipped_robot("coman_plus").value();
-  const Robot robot = Robot::load(files.urdf, files.srdf);
+  const Robot robot = test::shipped("coman_plus");
   RobotState state(robot);
   state.update(test::standing(robot, 0.96).data());
   DepthCamera camera = small_camera(157, 119);  // no whole tiles
@@ -326,8 +323,7 @@ TEST(RayCaster, RefusesCamerasAndStatesOfOthers) {
   EXPECT_THROW(rays.cast(camera, state, NAN, hits), Error);
   camera.fx = 0.0;
   EXPECT_THROW(rays.cast(camera, state, 0.0, hits), Error);
-  const RobotFiles files = shipped_robot("centauro").value();
-  const Robot centauro = Robot::load(files.urdf, files.srdf);
+  const Robot centauro = test::shipped("centauro");
   EXPECT_THROW(rays.cast(small_camera(), RobotState(centauro), 0.0, hits), Error);
 }
 

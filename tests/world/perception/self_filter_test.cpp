@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 #include <locograph/common/error.h>
 #include <locograph/common/uniform.h>
-#include <locograph/robots/shipped_robot.h>
 #include <locograph/world/perception/self_filter.h>
 #include <locograph/world/perception/simulated_camera.h>
 
@@ -24,7 +23,7 @@ struct Scene {
   World world;
 
   explicit Scene(const std::string& name, double height_m = 0.0)
-      : robot(Robot::load(shipped_robot(name)->urdf, shipped_robot(name)->srdf)), state(robot) {
+      : robot(test::shipped(name)), state(robot) {
     world.surfaces = {ground()};
     draw(0, height_m);
     if (name == "centauro") {
