@@ -229,7 +229,8 @@ void SelfFilter::mark_band(int v_begin, const DepthImage& image) {
 
 void SelfFilter::add_too_near(const Capsule& capsule, double bare_radius,
                               const ImageBounds& bounds) {
-  // The optical centre may be within the padding, and is not seen from within a capsule.
+  // Nothing is seen of a capsule around the optical centre. Where that is within the padding only,
+  // there is less of it.
   const double distance = distance_to_axis(capsule, Eigen::Vector3d::Zero());
   if (distance <= bare_radius) return;
   const Eigen::Vector3d along = capsule.to - capsule.from;
@@ -340,6 +341,7 @@ void SelfFilter::mark_edges(const DepthImage& image) {
 
 void SelfFilter::remove(const RobotState& state, const DepthCamera& camera, DepthImage& image,
                         DepthImage* taken) {
+  camera.validate();
   if (state.robot().links().size() != links_)
     throw Error(
         "a state of a robot with " + std::to_string(state.robot().links().size()) + " links",

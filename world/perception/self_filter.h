@@ -55,8 +55,8 @@ class SelfFilter {
   explicit SelfFilter(const Robot& robot, const SelfFilterOptions& options = {});
 
   /// Sets pixels that show the robot to 0. state: at the image's stamp. taken: if given, becomes an
-  /// image of the pixels taken, 0 elsewhere. Throws Error for an image of another size than the
-  /// camera's, and for a camera or a state of another robot.
+  /// image of the pixels taken, 0 elsewhere. Throws Error for a camera that cannot be used, an
+  /// image of another size, and for a camera or a state of another robot.
   void remove(const RobotState& state, const DepthCamera& camera, DepthImage& image,
               DepthImage* taken = nullptr);
 
