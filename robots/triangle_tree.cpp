@@ -43,6 +43,39 @@ double solid_angle(const Eigen::Vector3d& p, const Eigen::Vector3d* corners) {
                           la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
 }
 
+/// T. Möller and B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997; `most` where
+/// the ray passes by or meets it later.
+double ray_hits_triangle(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                         const Eigen::Vector3d* c, double most) {
+  const Eigen::Vector3d first = c[1] - c[0], second = c[2] - c[0];
+  const Eigen::Vector3d across = direction.cross(second);
+  const double volume = first.dot(across);
+  if (volume == 0.0) return most;
+  const Eigen::Vector3d from = origin - c[0];
+  const double u = from.dot(across) / volume;
+  if (!(u >= 0.0 && u <= 1.0)) return most;
+  const Eigen::Vector3d other = from.cross(first);
+  const double v = direction.dot(other) / volume;
+  if (!(v >= 0.0 && u + v <= 1.0)) return most;
+  const double t = second.dot(other) / volume;
+  return t > 0.0 && t < most ? t : most;
+}
+
+/// Where a ray enters a box, infinity if it passes by; inverse: of its direction's entries.
+double ray_enters(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& origin,
+                  const Eigen::Vector3d& inverse) {
+  double in = 0.0, out = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double a = (box.min()[axis] - origin[axis]) * inverse[axis];
+    const double b = (box.max()[axis] - origin[axis]) * inverse[axis];
+    // Not a number on a face that the ray runs along: no bound.
+    in = std::min(a, b) > in ? std::min(a, b) : in;
+    out = std::max(a, b) < out ? std::max(a, b) : out;
+  }
+  constexpr double kRounding = 1.0 + 1e-12;
+  return in <= out * kRounding ? in : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
 TriangleTree::TriangleTree(std::vector<Eigen::Vector3d> corners) : corners_(std::move(corners)) {
@@ -151,6 +184,33 @@ double TriangleTree::winding_number(const Eigen::Vector3d& point) const {
 
 double TriangleTree::distance_outside(const Eigen::Vector3d& point) const {
   return std::abs(winding_number(point)) > 0.5 ? 0.0 : distance(point);
+}
+
+double TriangleTree::first_hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                               double most) const {
+  const Eigen::Vector3d inverse = direction.cwiseInverse();
+  std::array<int, kDeepest> waiting;
+  int count = 0;
+  waiting[static_cast<std::size_t>(count++)] = 0;
+  while (count > 0) {
+    const int index = waiting[static_cast<std::size_t>(--count)];
+    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    if (!(ray_enters(node.box, origin, inverse) < most)) continue;
+    if (node.right < 0) {
+      for (int t = node.begin; t < node.end; ++t) {
+        most =
+            ray_hits_triangle(origin, direction, &corners_[3 * static_cast<std::size_t>(t)], most);
+      }
+      continue;
+    }
+    const Node& left = nodes_[static_cast<std::size_t>(index) + 1];
+    const Node& right = nodes_[static_cast<std::size_t>(node.right)];
+    const bool left_first =
+        ray_enters(left.box, origin, inverse) <= ray_enters(right.box, origin, inverse);
+    waiting[static_cast<std::size_t>(count++)] = left_first ? node.right : index + 1;
+    waiting[static_cast<std::size_t>(count++)] = left_first ? index + 1 : node.right;
+  }
+  return most;
 }
 
 }  // namespace locograph

@@ -5,6 +5,7 @@
 ///     const TriangleTree tree(stl_triangles("thigh.stl"));
 ///     double distance = tree.distance(point);                       // to the nearest triangle
 ///     bool inside = std::abs(tree.winding_number(point)) > 0.5;     // either orientation
+///     double along = tree.first_hit(point, Eigen::Vector3d::UnitX());
 ///
 /// Lengths in the units of the corners. Thread-safety: const, freely shared.
 
@@ -34,6 +35,11 @@ class TriangleTree {
   /// Distance to the solid that the triangles enclose: 0 inside, unless the winding number says
   /// they enclose none.
   double distance_outside(const Eigen::Vector3d& point) const;
+
+  /// The least t > 0 at which origin + t * direction meets a triangle, from either side, or `most`
+  /// if that is less.
+  double first_hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                   double most = std::numeric_limits<double>::infinity()) const;
 
  private:
   struct Node {

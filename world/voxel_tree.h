@@ -1,10 +1,15 @@
 #pragma once
-/// A bounding volume tree over the occupied leaves of an OctoMap, for nearest-voxel queries.
+/// A bounding volume tree over the occupied leaves of an OctoMap, for the nearest voxel and for
+/// rays.
 ///
 ///     locograph::VoxelTree voxels(*tree);
 ///     locograph::VoxelTree::Query query{shape, world_from_shape};
 ///     query.best.distance = 0.5;  // look no further
 ///     if (voxels.nearest(query)) use(query.best);
+///
+///     const Eigen::Vector3d forward(1.0, 0.0, 0.0);
+///     const auto is_near = [](const auto& lower, const auto&) { return lower.x() < 2.0; };
+///     voxels.visit(forward, is_near, [&](const auto&, const auto&) { ++leaves; });
 ///
 /// Leaves keep the size they have in the octree. Immutable; queries are thread-safe, and those of
 /// spheres and capsules do not allocate.
@@ -46,12 +51,35 @@ class VoxelTree {
   /// True if something nearer than the initial query.best.distance was found.
   bool nearest(Query& query) const;
 
+  /// Calls leaf(lower, upper) with the corners of each leaf in those parts of the tree whose bounds
+  /// enter(lower, upper) does not refuse: along the direction, part by part, so that a leaf may
+  /// come before one in front of it. Does not allocate.
+  template <class Enter, class Leaf>
+  void visit(const Eigen::Vector3d& direction, Enter&& enter, Leaf&& leaf) const {
+    if (!empty()) visit_below(0, direction, enter, leaf);
+  }
+
  private:
   struct Node {
     Eigen::Vector3d lower, upper;
     int right = -1;  // right child; the left one follows its parent; -1: a leaf
   };
   struct Search;
+
+  template <class Enter, class Leaf>
+  void visit_below(int index, const Eigen::Vector3d& direction, Enter& enter, Leaf& leaf) const {
+    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    if (!enter(node.lower, node.upper)) return;
+    if (node.right < 0) {
+      leaf(node.lower, node.upper);
+      return;
+    }
+    const Node& left = nodes_[static_cast<std::size_t>(index) + 1];
+    const Node& right = nodes_[static_cast<std::size_t>(node.right)];
+    const bool left_first = direction.dot(left.lower + left.upper - right.lower - right.upper) <= 0;
+    visit_below(left_first ? index + 1 : node.right, direction, enter, leaf);
+    visit_below(left_first ? node.right : index + 1, direction, enter, leaf);
+  }
 
   int build(std::vector<Eigen::AlignedBox3d>& boxes, std::size_t begin, std::size_t end);
 

@@ -12,6 +12,7 @@
 #include <locograph/world/perception/configuration_buffer.h>
 #include <locograph/world/perception/depth_image.h>
 #include <locograph/world/perception/depth_png.h>
+#include <locograph/world/perception/camera_noise.h>
 #include <locograph/world/point_cloud.h>
 #include <locograph/world/surfaces_of.h>
 #include <locograph/world/world_snapshot.h>
@@ -106,6 +107,62 @@ using Context = CameraContext;
 namespace perception_depth_png_h {
 using Context = CameraContext;
 }
+/// A camera on the chest that looks down, and its image of the floor.
+struct ChestCameraContext : in_world::Context {
+  DepthCamera camera = chest_camera(robot);
+  const Eigen::VectorXd configuration = standing(robot);
+  RobotState state = state_at(robot, configuration);
+  std::uint64_t seed = 1;
+  std::vector<float> depth_m = std::vector<float>(64 * 48, 1.5f);
+  DepthImage image{
+      .width = 64, .height = 48, .depth_mm = std::vector<std::uint16_t>(64 * 48, 1500)},
+      truth;
+  const Eigen::Isometry3d optical_from_world =
+      (state.world_from_link(camera.link) * camera.link_from_optical).inverse();
+  const Eigen::Isometry3d optical_from_shape{Eigen::Translation3d(0.1, -0.2, 1.0)};
+
+  static DepthCamera chest_camera(const Robot& robot) {
+    DepthCamera camera;
+    camera.name = "chest";
+    camera.link = robot.link_index("DWYTorso");
+    camera.link_from_optical.translate(Eigen::Vector3d(0.3, 0.0, 0.2));
+    camera.link_from_optical.rotate(Eigen::AngleAxisd(2.6, Eigen::Vector3d::UnitY()) *
+                                    Eigen::AngleAxisd(-M_PI_2, Eigen::Vector3d::UnitZ()));
+    camera.width = 64;
+    camera.height = 48;
+    camera.fx = camera.fy = 34.0;
+    camera.cx = 31.5;
+    camera.cy = 23.5;
+    return camera;
+  }
+  static Eigen::VectorXd standing(const Robot& robot) {
+    Eigen::VectorXd configuration = robot.named_configuration("home");
+    configuration[2] = 0.96;
+    return configuration;
+  }
+  static void look(int, int, int) {}
+};
+namespace perception_camera_noise_h {
+using Context = ChestCameraContext;
+}
+namespace perception_image_bounds_h {
+using Context = ChestCameraContext;
+}
+namespace perception_ray_caster_h {
+using Context = ChestCameraContext;
+}
+namespace perception_ray_entries_h {
+using Context = ChestCameraContext;
+}
+namespace perception_ray_tile_h {
+using Context = ChestCameraContext;
+}
+namespace perception_self_filter_h {
+using Context = ChestCameraContext;
+}
+namespace perception_simulated_camera_h {
+using Context = ChestCameraContext;
+}
 namespace planar_patches_h {
 struct Context : in_world::Context {
   const std::vector<Eigen::Vector3d> points = scanned_points();
@@ -126,5 +183,10 @@ struct Context : in_world::Context {
   const Eigen::Isometry3d world_from_mesh = world_from_table;
 };
 }  // namespace surfaces_of_h
+namespace voxel_tree_h {
+struct Context : in_world::Context {
+  int leaves = 0;
+};
+}  // namespace voxel_tree_h
 
 }  // namespace locograph::documentation::in_world
