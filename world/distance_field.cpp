@@ -11,7 +11,7 @@
 namespace locograph {
 namespace {
 
-constexpr int kKeyOffset = 1 << 15;   // OctoMap: key = index + 2^15
+constexpr int kKeyOffset = 1 << 15;  // OctoMap: key = index + 2^15
 constexpr double kMaxVoxels = 1e8;
 
 using Index3 = std::array<int, 3>;
@@ -243,8 +243,7 @@ DistanceSample DistanceField::sample_inside(const Eigen::Vector3d& point) const 
 
   const std::size_t dy = dimensions_[2], dx = dy * dimensions_[1];
   const float* v = values_.data() + x * dx + y * dy + z;
-  const CellNodes nodes{v[0],  v[1],      v[dy],      v[dy + 1],
-                        v[dx], v[dx + 1], v[dx + dy], v[dx + dy + 1]};
+  const CellNodes nodes{v[0], v[1], v[dy], v[dy + 1], v[dx], v[dx + 1], v[dx + dy], v[dx + dy + 1]};
   return between_nodes(nodes, tx, ty, tz, inverse_resolution_, max_distance_);
 }
 

@@ -1,17 +1,18 @@
 #pragma once
-/// Distances between the nodes of a grid, which are voxel centres; what DistanceField and LocalField
-/// have in common. Internal.
+/// Distances between the nodes of a grid, which are voxel centres; what DistanceField and
+/// LocalField have in common. Internal.
 ///
-///     DistanceSample sample = between_nodes({.v000 = 0.1, ...}, tx, ty, tz, 20.0, 1.0);
+///     const CellNodes nodes{0.1, 0.1, 0.1, 0.1, 0.2, 0.2, 0.2, 0.2};
+///     DistanceSample sample = between_nodes(nodes, 0.5, 0.0, 0.0, 10.0, 1.0);  // 0.15, along x
 ///
 /// Notation: h voxel size, x_i grid nodes = voxel centres, d_c(x) the distance from a free x to the
 /// nearest occupied centre, d_f(x) from an occupied x to the nearest free centre. Node values are
-///     D(x) - s h,  D = d_c where free, h - d_f where occupied
+///   D(x) - s h,  D = d_c where free, h - d_f where occupied
 /// (continuous slope 1 through a flat wall), and s is the smallest number that makes the trilinear
 /// interpolant a lower bound. Outside: let c be the centre of the cube nearest to p. For every node
 /// D(x_i) <= |x_i - c|, so the interpolant is at most sum_i w_i |x_i - c| - s h, whose largest
 /// excess over the distance from p to the cube of c is found at the cube's corner:
-///     s = (0 + 3 * 1 + 3 * sqrt 2 + sqrt 3) / 8 = 1.1218.
+///   s = (0 + 3 * 1 + 3 * sqrt 2 + sqrt 3) / 8 = 1.1218.
 /// Inside the same s suffices (largest excess found by random search over voxel patterns: 1.1218).
 /// A flat wall is seen s - 1/2 = 0.62 voxels too early.
 

@@ -4,9 +4,10 @@
 ///     depth_to_field [--seconds S] [--rounds N] [--octomap N] [--images N]
 ///
 /// Prints one JSON object: milliseconds of processor time of one 640 x 480 image, the window's move
-/// and the field included, the share of a core that two cameras at 30 images a second take, OctoMap's
-/// insertPointCloud() on the same images, memory, and nanoseconds of a sample. --images: so many
-/// small images on a small window besides, again and again the same walk, each time to the same bits.
+/// and the field included, the share of a core that two cameras at 30 images a second take,
+/// OctoMap's insertPointCloud() on the same images, memory, and nanoseconds of a sample. --images:
+/// so many small images on a small window besides, again and again the same walk, each time to the
+/// same bits.
 
 #include <locograph/common/simd_level.h>
 #include <locograph/world/perception/local_map.h>
@@ -73,10 +74,11 @@ class Times {
   Json report() {
     std::ranges::sort(values_);
     const auto quantile = [&](double share) {
-      return values_.empty() ? 0.0
-                             : values_[std::min(values_.size() - 1,
-                                                static_cast<std::size_t>(
-                                                    share * static_cast<double>(values_.size())))];
+      return values_.empty()
+                 ? 0.0
+                 : values_[std::min(
+                       values_.size() - 1,
+                       static_cast<std::size_t>(share * static_cast<double>(values_.size())))];
     };
     return {{"mean", mean()},
             {"median", quantile(0.5)},
@@ -238,7 +240,8 @@ void report(double seconds, int rounds, int octomap_images, int images) {
   Json all = {{"unit", "ms of processor time"}, {"image", "640 x 480"}, {"images", views.size()}};
   LocalMapOptions large, small;
   small.size_m = {4.8, 4.8, 2.4};
-  for (const auto& [name, options] : {std::pair("8 x 8 x 3 m", large), {"4.8 x 4.8 x 2.4 m", small}}) {
+  for (const auto& [name, options] :
+       {std::pair("8 x 8 x 3 m", large), {"4.8 x 4.8 x 2.4 m", small}}) {
     for (const std::string& level : simd_levels())
       all[name][level] = at_level(level, options, camera, views, rounds);
   }
@@ -263,6 +266,6 @@ int main(int argc, char** argv) {
   app.add_option("--rounds", rounds, "Times that it is walked").positive().show_default();
   app.add_option("--octomap", octomap_images, "Images for OctoMap").not_negative().show_default();
   app.add_option("--images", images, "Small images on a small window").not_negative();
-  return locograph::run_benchmark(app, argc, argv,
-                                  [&] { locograph::report(seconds, rounds, octomap_images, images); });
+  return locograph::run_benchmark(
+      app, argc, argv, [&] { locograph::report(seconds, rounds, octomap_images, images); });
 }

@@ -18,9 +18,9 @@ struct DepthCamera {
   /// z forward, x right, y down.
   Eigen::Isometry3d link_from_optical = Eigen::Isometry3d::Identity();
   int width = 640, height = 480;
-  double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;   ///< pixels; pixel centres at integers
-  double range_min_m = 0.3, range_max_m = 6.0;  ///< along the optical z
-  void validate() const;                        ///< throws Error
+  double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;  ///< pixels; pixel centres at integers
+  double range_min_m = 0.3, range_max_m = 6.0;    ///< along the optical z
+  void validate() const;                          ///< throws Error
 };
 
 /// Square pixels, the axis through the middle of the image.

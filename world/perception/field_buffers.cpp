@@ -71,8 +71,7 @@ std::shared_ptr<const LocalField> FieldBuffers::share(const LocalField& field) {
   Buffer* const buffer = found->get();
   buffer->held.store(true, std::memory_order_relaxed);
   const auto stays = [](const LocalField*) {};
-  return std::shared_ptr<const LocalField>(&field, stays,
-                                           BesideBuffer<LocalField>(pool_, buffer));
+  return std::shared_ptr<const LocalField>(&field, stays, BesideBuffer<LocalField>(pool_, buffer));
 }
 
 int FieldBuffers::count() const { return static_cast<int>(pool_->buffers.size()); }

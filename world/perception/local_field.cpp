@@ -25,10 +25,11 @@ DistanceSample LocalField::sample_inside(const Eigen::Vector3d& point) const {
   const auto value = [this](std::size_t at) {
     return static_cast<double>(value_of_squared_[static_cast<std::size_t>(squared_[at])]);
   };
-  const CellNodes nodes{value(lower[0] + lower[1] + lower[2]), value(lower[0] + lower[1] + upper[2]),
-                        value(lower[0] + upper[1] + lower[2]), value(lower[0] + upper[1] + upper[2]),
-                        value(upper[0] + lower[1] + lower[2]), value(upper[0] + lower[1] + upper[2]),
-                        value(upper[0] + upper[1] + lower[2]), value(upper[0] + upper[1] + upper[2])};
+  const CellNodes nodes{
+      value(lower[0] + lower[1] + lower[2]), value(lower[0] + lower[1] + upper[2]),
+      value(lower[0] + upper[1] + lower[2]), value(lower[0] + upper[1] + upper[2]),
+      value(upper[0] + lower[1] + lower[2]), value(upper[0] + lower[1] + upper[2]),
+      value(upper[0] + upper[1] + lower[2]), value(upper[0] + upper[1] + upper[2])};
   return between_nodes(nodes, t[0], t[1], t[2], inverse_resolution_, max_distance_m_);
 }
 

@@ -11,7 +11,8 @@
 ///     WorldDistance seen;
 ///     seen.source = field;
 ///     const auto snapshot =
-///         std::make_shared<const WorldSnapshot>(std::move(world), std::move(seen), field->stamp_s());
+///         std::make_shared<const WorldSnapshot>(std::move(world), std::move(seen),
+///         field->stamp_s());
 ///
 /// Squared distances between voxel centres are exact up to the maximum. Between centres values and
 /// gradients are those of DistanceField: trilinear, and below the distance to the occupied cubes by

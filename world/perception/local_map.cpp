@@ -11,13 +11,13 @@
 namespace locograph {
 namespace {
 
-constexpr int kStep = 8;                 // voxels that the window moves by
-constexpr double kMostVoxels = 1 << 25;
-constexpr int kMostCap = 100;            // its square, twice, fits into 16 bits
+constexpr int kStep = 8;  // voxels that the window moves by
+constexpr double kMostWindowVoxels = 1 << 25;
+constexpr int kMostCap = 100;               // its square, twice, fits into 16 bits
 constexpr double kFarthestIndex = 1 << 15;  // as OctoMap's
-constexpr double kTicks = 8.0;           // of the clock of forgetting, within its time
-constexpr double kNearest_m = 0.15;      // voxels nearer than this are not looked at
-constexpr int kFields = 3;               // one is read, one is the newest, one is written
+constexpr double kTicks = 8.0;              // of the clock of forgetting, within its time
+constexpr double kNearest_m = 0.15;         // voxels nearer than this are not looked at
+constexpr int kFields = 3;                  // one is read, one is the newest, one is written
 
 void require(bool holds, const char* what, const char* expected) {
   if (!holds) throw Error(what, expected);
@@ -57,8 +57,8 @@ void LocalMapOptions::validate() const {
   require_metres(range_m, "range_m");
   for (int axis = 0; axis < 3; ++axis) require_metres(size_m[axis], "size_m");
   const Eigen::Array3d voxels = (size_m / resolution_m).array();
-  if (voxels.maxCoeff() > kFarthestIndex || voxels.prod() > kMostVoxels ||
-      static_cast<double>(size_in_voxels(*this).cast<double>().prod()) > kMostVoxels) {
+  if (voxels.maxCoeff() > kFarthestIndex || voxels.prod() > kMostWindowVoxels ||
+      static_cast<double>(size_in_voxels(*this).cast<double>().prod()) > kMostWindowVoxels) {
     throw Error("a window of " + std::to_string(voxels.prod()) + " voxels",
                 "at most 2^25; a smaller one, or larger voxels");
   }
@@ -111,8 +111,7 @@ LocalMap::LocalMap(const LocalMapOptions& options, const std::string& level)
   for (int squared = 0; squared <= farthest; ++squared) {
     const double value =
         (std::sqrt(static_cast<double>(squared)) - kNodeOffset) * options.resolution_m;
-    blank.value_of_squared_.push_back(
-        static_cast<float>(std::min(value, options.max_distance_m)));
+    blank.value_of_squared_.push_back(static_cast<float>(std::min(value, options.max_distance_m)));
   }
   buffers_ = FieldBuffers(blank, kFields);
 }
@@ -221,11 +220,10 @@ void LocalMap::insert(const DepthCamera& camera, const Eigen::Isometry3d& world_
   camera.validate();
   if (image.width != camera.width || image.height != camera.height ||
       image.depth_mm.size() != static_cast<std::size_t>(image.width) * image.height) {
-    throw Error("an image of " + std::to_string(image.width) + " x " +
-                    std::to_string(image.height) + " pixels with " +
-                    std::to_string(image.depth_mm.size()) + " depths",
-                "the camera's " + std::to_string(camera.width) + " x " +
-                    std::to_string(camera.height));
+    throw Error(
+        "an image of " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+            " pixels with " + std::to_string(image.depth_mm.size()) + " depths",
+        "the camera's " + std::to_string(camera.width) + " x " + std::to_string(camera.height));
   }
   require(camera.width >= 2 && camera.height >= 2, "an image of one row or column",
           "at least 2 x 2 pixels");
@@ -264,29 +262,29 @@ void LocalMap::insert(const DepthCamera& camera, const Eigen::Isometry3d& world_
                   .touched = touched_.data()};
   for (int u = 0; u < camera.width; ++u)
     column_[static_cast<std::size_t>(u)] = static_cast<float>((u - camera.cx) / camera.fx);
-  MissMarking misses{.window = window_.rings(),
-                     .image = &pooled_,
-                     .fx = static_cast<float>(camera.fx),
-                     .fy = static_cast<float>(camera.fy),
-                     .cx = static_cast<float>(camera.cx),
-                     .cy = static_cast<float>(camera.cy),
-                     .first = {},
-                     .step = {},
-                     .nearest_m = static_cast<float>(kNearest_m),
-                     .farthest_m = static_cast<float>(range_m),
-                     .footprint_px_m =
-                         static_cast<float>(options_.footprint * std::max(camera.fx, camera.fy) * h),
-                     .margin_mm = static_cast<float>(options_.free_margin_m * 1e3),
-                     .miss = static_cast<std::int8_t>(options_.log_odds.miss),
-                     .least = static_cast<std::int8_t>(options_.log_odds.least),
-                     .obstacle = obstacle_,
-                     .hits = hits_.data(),
-                     .log_odds = log_odds_.data(),
-                     .age = age_.empty() ? nullptr : age_.data(),
-                     .changed = transform_.changed().data(),
-                     .from = from_.data(),
-                     .to = to_.data(),
-                     .free = free_.data()};
+  MissMarking misses{
+      .window = window_.rings(),
+      .image = &pooled_,
+      .fx = static_cast<float>(camera.fx),
+      .fy = static_cast<float>(camera.fy),
+      .cx = static_cast<float>(camera.cx),
+      .cy = static_cast<float>(camera.cy),
+      .first = {},
+      .step = {},
+      .nearest_m = static_cast<float>(kNearest_m),
+      .farthest_m = static_cast<float>(range_m),
+      .footprint_px_m = static_cast<float>(options_.footprint * std::max(camera.fx, camera.fy) * h),
+      .margin_mm = static_cast<float>(options_.free_margin_m * 1e3),
+      .miss = static_cast<std::int8_t>(options_.log_odds.miss),
+      .least = static_cast<std::int8_t>(options_.log_odds.least),
+      .obstacle = obstacle_,
+      .hits = hits_.data(),
+      .log_odds = log_odds_.data(),
+      .age = age_.empty() ? nullptr : age_.data(),
+      .changed = transform_.changed().data(),
+      .from = from_.data(),
+      .to = to_.data(),
+      .free = free_.data()};
   const Eigen::Vector3d first_centre =
       (window_.first.cast<double>() + Eigen::Vector3d::Constant(0.5)) * h - position;
   for (int i = 0; i < 3; ++i) {
@@ -351,8 +349,8 @@ std::shared_ptr<const LocalField> LocalMap::field() {
   const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * options_.resolution_m);
   next.lowest_node_ = bounds.min() + half;
   next.highest_node_ = bounds.max() - half;
-  std::ranges::copy(log_odds_, next.log_odds_.begin());
-  std::ranges::copy(transform_.squared(), next.squared_.begin());
+  std::copy_n(log_odds_.data(), window_.count(), next.log_odds_.data());
+  std::copy_n(transform_.squared().data(), window_.count(), next.squared_.data());
   field_ = buffers_.share(next);
   stale_ = false;
   return field_;
@@ -379,7 +377,8 @@ std::size_t LocalMap::memory_bytes() const {
   return bytes(log_odds_, hits_, age_, block_, row_, nearest_, code_, run_, free_, column_, from_,
                to_, touched_) +
          transform_.memory_bytes() +
-         static_cast<std::size_t>(buffers_.count()) * voxels * (sizeof(std::int8_t) + sizeof(std::int16_t));
+         static_cast<std::size_t>(buffers_.count()) * voxels *
+             (sizeof(std::int8_t) + sizeof(std::int16_t));
 }
 
 }  // namespace locograph

@@ -17,14 +17,14 @@ namespace locograph {
 enum class UnknownSpace {
   kFree,      ///< the field reads it as free
   kOccupied,  ///< the field reads it as an obstacle, and so all that is outside of the window
-  kSlow,      ///< the field reads it as free; LocalField::is_known() tells a planner where not to hurry
+  kSlow,  ///< the field reads it as free; LocalField::is_known() tells a planner where not to hurry
 };
 
 /// What images say of a voxel, added up.
 struct LogOdds {
-  int hit = 10, miss = 10;       ///< of one image
-  int least = -40, most = 40;    ///< the sum stays between these
-  int occupied_from = 20;        ///< an obstacle from here on
+  int hit = 10, miss = 10;     ///< of one image
+  int least = -40, most = 40;  ///< the sum stays between these
+  int occupied_from = 20;      ///< an obstacle from here on
 };
 
 struct LocalMapOptions {

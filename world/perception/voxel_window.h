@@ -2,8 +2,9 @@
 /// A box of voxels that moves through the world, stored as a ring along each axis: a move touches
 /// only what enters.
 ///
-///     const VoxelWindow window = voxel_window({8.0, 8.0, 3.0}, 0.05);
-///     if (window.contains(index)) use(window.stored(index));
+///     VoxelWindow window{.resolution_m = 0.05, .size = {160, 160, 60}};
+///     window.place({-80, -80, -8});
+///     const std::size_t at = window.stored(window.index_at({0.5, 0.0, 0.3}));
 ///
 /// Voxel (i, j, k) of the world spans [i, i + 1] h along x, ..., as OctoMap's do. x is contiguous
 /// in memory, then y, then z.
@@ -27,9 +28,7 @@ struct VoxelWindow {
            static_cast<std::size_t>(size[2]);
   }
   int blocks() const { return size[0] / kVoxelBlock; }
-  RingWindow rings() const {
-    return {{size[0], size[1], size[2]}, {ring[0], ring[1], ring[2]}};
-  }
+  RingWindow rings() const { return {{size[0], size[1], size[2]}, {ring[0], ring[1], ring[2]}}; }
 
   /// World indices of the voxel at a point, which is finite and not too far away for int.
   Eigen::Vector3i index_at(const Eigen::Vector3d& point) const {

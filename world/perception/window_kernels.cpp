@@ -58,15 +58,14 @@ void pool(const PooledImage& image) {
     }
     for (int y = 0; y < height; ++y) {
       const U16* row[4];
-      for (int k = 0; k < 4; ++k)
-        row[k] = block + std::size_t(smaller(y + k, height - 1)) * width;
+      for (int k = 0; k < 4; ++k) row[k] = block + std::size_t(smaller(y + k, height - 1)) * width;
       for (int x = 0; x < width; ++x)
         columns[x] = smaller(smaller(row[0][x], row[1][x]), smaller(row[2][x], row[3][x]));
       for (int k = 0; k < 3; ++k) columns[width + k] = columns[width - 1];
       I32* const to = image.nearest + image.offset[level] + std::size_t(y) * width;
       for (int x = 0; x < width; ++x) {
-        const U16 least = smaller(smaller(columns[x], columns[x + 1]),
-                                  smaller(columns[x + 2], columns[x + 3]));
+        const U16 least =
+            smaller(smaller(columns[x], columns[x + 1]), smaller(columns[x + 2], columns[x + 3]));
         to[x] = U16(least + 1);  // the farthest becomes 0
       }
     }
@@ -185,13 +184,12 @@ void mark_misses(const MissMarking& m) {
   const PooledImage& image = *m.image;
   // Half-spaces a . p + b >= 0 of the optical frame that are seen.
   constexpr float kHalfPixel = 0.49f;
-  const float planes[6][4] = {
-      {0.0f, 0.0f, 1.0f, -m.nearest_m},
-      {0.0f, 0.0f, -1.0f, m.farthest_m},
-      {m.fx, 0.0f, m.cx + kHalfPixel, 0.0f},
-      {-m.fx, 0.0f, float(image.width - 1) + kHalfPixel - m.cx, 0.0f},
-      {0.0f, m.fy, m.cy + kHalfPixel, 0.0f},
-      {0.0f, -m.fy, float(image.height - 1) + kHalfPixel - m.cy, 0.0f}};
+  const float planes[6][4] = {{0.0f, 0.0f, 1.0f, -m.nearest_m},
+                              {0.0f, 0.0f, -1.0f, m.farthest_m},
+                              {m.fx, 0.0f, m.cx + kHalfPixel, 0.0f},
+                              {-m.fx, 0.0f, float(image.width - 1) + kHalfPixel - m.cx, 0.0f},
+                              {0.0f, m.fy, m.cy + kHalfPixel, 0.0f},
+                              {0.0f, -m.fy, float(image.height - 1) + kHalfPixel - m.cy, 0.0f}};
   // A window of level l spans a footprint of 3 * 2^(l + 1) pixels wherever it begins: the level is
   // the first with z > footprint / (3 * 2^(l + 1)).
   float beyond[PooledImage::kMostLevels];
@@ -343,9 +341,9 @@ LOCOGRAPH_INLINE void least_around(const I16* at, int stride, int cap, I16* leas
     const I16 s0 = I16(d * d), s1 = I16((d + 1) * (d + 1)), s2 = I16((d + 2) * (d + 2)),
               s3 = I16((d + 3) * (d + 3));
     const I16 *const a0 = at - d * stride, *const a1 = a0 - stride, *const a2 = a1 - stride,
-                    *const a3 = a2 - stride;
+                     *const a3 = a2 - stride;
     const I16 *const b0 = at + d * stride, *const b1 = b0 + stride, *const b2 = b1 + stride,
-                    *const b3 = b2 + stride;
+                     *const b3 = b2 + stride;
     for (int x = 0; x < kBlock; ++x) {
       const I16 m0 = I16(smaller(a0[x], b0[x]) + s0), m1 = I16(smaller(a1[x], b1[x]) + s1),
                 m2 = I16(smaller(a2[x], b2[x]) + s2), m3 = I16(smaller(a3[x], b3[x]) + s3);
@@ -367,7 +365,7 @@ void along_y(const DistancePasses& p) {
   const int nx = p.window.size[0], ny = p.window.size[1], nz = p.window.size[2];
   const int blocks = nx / kBlock, cap = p.cap, reach = (cap + 3) & ~3;
   const I16 far = I16(cap * cap + 1), outside = p.outside_is_obstacle ? I16(0) : far;
-  U8* const has = p.flags;                       // rows -reach … ny + reach: anything in them
+  U8* const has = p.flags;                      // rows -reach … ny + reach: anything in them
   U8* const wanted = p.flags + ny + 2 * reach;  // rows 0 … ny
   for (int z = 0; z < nz; ++z) {
     for (int b = 0; b < blocks; ++b) {
@@ -428,7 +426,8 @@ void along_x(const DistancePasses& p) {
   const I16 far = I16(cap * cap + 1), outside = p.outside_is_obstacle ? I16(0) : far;
   I16* const line = p.line + reach;  // of the window; free of obstacles on both sides
   for (int x = 0; x < reach; ++x) line[x - reach] = line[nx + x] = outside;
-  U8* const wanted = p.flags;
+  U8* const wanted = p.flags;         // blocks of the window
+  U8* const near = p.flags + blocks;  // those that anything is near
   for (int row = 0; row < ny * nz; ++row) {
     U8* const changed = p.changed_y + std::size_t(row) * blocks;
     std::memset(wanted, 0, blocks);
@@ -458,11 +457,25 @@ void along_x(const DistancePasses& p) {
     std::memcpy(line, from + nx - seam, seam * sizeof(I16));
     std::memcpy(line + seam, from, (nx - seam) * sizeof(I16));
     for (int b = 0; b < blocks; ++b) {
+      I16 most_near = far;
+      for (int x = b * kBlock; x < b * kBlock + kBlock; ++x)
+        most_near = smaller(most_near, line[x]);
+      near[b] = most_near < far ? 1 : 0;
+    }
+    for (int b = 0; b < blocks; ++b) {
       if (wanted[b] == 0) continue;
       const int x = b * kBlock;
+      int sources = p.outside_is_obstacle ? 1 : 0;
+      for (int k = larger(0, x - cap) / kBlock; k <= smaller(nx - 1, x + kBlock + cap) / kBlock;
+           ++k)
+        sources += near[k];
       I16 least[kBlock];
-      least_around(line + x, 1, cap, least);
-      for (int k = 0; k < kBlock; ++k) least[k] = smaller(least[k], far);
+      if (sources == 0) {
+        for (int k = 0; k < kBlock; ++k) least[k] = far;
+      } else {
+        least_around(line + x, 1, cap, least);
+        for (int k = 0; k < kBlock; ++k) least[k] = smaller(least[k], far);
+      }
       const int before_seam = larger(0, smaller(kBlock, seam - x));
       std::memcpy(to + nx - seam + x, least, before_seam * sizeof(I16));
       std::memcpy(to + x + before_seam - seam, least + before_seam,

@@ -57,7 +57,7 @@ struct HitMarking {
   float cy, inverse_fy;
   float rotation[9], origin[3];  ///< voxels of the window from optical millimetres
   int nearest_mm, farthest_mm;
-  float floor;              ///< pixels below this z, in voxels of the window, show the floor
+  float floor;               ///< pixels below this z, in voxels of the window, show the floor
   std::int32_t *code, *run;  ///< scratch: width + 1 each
   std::uint8_t* hits;        ///< in, out: counts
   TouchedVoxel* touched;     ///< out: voxels whose count was 0
@@ -93,14 +93,14 @@ struct Ageing {
 /// before it has changed.
 struct DistancePasses {
   RingWindow window;
-  int cap;                 ///< [voxels]: what is farther gets cap^2 + 1
+  int cap;  ///< [voxels]: what is farther gets cap^2 + 1
   bool outside_is_obstacle;
   ObstacleRange obstacle;
   const std::int8_t* log_odds;
-  std::uint8_t* changed_columns;            ///< (y, block); in of along_z(), which clears it
-  std::uint8_t *changed_z, *changed_y;      ///< (z, y, block); the next step clears them
-  std::uint8_t* reached;                    ///< (z, y, block): is along_z below cap + 1 anywhere
-  std::uint8_t* along_z;                    ///< distance along z, at most cap + 1
+  std::uint8_t* changed_columns;        ///< (y, block); in of along_z(), which clears it
+  std::uint8_t *changed_z, *changed_y;  ///< (z, y, block); the next step clears them
+  std::uint8_t* reached;                ///< (z, y, block): is along_z below cap + 1 anywhere
+  std::uint8_t* along_z;                ///< distance along z, at most cap + 1
   std::int16_t *along_y, *squared;
   std::uint8_t* column;  ///< scratch: size[2] blocks
   std::int16_t* rows;    ///< scratch: size[1] + 2 (cap + 4) blocks

@@ -9,7 +9,8 @@
 namespace locograph {
 namespace {
 
-constexpr double kSliver = 1e-6;  // voxels; less than this of an overlap is rounding
+constexpr int kKeysBelow0 = 1 << 15;  // of OctoMap: key = index + 2^15
+constexpr double kSliver = 1e-6;      // voxels; less than this of an overlap is rounding
 
 /// OctoMap's log-odds and ours: least, the border between free and occupied, and most stand for
 /// each other, straight lines between them.
@@ -62,20 +63,18 @@ void fill_unseen(const octomap::OcTree& tree, const VoxelWindow& window, const L
   const ScaleOfTree scales(tree, scale);
   const double h = window.resolution_m;
   const Eigen::Vector3i last = window.first + window.size - Eigen::Vector3i::Ones();
-  const double range = 32768.0 * tree.getResolution();
-  const Eigen::AlignedBox3d reach(Eigen::Vector3d::Constant(-range), Eigen::Vector3d::Constant(range));
-  const Eigen::AlignedBox3d box = window.bounds().intersection(reach);
-  if (box.isEmpty()) return;
+  const double scale_of_leaf = tree.getResolution() / h;  // voxels of the window
+  // Keys are clamped: leaves that do not overlap the window are clipped to nothing.
   const auto key = [&](const Eigen::Vector3d& at) {
     octomap::OcTreeKey found;
     for (int axis = 0; axis < 3; ++axis) {
-      const double index = std::floor(at[axis] / tree.getResolution()) + 32768.0;
+      const double index = std::floor(at[axis] / tree.getResolution()) + kKeysBelow0;
       found[static_cast<unsigned>(axis)] =
           static_cast<octomap::key_type>(std::clamp(index, 0.0, 65535.0));
     }
     return found;
   };
-  const octomap::OcTreeKey low = key(box.min()), high = key(box.max());
+  const octomap::OcTreeKey low = key(window.bounds().min()), high = key(window.bounds().max());
   std::vector<std::uint8_t> was_seen(log_odds.size());
   std::ranges::transform(log_odds, was_seen.begin(),
                          [](std::int8_t value) { return value != kNeverSeen ? 1 : 0; });
@@ -94,16 +93,18 @@ void fill_unseen(const octomap::OcTree& tree, const VoxelWindow& window, const L
       range.first[axis] =
           static_cast<int>(std::clamp<double>(first[axis], window.first[axis], last[axis] + 1));
       range.last[axis] =
-          static_cast<int>(std::clamp<double>(beyond[axis], window.first[axis], last[axis] + 1)) - 1;
+          static_cast<int>(std::clamp<double>(beyond[axis], window.first[axis], last[axis] + 1)) -
+          1;
     }
     return range;
   };
   for (octomap::OcTree::leaf_bbx_iterator leaf = tree.begin_leafs_bbx(low, high);
        leaf != tree.end_leafs_bbx(); ++leaf) {
-    const octomap::point3d centre = leaf.getCoordinate();
-    const Eigen::Array3d middle(centre.x(), centre.y(), centre.z());
-    const Eigen::Array3d lower = (middle - 0.5 * leaf.getSize()) / h,
-                         upper = (middle + 0.5 * leaf.getSize()) / h;
+    const int extent = 1 << (tree.getTreeDepth() - leaf.getDepth());
+    Eigen::Array3d lower;
+    for (unsigned axis = 0; axis < 3; ++axis)
+      lower[axis] = ((leaf.getKey()[axis] & ~(extent - 1)) - kKeysBelow0) * scale_of_leaf;
+    const Eigen::Array3d upper = lower + extent * scale_of_leaf;
     const std::int8_t value = scales.to_ours(leaf->getLogOdds());
     // Occupied: every voxel that it overlaps; free: those whose centre lies in it.
     Eigen::Array3d first = (lower + kSliver).floor(), beyond = (upper - kSliver).ceil();
@@ -124,14 +125,15 @@ void merge_window(const VoxelWindow& window, const LogOdds& scale,
                 "those of the local map, " + std::to_string(h) + " m");
   }
   const ScaleOfTree scales(tree, scale);
-  const VoxelRange all{window.first.cwiseMax(-32768),
-                       (window.first + window.size - Eigen::Vector3i::Ones()).cwiseMin(32767)};
+  const VoxelRange all{
+      window.first.cwiseMax(-kKeysBelow0),
+      (window.first + window.size - Eigen::Vector3i::Ones()).cwiseMin(kKeysBelow0 - 1)};
   for_each_voxel(all, [&](const Eigen::Vector3i& index) {
     const std::int8_t value = log_odds[window.stored(index)];
     if (value == kNeverSeen) return;
-    const octomap::OcTreeKey key(static_cast<octomap::key_type>(index[0] + 32768),
-                                 static_cast<octomap::key_type>(index[1] + 32768),
-                                 static_cast<octomap::key_type>(index[2] + 32768));
+    const octomap::OcTreeKey key(static_cast<octomap::key_type>(index[0] + kKeysBelow0),
+                                 static_cast<octomap::key_type>(index[1] + kKeysBelow0),
+                                 static_cast<octomap::key_type>(index[2] + kKeysBelow0));
     tree.setNodeValue(key, scales.to_tree(value), true);
   });
   tree.updateInnerOccupancy();

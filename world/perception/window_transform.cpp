@@ -6,10 +6,7 @@ namespace locograph {
 
 WindowTransform::WindowTransform(const VoxelWindow& window, int cap, ObstacleRange obstacle,
                                  bool outside_is_obstacle, const WindowKernels& kernels)
-    : cap_(cap),
-      obstacle_(obstacle),
-      outside_is_obstacle_(outside_is_obstacle),
-      kernels_(kernels) {
+    : cap_(cap), obstacle_(obstacle), outside_is_obstacle_(outside_is_obstacle), kernels_(kernels) {
   const auto [nx, ny, nz] = window.rings().size;
   const std::size_t rows = window.count() / kVoxelBlock, reach = static_cast<std::size_t>(cap) + 4,
                     wide = static_cast<std::size_t>(ny) + 2 * reach;
@@ -18,7 +15,7 @@ WindowTransform::WindowTransform(const VoxelWindow& window, int cap, ObstacleRan
   changed_z_.assign(rows, 1);
   changed_y_.assign(rows, 1);
   reached_.assign(rows, 0);
-  flags_.assign(2 * wide + static_cast<std::size_t>(window.blocks()), 0);
+  flags_.assign(2 * std::max(wide, static_cast<std::size_t>(window.blocks())), 0);
   along_z_.assign(window.count(), static_cast<std::uint8_t>(cap + 1));
   along_y_.assign(window.count(), far);
   squared_.assign(window.count(), far);

@@ -2,9 +2,10 @@
 /// Exact squared Euclidean distances from all voxels of a window to the nearest occupied one, up to
 /// a cap: along z, then with y, then with x. Internal: LocalMap keeps one up to date.
 ///
-///     WindowTransform transform(window, cap, obstacles, false, kernels);
+///     const ObstacleRange obstacles{.first = 20, .span = 107};
+///     WindowTransform transform(window, 22, obstacles, false, window_kernels_at(simd_level()));
 ///     transform.update(window, log_odds);          // looks at the columns marked in changed()
-///     use(transform.squared());
+///     const int squared = transform.squared()[window.stored({0, 0, 0})];
 ///
 /// Rows are computed again only if rows near them have changed, all of them after a move. Saito,
 /// Toriwaki: New algorithms for Euclidean distance transformation (1994), with windows as wide as

@@ -23,8 +23,7 @@ double hit(const RoomSolid& solid, const Eigen::Vector3d& from, const Eigen::Vec
     const Eigen::Vector2d middle = 0.5 * (solid.lower + solid.upper).head<2>();
     const double radius = 0.5 * (solid.upper - solid.lower).x();
     const Eigen::Vector2d away = from.head<2>() - middle, way = ray.head<2>();
-    const double a = way.squaredNorm(), b = away.dot(way),
-                 c = away.squaredNorm() - radius * radius;
+    const double a = way.squaredNorm(), b = away.dot(way), c = away.squaredNorm() - radius * radius;
     const double inside = b * b - a * c;
     if (inside < 0.0) return kNothing;
     enter = std::max(enter, (-b - std::sqrt(inside)) / a);
@@ -113,7 +112,8 @@ DepthImage RoomCamera::take(const DepthCamera& camera, const Eigen::Isometry3d& 
                             double stamp_s) {
   const int width = camera.width, height = camera.height;
   const auto pixels = static_cast<std::size_t>(width) * height;
-  DepthImage image{.stamp_s = stamp_s, .camera = 0, .width = width, .height = height, .depth_mm = {}};
+  DepthImage image{
+      .stamp_s = stamp_s, .camera = 0, .width = width, .height = height, .depth_mm = {}};
   image.depth_mm.resize(pixels);
   depth_.resize(pixels);
   const Eigen::Vector3d from = world_from_optical.translation();
@@ -151,28 +151,27 @@ DepthImage RoomCamera::take(const DepthCamera& camera, const Eigen::Isometry3d& 
         if (beside != depth && uniform(generator_) < 0.25f) lost = true;
       }
       const bool in_range = seen > camera.range_min_m && seen < camera.range_max_m;
-      image.depth_mm[at] = static_cast<std::uint16_t>(
-          lost || !in_range ? 0 : std::lround(seen * 1000.0f));
+      image.depth_mm[at] =
+          static_cast<std::uint16_t>(lost || !in_range ? 0 : std::lround(seen * 1000.0f));
     }
   }
   return image;
 }
 
 std::vector<RoomSolid> furnished_room() {
-  std::vector<RoomSolid> solids = {
-      solid_box({6.0, -5.0, 0.0}, {6.2, 5.0, 3.0}),
-      solid_box({-4.0, 2.5, 0.0}, {6.0, 2.7, 3.0}),
-      solid_box({-4.0, -3.2, 0.0}, {6.0, -3.0, 3.0}),
-      solid_box({2.0, -0.83, 0.0}, {2.6, -0.22, 0.41}),
-      solid_box({3.2, 0.4, 0.70}, {4.0, 1.4, 0.73}),
-      solid_box({4.3, -1.5, 1.5}, {4.45, 1.5, 1.6}),
-      solid_box({4.6, -3.0, 0.0}, {6.0, -1.5, 0.17}),
-      solid_box({5.0, -3.0, 0.0}, {6.0, -1.5, 0.34}),
-      upright_cylinder(2.02, 0.51, 0.0, 1.9, 0.01),
-      upright_cylinder(3.01, -1.22, 0.0, 1.9, 0.01),
-      upright_cylinder(4.3, -0.1, 0.0, 1.9, 0.01),
-      upright_cylinder(1.63, -1.31, 0.0, 1.9, 0.025),
-      upright_cylinder(2.5, 1.7, 0.65, 1.15, 0.25)};
+  std::vector<RoomSolid> solids = {solid_box({6.0, -5.0, 0.0}, {6.2, 5.0, 3.0}),
+                                   solid_box({-4.0, 2.5, 0.0}, {6.0, 2.7, 3.0}),
+                                   solid_box({-4.0, -3.2, 0.0}, {6.0, -3.0, 3.0}),
+                                   solid_box({2.0, -0.83, 0.0}, {2.6, -0.22, 0.41}),
+                                   solid_box({3.2, 0.4, 0.70}, {4.0, 1.4, 0.73}),
+                                   solid_box({4.3, -1.5, 1.5}, {4.45, 1.5, 1.6}),
+                                   solid_box({4.6, -3.0, 0.0}, {6.0, -1.5, 0.17}),
+                                   solid_box({5.0, -3.0, 0.0}, {6.0, -1.5, 0.34}),
+                                   upright_cylinder(2.02, 0.51, 0.0, 1.9, 0.01),
+                                   upright_cylinder(3.01, -1.22, 0.0, 1.9, 0.01),
+                                   upright_cylinder(4.3, -0.1, 0.0, 1.9, 0.01),
+                                   upright_cylinder(1.63, -1.31, 0.0, 1.9, 0.025),
+                                   upright_cylinder(2.5, 1.7, 0.65, 1.15, 0.25)};
   for (const double x : {3.25, 3.95}) {
     for (const double y : {0.45, 1.35}) solids.push_back(upright_cylinder(x, y, 0.0, 0.7, 0.02));
   }
