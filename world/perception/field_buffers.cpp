@@ -17,7 +17,6 @@ struct FieldBuffers::Buffer {
 };
 
 struct FieldBuffers::Pool {
-  LocalField blank;
   std::vector<std::unique_ptr<Buffer>> buffers;
 };
 
@@ -33,8 +32,7 @@ struct FieldBuffers::BesideBuffer {
   BesideBuffer(std::shared_ptr<Pool> the_pool, Buffer* the_buffer)
       : pool(std::move(the_pool)), buffer(the_buffer) {}
   template <class U>
-  explicit(false) BesideBuffer(const BesideBuffer<U>& other)
-      : pool(other.pool), buffer(other.buffer) {}
+  BesideBuffer(const BesideBuffer<U>& other) : pool(other.pool), buffer(other.buffer) {}
 
   T* allocate(std::size_t count) {
     if (count * sizeof(T) > sizeof buffer->control) throw std::bad_alloc();
@@ -48,20 +46,15 @@ struct FieldBuffers::BesideBuffer {
   }
 };
 
-FieldBuffers::FieldBuffers(const LocalField& blank, int count)
-    : pool_(std::make_shared<Pool>(Pool{blank, {}})) {
+FieldBuffers::FieldBuffers(const LocalField& blank, int count) : pool_(std::make_shared<Pool>()) {
   for (int i = 0; i < count; ++i) pool_->buffers.push_back(std::make_unique<Buffer>(blank));
 }
-
-FieldBuffers::~FieldBuffers() = default;
-FieldBuffers::FieldBuffers(FieldBuffers&&) noexcept = default;
-FieldBuffers& FieldBuffers::operator=(FieldBuffers&&) noexcept = default;
 
 LocalField& FieldBuffers::free_one() {
   for (const std::unique_ptr<Buffer>& buffer : pool_->buffers) {
     if (!buffer->held.load(std::memory_order_acquire)) return buffer->field;
   }
-  pool_->buffers.push_back(std::make_unique<Buffer>(pool_->blank));
+  pool_->buffers.push_back(std::make_unique<Buffer>(pool_->buffers.front()->field));
   return pool_->buffers.back()->field;
 }
 

@@ -18,11 +18,8 @@ namespace locograph {
 
 class FieldBuffers {
  public:
-  /// count: how many there are at first; others are copies of blank.
+  /// count: how many there are at first, 1 or more; each begins as a copy of blank.
   FieldBuffers(const LocalField& blank, int count);
-  ~FieldBuffers();
-  FieldBuffers(FieldBuffers&&) noexcept;
-  FieldBuffers& operator=(FieldBuffers&&) noexcept;
 
   /// Another one is made when all are held.
   LocalField& free_one();

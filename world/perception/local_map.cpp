@@ -26,7 +26,7 @@ void require(bool holds, const char* what, const char* expected) {
 Eigen::Vector3i size_in_voxels(const LocalMapOptions& options) {
   constexpr double kRounding = 1e-9;
   Eigen::Vector3i size =
-      (options.size_m / options.resolution_m).array().operator-(kRounding).ceil().cast<int>();
+      ((options.size_m / options.resolution_m).array() - kRounding).ceil().cast<int>();
   size[0] = (size[0] + kVoxelBlock - 1) / kVoxelBlock * kVoxelBlock;
   return size.cwiseMax(2);
 }
@@ -91,29 +91,31 @@ LocalMap::LocalMap(const LocalMapOptions& options, const std::string& level)
       stamp_s_(-std::numeric_limits<double>::infinity()),
       transform_(window_, options.cap(), obstacle_, options.unknown == UnknownSpace::kOccupied,
                  kernels_),
-      buffers_(LocalField{}, 0) {
+      buffers_(blank_field(), kFields) {
   log_odds_.assign(window_.count(), kNeverSeen);
   hits_.assign(window_.count(), 0);
   if (std::isfinite(options.forget_after_s)) age_.assign(window_.count(), 0);
   from_.resize(static_cast<std::size_t>(window_.size[1]));
   to_.resize(from_.size());
   free_.assign(static_cast<std::size_t>(window_.size[0]), 0);
+}
 
+LocalField LocalMap::blank_field() const {
   LocalField blank;
   blank.window_ = window_;
-  blank.scale_ = options.log_odds;
-  blank.unknown_ = options.unknown;
-  blank.max_distance_m_ = options.max_distance_m;
-  blank.inverse_resolution_ = 1.0 / options.resolution_m;
+  blank.scale_ = options_.log_odds;
+  blank.unknown_ = options_.unknown;
+  blank.max_distance_m_ = options_.max_distance_m;
+  blank.inverse_resolution_ = 1.0 / options_.resolution_m;
   blank.log_odds_.resize(window_.count());
   blank.squared_.resize(window_.count());
-  const int farthest = options.cap() * options.cap() + 1;
+  const int farthest = options_.cap() * options_.cap() + 1;
   for (int squared = 0; squared <= farthest; ++squared) {
     const double value =
-        (std::sqrt(static_cast<double>(squared)) - kNodeOffset) * options.resolution_m;
-    blank.value_of_squared_.push_back(static_cast<float>(std::min(value, options.max_distance_m)));
+        (std::sqrt(static_cast<double>(squared)) - kNodeOffset) * options_.resolution_m;
+    blank.value_of_squared_.push_back(static_cast<float>(std::min(value, options_.max_distance_m)));
   }
-  buffers_ = FieldBuffers(blank, kFields);
+  return blank;
 }
 
 void LocalMap::set_log_odds(std::size_t stored, std::int8_t value) {

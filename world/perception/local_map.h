@@ -51,12 +51,11 @@ class LocalMap {
   std::shared_ptr<const LocalField> field();
 
   /// Fills what was never seen from an OctoMap. It may have another resolution: a voxel is occupied
-  /// if an occupied leaf overlaps it, otherwise free if its centre is in a free leaf. Not in the
-  /// cycle: it takes milliseconds, and allocates.
+  /// if an occupied leaf overlaps it, otherwise free if its centre is in a free leaf. Like
+  /// merge_into() not for the cycle: it takes tens of milliseconds and allocates.
   void load(const octomap::OcTree& tree);
-  /// Puts all that was seen in the place of what the tree knows there. Not in the cycle: it takes
-  /// about a second; LocalField::merge_into() does the same in another thread. Throws Error for a
-  /// tree of another resolution.
+  /// Puts all that was seen in the place of what the tree knows there; LocalField::merge_into()
+  /// does the same in another thread. Throws Error for a tree of another resolution.
   void merge_into(octomap::OcTree& tree) const;
 
   const LocalMapOptions& options() const { return options_; }
@@ -69,6 +68,7 @@ class LocalMap {
   std::size_t memory_bytes() const;
 
  private:
+  LocalField blank_field() const;
   void fit_image(const DepthCamera& camera);
   void forget_until(double stamp_s);
   void add_hits(const DepthCamera& camera, int touched);

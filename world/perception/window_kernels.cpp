@@ -49,20 +49,21 @@ void pool(const PooledImage& image) {
     U16* const block = image.block + image.offset[level];
     const U16 unseen_last = level == 0 ? 1 : 0;  // depth - 1: 0 becomes the farthest
     for (int y = 0; y < height; ++y) {
-      const U16* const upper = from + std::size_t(2 * y) * from_width;
+      const U16* const upper = from + static_cast<std::size_t>(2 * y) * from_width;
       const U16* const lower = upper + from_width;
       for (int x = 0; x < from_width; ++x)
         pairs[x] = smaller(U16(upper[x] - unseen_last), U16(lower[x] - unseen_last));
-      U16* const to = block + std::size_t(y) * width;
+      U16* const to = block + static_cast<std::size_t>(y) * width;
       for (int x = 0; x < width; ++x) to[x] = smaller(pairs[2 * x], pairs[2 * x + 1]);
     }
     for (int y = 0; y < height; ++y) {
       const U16* row[4];
-      for (int k = 0; k < 4; ++k) row[k] = block + std::size_t(smaller(y + k, height - 1)) * width;
+      for (int k = 0; k < 4; ++k)
+        row[k] = block + static_cast<std::size_t>(smaller(y + k, height - 1)) * width;
       for (int x = 0; x < width; ++x)
         columns[x] = smaller(smaller(row[0][x], row[1][x]), smaller(row[2][x], row[3][x]));
       for (int k = 0; k < 3; ++k) columns[width + k] = columns[width - 1];
-      I32* const to = image.nearest + image.offset[level] + std::size_t(y) * width;
+      I32* const to = image.nearest + image.offset[level] + static_cast<std::size_t>(y) * width;
       for (int x = 0; x < width; ++x) {
         const U16 least =
             smaller(smaller(columns[x], columns[x + 1]), smaller(columns[x + 2], columns[x + 3]));
@@ -88,19 +89,21 @@ int mark_hits(const HitMarking& m) {
   m.code[0] = -1;
   int count = 0;
   for (int v = 0; v < m.height; ++v) {
-    const float y = (float(v) - m.cy) * m.inverse_fy;
+    const float y = (static_cast<float>(v) - m.cy) * m.inverse_fy;
     const float c0 = m.rotation[1] * y + m.rotation[2], c1 = m.rotation[4] * y + m.rotation[5],
                 c2 = m.rotation[7] * y + m.rotation[8];
-    const U16* const depth = m.depth_mm + std::size_t(v) * width;
+    const U16* const depth = m.depth_mm + static_cast<std::size_t>(v) * width;
     for (int u = 0; u < width; ++u) {
       const int d = depth[u];
-      const float k = float(d);
+      const float k = static_cast<float>(d);
       const float pz = (a2 * column[u] + c2) * k + t2;
-      const int ix = int(__builtin_floorf((a0 * column[u] + c0) * k + t0));
-      const int iy = int(__builtin_floorf((a1 * column[u] + c1) * k + t1));
-      const int iz = int(__builtin_floorf(pz));
-      const bool inside = (d >= nearest) & (d <= farthest) & (unsigned(ix) < unsigned(nx)) &
-                          (unsigned(iy) < unsigned(ny)) & (unsigned(iz) < unsigned(nz));
+      const int ix = static_cast<int>(__builtin_floorf((a0 * column[u] + c0) * k + t0));
+      const int iy = static_cast<int>(__builtin_floorf((a1 * column[u] + c1) * k + t1));
+      const int iz = static_cast<int>(__builtin_floorf(pz));
+      const bool inside = (d >= nearest) & (d <= farthest) &
+                          (static_cast<unsigned>(ix) < static_cast<unsigned>(nx)) &
+                          (static_cast<unsigned>(iy) < static_cast<unsigned>(ny)) &
+                          (static_cast<unsigned>(iz) < static_cast<unsigned>(nz));
       const int sx = ix + rx - (ix + rx >= nx ? nx : 0), sy = iy + ry - (iy + ry >= ny ? ny : 0),
                 sz = iz + rz - (iz + rz >= nz ? nz : 0);
       const I32 voxel = (sz * ny + sy) * nx + sx + (pz < floor ? kFloorBit : 0);
@@ -138,20 +141,20 @@ LOCOGRAPH_INLINE void look_through(const MissMarking& m, int level, float x0, fl
   const int width = image.level_width[level], last_u = width - 1,
             last_v = image.level_height[level] - 1;
   const I32* const __restrict nearest = image.nearest + image.offset[level];
-  const float scale = 1.0f / float(2 << level);
+  const float scale = 1.0f / static_cast<float>(2 << level);
   const float dx = m.step[0][0], dy = m.step[0][1], dz = m.step[0][2];
   const float fx = m.fx, fy = m.fy, cx = m.cx + 0.5f, cy = m.cy + 0.5f;
   const float half_foot = 0.5f * m.footprint_px_m, margin = m.margin_mm;
   for (int i = begin; i < end; ++i) {
-    const float f = float(i);
+    const float f = static_cast<float>(i);
     const float z = z0 + f * dz;
     const float inverse = 1.0f / z;
     const float foot = half_foot * inverse;
     const float u = (x0 + f * dx) * fx * inverse + cx - foot;
     const float v = (y0 + f * dy) * fy * inverse + cy - foot;
-    const int bu = larger(0, smaller(int(u * scale), last_u));
-    const int bv = larger(0, smaller(int(v * scale), last_v));
-    free[i] = float(nearest[bv * width + bu]) - 1000.0f * z > margin ? 1 : 0;
+    const int bu = larger(0, smaller(static_cast<int>(u * scale), last_u));
+    const int bv = larger(0, smaller(static_cast<int>(v * scale), last_v));
+    free[i] = static_cast<float>(nearest[bv * width + bu]) - 1000.0f * z > margin ? 1 : 0;
   }
 }
 
@@ -184,29 +187,30 @@ void mark_misses(const MissMarking& m) {
   const PooledImage& image = *m.image;
   // Half-spaces a . p + b >= 0 of the optical frame that are seen.
   constexpr float kHalfPixel = 0.49f;
-  const float planes[6][4] = {{0.0f, 0.0f, 1.0f, -m.nearest_m},
-                              {0.0f, 0.0f, -1.0f, m.farthest_m},
-                              {m.fx, 0.0f, m.cx + kHalfPixel, 0.0f},
-                              {-m.fx, 0.0f, float(image.width - 1) + kHalfPixel - m.cx, 0.0f},
-                              {0.0f, m.fy, m.cy + kHalfPixel, 0.0f},
-                              {0.0f, -m.fy, float(image.height - 1) + kHalfPixel - m.cy, 0.0f}};
+  const float planes[6][4] = {
+      {0.0f, 0.0f, 1.0f, -m.nearest_m},
+      {0.0f, 0.0f, -1.0f, m.farthest_m},
+      {m.fx, 0.0f, m.cx + kHalfPixel, 0.0f},
+      {-m.fx, 0.0f, static_cast<float>(image.width - 1) + kHalfPixel - m.cx, 0.0f},
+      {0.0f, m.fy, m.cy + kHalfPixel, 0.0f},
+      {0.0f, -m.fy, static_cast<float>(image.height - 1) + kHalfPixel - m.cy, 0.0f}};
   // A window of level l spans a footprint of 3 * 2^(l + 1) pixels wherever it begins: the level is
   // the first with z > footprint / (3 * 2^(l + 1)).
   float beyond[PooledImage::kMostLevels];
   for (int level = 0; level < image.levels; ++level)
-    beyond[level] = m.footprint_px_m / (3.0f * float(2 << level));
+    beyond[level] = m.footprint_px_m / (3.0f * static_cast<float>(2 << level));
   beyond[image.levels - 1] = 0.0f;
   const int seam = nx - m.window.ring[0];
 
   for (int z = 0; z < nz; ++z) {
     const int sz = wrapped(z + m.window.ring[2], nz);
     float row[3];
-    for (int k = 0; k < 3; ++k) row[k] = m.first[k] + float(z) * m.step[2][k];
+    for (int k = 0; k < 3; ++k) row[k] = m.first[k] + static_cast<float>(z) * m.step[2][k];
     float* const from = m.from;
     float* const to = m.to;
     for (int y = 0; y < ny; ++y) {
       from[y] = 0.0f;
-      to[y] = float(nx - 1);
+      to[y] = static_cast<float>(nx - 1);
     }
     for (const float* a : planes) {
       const float start = a[0] * row[0] + a[1] * row[1] + a[2] * row[2] + a[3];
@@ -215,36 +219,39 @@ void mark_misses(const MissMarking& m) {
       constexpr float kLeast = 1e-9f;
       if (per_x >= 0.0f) {
         const float scale = -1.0f / larger(per_x, kLeast);
-        for (int y = 0; y < ny; ++y) from[y] = larger(from[y], (start + float(y) * per_y) * scale);
+        for (int y = 0; y < ny; ++y)
+          from[y] = larger(from[y], (start + static_cast<float>(y) * per_y) * scale);
       } else {
         const float scale = -1.0f / smaller(per_x, -kLeast);
-        for (int y = 0; y < ny; ++y) to[y] = smaller(to[y], (start + float(y) * per_y) * scale);
+        for (int y = 0; y < ny; ++y)
+          to[y] = smaller(to[y], (start + static_cast<float>(y) * per_y) * scale);
       }
     }
     for (int y = 0; y < ny; ++y) {
       if (!(from[y] <= to[y])) continue;
-      const int begin = int(__builtin_ceilf(from[y])), end = int(to[y]) + 1;
+      const int begin = static_cast<int>(__builtin_ceilf(from[y])),
+                end = static_cast<int>(to[y]) + 1;
       if (begin >= end) continue;
       const int sy = wrapped(y + m.window.ring[1], ny);
       float at[3];
-      for (int k = 0; k < 3; ++k) at[k] = row[k] + float(y) * m.step[1][k];
+      for (int k = 0; k < 3; ++k) at[k] = row[k] + static_cast<float>(y) * m.step[1][k];
       const float per_x = m.step[0][2];
       for (int i = begin; i < end;) {
-        const float depth = at[2] + float(i) * per_x;
+        const float depth = at[2] + static_cast<float>(i) * per_x;
         int level = 0;
         while (level + 1 < image.levels && depth <= beyond[level]) ++level;
         int stop = i < seam ? smaller(end, seam) : end;
         // Until the depth leaves the level's range.
-        float limit = float(stop);
+        float limit = static_cast<float>(stop);
         if (per_x > 0.0f && level > 0) limit = (beyond[level - 1] - at[2]) / per_x;
         if (per_x < 0.0f) limit = (beyond[level] - at[2]) / per_x;
-        if (limit < float(stop)) stop = larger(i + 1, int(limit) + 1);
+        if (limit < static_cast<float>(stop)) stop = larger(i + 1, static_cast<int>(limit) + 1);
         look_through(m, level, at[0], at[1], at[2], i, smaller(stop, end),
                      m.free + (i < seam ? nx - seam : -seam));
         i = stop;
       }
       // Where these voxels are stored: before the seam, and from 0 on after it.
-      const std::size_t line = (std::size_t(sz) * ny + sy) * nx;
+      const std::size_t line = (static_cast<std::size_t>(sz) * ny + sy) * nx;
       const int shifted = nx - seam;
       const int first_begin = begin + shifted, first_end = smaller(end, seam) + shifted;
       const int second_begin = larger(begin, seam) - seam, second_end = end - seam;
@@ -267,7 +274,7 @@ void age(const Ageing& a) {
   const U8 most = a.most, first = a.obstacle.first, span = a.obstacle.span;
   for (int row = 0; row < rows; ++row) {
     for (int b = 0; b < blocks; ++b) {
-      const std::size_t at = (std::size_t(row) * blocks + b) * kBlock;
+      const std::size_t at = (static_cast<std::size_t>(row) * blocks + b) * kBlock;
       I8* const odds = a.log_odds + at;
       U8* const years = a.age + at;
       U8 flipped = 0;
@@ -288,7 +295,7 @@ void age(const Ageing& a) {
 void along_z(const DistancePasses& p) {
   const int nx = p.window.size[0], ny = p.window.size[1], nz = p.window.size[2];
   const int blocks = nx / kBlock;
-  const std::size_t plane = std::size_t(nx) * ny;
+  const std::size_t plane = static_cast<std::size_t>(nx) * ny;
   const U8 far = U8(p.cap + 1), outside = p.outside_is_obstacle ? U8(0) : far;
   const U8 first = p.obstacle.first, span = p.obstacle.span;
   for (int y = 0; y < ny; ++y) {
@@ -296,7 +303,7 @@ void along_z(const DistancePasses& p) {
       U8& wanted = p.changed_columns[y * blocks + b];
       if (wanted == 0) continue;
       wanted = 0;
-      const std::size_t base = std::size_t(y) * nx + b * kBlock;
+      const std::size_t base = static_cast<std::size_t>(y) * nx + b * kBlock;
       U8 distance[kBlock];
       for (int x = 0; x < kBlock; ++x) distance[x] = outside;
       for (int z = 0; z < nz; ++z) {
@@ -322,7 +329,7 @@ void along_z(const DistancePasses& p) {
           to[x] = distance[x];
         }
         if (difference == 0) continue;
-        const std::size_t row = (std::size_t(sz) * ny + y) * blocks + b;
+        const std::size_t row = (static_cast<std::size_t>(sz) * ny + y) * blocks + b;
         p.reached[row] = least < far ? 1 : 0;
         p.changed_z[row] = 1;
       }
@@ -369,7 +376,7 @@ void along_y(const DistancePasses& p) {
   U8* const wanted = p.flags + ny + 2 * reach;  // rows 0 … ny
   for (int z = 0; z < nz; ++z) {
     for (int b = 0; b < blocks; ++b) {
-      const std::size_t slice = std::size_t(z) * ny;
+      const std::size_t slice = static_cast<std::size_t>(z) * ny;
       int low = ny, high = 0;  // rows wanted
       std::memset(wanted, 0, ny);
       for (int y = 0; y < ny; ++y) {
@@ -429,7 +436,7 @@ void along_x(const DistancePasses& p) {
   U8* const wanted = p.flags;         // blocks of the window
   U8* const near = p.flags + blocks;  // those that anything is near
   for (int row = 0; row < ny * nz; ++row) {
-    U8* const changed = p.changed_y + std::size_t(row) * blocks;
+    U8* const changed = p.changed_y + static_cast<std::size_t>(row) * blocks;
     std::memset(wanted, 0, blocks);
     bool any = false;
     for (int b = 0; b < blocks; ++b) {
@@ -452,8 +459,8 @@ void along_x(const DistancePasses& p) {
       }
     }
     if (!any) continue;
-    const I16* const from = p.along_y + std::size_t(row) * nx;
-    I16* const to = p.squared + std::size_t(row) * nx;
+    const I16* const from = p.along_y + static_cast<std::size_t>(row) * nx;
+    I16* const to = p.squared + static_cast<std::size_t>(row) * nx;
     std::memcpy(line, from + nx - seam, seam * sizeof(I16));
     std::memcpy(line + seam, from, (nx - seam) * sizeof(I16));
     for (int b = 0; b < blocks; ++b) {

@@ -15,7 +15,7 @@ constexpr int kCap = 9;
 constexpr ObstacleRange kObstacles{20, 107};
 
 struct Pattern {
-  VoxelWindow window{.resolution_m = 0.05, .size = {64, 16, 13}};
+  VoxelWindow window{.resolution_m = 0.05, .size = {64, 17, 13}};
   std::vector<std::int8_t> log_odds;
 
   Pattern() : log_odds(window.count(), 0) {}
@@ -93,7 +93,7 @@ TEST_P(WindowTransformTest, FollowsSingleVoxels) {
       const std::size_t at = any(generator_);
       std::int8_t& value = pattern_.log_odds[at];
       value = kObstacles.holds(value) ? -20 : 30;
-      const std::size_t row = at / 64 % 16, block = at % 64 / kVoxelBlock;
+      const std::size_t row = at / 64 % 17, block = at % 64 / kVoxelBlock;
       transform_.changed()[2 * row + block] = 1;
     }
     transform_.update(pattern_.window, pattern_.log_odds);
