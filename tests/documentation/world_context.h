@@ -91,7 +91,8 @@ struct Context : in_world::Context {
 }  // namespace perception_local_field_h
 namespace perception_local_map_h {
 struct Context : in_world::Context {
-  const DepthCamera camera{.width = 4, .height = 3, .fx = 2.0, .fy = 2.0, .cx = 1.5, .cy = 1.0};
+  const DepthCamera camera{
+      .name = "head", .width = 4, .height = 3, .fx = 2.0, .fy = 2.0, .cx = 1.5, .cy = 1.0};
   const DepthImage image{.width = 4, .height = 3, .depth_mm = std::vector<std::uint16_t>(12, 1500)};
   const Eigen::Isometry3d world_from_optical = world_from_arm;
   const Eigen::Vector3d robot_at = {0.0, 0.0, 0.8};

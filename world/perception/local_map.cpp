@@ -219,7 +219,14 @@ void LocalMap::forget_until(double stamp_s) {
 
 void LocalMap::insert(const DepthCamera& camera, const Eigen::Isometry3d& world_from_optical,
                       const DepthImage& image) {
-  camera.validate();
+  // DepthCamera::validate() tells more, but is not for every image.
+  const double numbers[] = {camera.fx, camera.fy,          camera.cx,
+                            camera.cy, camera.range_min_m, camera.range_max_m};
+  require(std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); }) &&
+              camera.fx > 0.0 && camera.fy > 0.0 && camera.range_min_m < camera.range_max_m,
+          "the camera's focal lengths, centre or range are none", "a valid DepthCamera");
+  require(camera.width >= 2 && camera.height >= 2, "a camera of one row or column",
+          "at least 2 x 2 pixels");
   if (image.width != camera.width || image.height != camera.height ||
       image.depth_mm.size() != static_cast<std::size_t>(image.width) * image.height) {
     throw Error(
@@ -227,8 +234,6 @@ void LocalMap::insert(const DepthCamera& camera, const Eigen::Isometry3d& world_
             " pixels with " + std::to_string(image.depth_mm.size()) + " depths",
         "the camera's " + std::to_string(camera.width) + " x " + std::to_string(camera.height));
   }
-  require(camera.width >= 2 && camera.height >= 2, "an image of one row or column",
-          "at least 2 x 2 pixels");
   require(std::isfinite(image.stamp_s), "the image's stamp is not finite", "seconds");
   const Eigen::Matrix3d rotation = world_from_optical.linear();
   const Eigen::Vector3d position = world_from_optical.translation();
@@ -246,22 +251,23 @@ void LocalMap::insert(const DepthCamera& camera, const Eigen::Isometry3d& world_
   pooled_.depth_mm = image.depth_mm.data();
   kernels_.pool(pooled_);
 
-  HitMarking hits{.window = window_.rings(),
-                  .depth_mm = image.depth_mm.data(),
-                  .width = camera.width,
-                  .height = camera.height,
-                  .column = column_.data(),
-                  .cy = static_cast<float>(camera.cy),
-                  .inverse_fy = static_cast<float>(1.0 / camera.fy),
-                  .rotation = {},
-                  .origin = {},
-                  .nearest_mm = std::max(1, static_cast<int>(std::ceil(camera.range_min_m * 1e3))),
-                  .farthest_mm = static_cast<int>(std::min(range_m * 1e3, 65535.0)),
-                  .floor = static_cast<float>(options_.floor_top_m() / h - window_.first[2]),
-                  .code = code_.data(),
-                  .run = run_.data(),
-                  .hits = hits_.data(),
-                  .touched = touched_.data()};
+  HitMarking hits{
+      .window = window_.rings(),
+      .depth_mm = image.depth_mm.data(),
+      .width = camera.width,
+      .height = camera.height,
+      .column = column_.data(),
+      .cy = static_cast<float>(camera.cy),
+      .inverse_fy = static_cast<float>(1.0 / camera.fy),
+      .rotation = {},
+      .origin = {},
+      .nearest_mm = static_cast<int>(std::clamp(std::ceil(camera.range_min_m * 1e3), 1.0, 65535.0)),
+      .farthest_mm = static_cast<int>(std::min(range_m * 1e3, 65535.0)),
+      .floor = static_cast<float>(options_.floor_top_m() / h - window_.first[2]),
+      .code = code_.data(),
+      .run = run_.data(),
+      .hits = hits_.data(),
+      .touched = touched_.data()};
   for (int u = 0; u < camera.width; ++u)
     column_[static_cast<std::size_t>(u)] = static_cast<float>((u - camera.cx) / camera.fx);
   MissMarking misses{
