@@ -30,7 +30,7 @@ macro(locograph_hash_plugin_headers root planning)
     list(APPEND locograph_hashed
       robots/collision_model robots/contact robots/contact_closure robots/contact_kind_table
       robots/robot robots/robot_state robots/wheel robots/wrench_cone
-      world/distance_field world/distance_sample world/obstacles
+      world/distance_field world/distance_sample world/distance_source world/obstacles
       plugins/configuration/frame_parameter plugins/configuration/robot_parameters
       plugins/configuration/self_collision_shapes plugins/configuration/vertex_configuration
       plugins/configuration/contact_parameter plugins/configuration/stance_parameter

@@ -6,9 +6,7 @@
 ///     k.dense.cholesky_in_place(panel, ld, rows, columns);
 ///     std::cout << k.level << '\n';                             // "v3"
 ///
-/// The levels are those of x86-64: v2 (two lanes), v3 (AVX2: four lanes, fused multiply-add), v4
-/// (AVX-512: eight lanes). For other processors there is one, "portable". The highest that the
-/// machine has is taken, unless the environment variable LOCOGRAPH_SIMD names another.
+/// Levels, and which of them a process runs at: common/simd_level.h.
 ///
 /// A result has the same bits however its computation is divided, at every level; two levels round
 /// differently.
@@ -20,7 +18,6 @@
 #include <locograph/solvers/schur_kernels.h>
 
 #include <string>
-#include <vector>
 
 namespace locograph {
 
@@ -40,13 +37,10 @@ struct Kernels {
 };
 
 /// Those that run in this process. What one function lays out in memory another reads, so there is
-/// no second choice. Throws Error when LOCOGRAPH_SIMD names no level, or one that the machine
-/// lacks.
+/// no second choice. Throws Error like simd_level().
 const Kernels& kernels();
 
-/// The levels that this machine has, lowest first, and the kernels of one of them. Throws Error
-/// like kernels().
-std::vector<std::string> kernel_levels();
+/// Those of one of simd_levels(). Throws Error like require_simd_level().
 const Kernels& kernels_at(const std::string& level);
 
 }  // namespace locograph

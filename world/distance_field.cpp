@@ -1,28 +1,17 @@
 #include <dynamicEDT3D/dynamicEDT3D.h>
 #include <locograph/common/error.h>
 #include <locograph/world/distance_field.h>
+#include <locograph/world/node_distances.h>
 #include <locograph/world/require_metres.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
-// Notation: h voxel size, x_i grid nodes = voxel centres, d_c(x) the distance from a free x to the
-// nearest occupied centre, d_f(x) from an occupied x to the nearest free centre. Node values are
-//     D(x) - s h,  D = d_c where free, h - d_f where occupied
-// (continuous slope 1 through a flat wall), and s is the smallest number that makes the trilinear
-// interpolant a lower bound. Outside: let c be the centre of the cube nearest to p. For every node
-// D(x_i) <= |x_i - c|, so the interpolant is at most sum_i w_i |x_i - c| - s h, whose largest
-// excess over the distance from p to the cube of c is found at the cube's corner:
-//     s = (0 + 3 * 1 + 3 * sqrt 2 + sqrt 3) / 8 = 1.1218.
-// Inside the same s suffices (largest excess found by random search over voxel patterns: 1.1218).
-// A flat wall is seen s - 1/2 = 0.62 voxels too early.
-
 namespace locograph {
 namespace {
 
-constexpr double kOffset = 1.121834;  // s, rounded up
-constexpr int kKeyOffset = 1 << 15;   // OctoMap: key = index + 2^15
+constexpr int kKeyOffset = 1 << 15;  // OctoMap: key = index + 2^15
 constexpr double kMaxVoxels = 1e8;
 
 using Index3 = std::array<int, 3>;
@@ -165,7 +154,7 @@ DistanceField DistanceField::from_octree(const octomap::OcTree& tree,
   field.max_distance_ = options.max_distance_m;
 
   // Occupied voxels as far away as this can still lower a node's value.
-  const int reach = static_cast<int>(std::ceil(options.max_distance_m / h + kOffset)) + 1;
+  const int reach = static_cast<int>(std::ceil(options.max_distance_m / h + kNodeOffset)) + 1;
   const Block everything{{-kKeyOffset, -kKeyOffset, -kKeyOffset},
                          {2 * kKeyOffset, 2 * kKeyOffset, 2 * kKeyOffset}};
   const int first_layer =
@@ -231,7 +220,7 @@ DistanceField DistanceField::from_octree(const octomap::OcTree& tree,
           const int k = z + nodes.first[2] - wide.first[2];
           if (map.at(i, j, k) != occupied) continue;
           const double cells = std::sqrt(static_cast<double>(transform.getSQCellDistance(i, j, k)));
-          const double value = ((occupied ? 1.0 - cells : cells) - kOffset) * h;
+          const double value = ((occupied ? 1.0 - cells : cells) - kNodeOffset) * h;
           field.values_[nodes.index(x, y, z)] =
               static_cast<float>(std::min(value, options.max_distance_m));
         }
@@ -254,49 +243,15 @@ DistanceSample DistanceField::sample_inside(const Eigen::Vector3d& point) const 
 
   const std::size_t dy = dimensions_[2], dx = dy * dimensions_[1];
   const float* v = values_.data() + x * dx + y * dy + z;
-  const double v000 = v[0], v001 = v[1], v010 = v[dy], v011 = v[dy + 1];
-  const double v100 = v[dx], v101 = v[dx + 1], v110 = v[dx + dy], v111 = v[dx + dy + 1];
-
-  // Along x, then y, then z; a lerp of equal numbers is exact.
-  const double x00 = v000 + tx * (v100 - v000), x01 = v001 + tx * (v101 - v001);
-  const double x10 = v010 + tx * (v110 - v010), x11 = v011 + tx * (v111 - v011);
-  const double xy0 = x00 + ty * (x10 - x00), xy1 = x01 + ty * (x11 - x01);
-
-  const double g00 = v100 - v000, g01 = v101 - v001, g10 = v110 - v010, g11 = v111 - v011;
-  const double gx0 = g00 + ty * (g10 - g00), gx1 = g01 + ty * (g11 - g01);
-
-  DistanceSample sample;
-  sample.distance = xy0 + tz * (xy1 - xy0);
-  if (sample.distance >= static_cast<double>(static_cast<float>(max_distance_))) {
-    sample.distance = max_distance_;
-    return sample;
-  }
-  sample.gradient[0] = (gx0 + tz * (gx1 - gx0)) * inverse_resolution_;
-  sample.gradient[1] = ((x10 - x00) + tz * ((x11 - x01) - (x10 - x00))) * inverse_resolution_;
-  sample.gradient[2] = (xy1 - xy0) * inverse_resolution_;
-  return sample;
+  const CellNodes nodes{v[0], v[1], v[dy], v[dy + 1], v[dx], v[dx + 1], v[dx + dy], v[dx + dy + 1]};
+  return between_nodes(nodes, tx, ty, tz, inverse_resolution_, max_distance_);
 }
 
 DistanceSample DistanceField::sample(const Eigen::Vector3d& point) const {
   if (empty()) return {max_distance_, Eigen::Vector3d::Zero()};
   const Eigen::Vector3d clamped = point.cwiseMax(lower_).cwiseMin(upper_);
-  DistanceSample sample = sample_inside(clamped);
-  if (clamped == point) return sample;
-
-  // |p - o|^2 >= |p - c|^2 + |c - o|^2 for every o in a convex set whose projection of p is c.
-  const Eigen::Vector3d out = point - clamped;
-  const double r = out.norm();
-  const double d = sample.distance;
-  const double value = d > 0.0 ? std::hypot(d, r) : d + r;
-  if (value >= max_distance_) return {max_distance_, Eigen::Vector3d::Zero()};
-  for (int axis = 0; axis < 3; ++axis) {
-    if (out[axis] != 0.0)
-      sample.gradient[axis] = out[axis] / (d > 0.0 ? value : r);
-    else if (d > 0.0)
-      sample.gradient[axis] *= d / value;
-  }
-  sample.distance = value;
-  return sample;
+  const DistanceSample sample = sample_inside(clamped);
+  return clamped == point ? sample : beyond_nodes(sample, point - clamped, max_distance_);
 }
 
 double DistanceField::distance(const Eigen::Vector3d& point) const {
@@ -305,6 +260,7 @@ double DistanceField::distance(const Eigen::Vector3d& point) const {
 
 DistanceSample WorldDistance::sample_map(const Eigen::Vector3d& point) const {
   if (map) return map->sample(point);
+  if (source) return source->sample(point);
   DistanceSample sample{max_distance(), Eigen::Vector3d::Zero()};
   if (!leaves) return sample;
   constexpr double kDot_m = 1e-9;

@@ -11,7 +11,7 @@
 /// The value is positive outside the occupied voxels, negative inside, and conservative: it is
 /// never above the true signed distance to the union of the occupied cubes (outside by
 /// a derivation, inside as far as a random search over voxel patterns shows, both in
-/// distance_field.cpp; a flat wall reads 0.62 voxels too near, an isolated voxel's corner 0).
+/// node_distances.h; a flat wall reads 0.62 voxels too near, an isolated voxel's corner 0).
 /// Nodes sit at the voxel centres of the box of interest; between them the value is trilinear and
 /// the gradient is the exact derivative of that interpolant. Where the value reaches max_distance_m
 /// it stays there and the gradient is zero; inside obstacles it is not limited.
@@ -25,6 +25,7 @@
 /// members are thread-safe and do not allocate.
 
 #include <locograph/world/distance_sample.h>
+#include <locograph/world/distance_source.h>
 #include <locograph/world/obstacles.h>
 #include <locograph/world/voxel_tree.h>
 #include <octomap/OcTree.h>
@@ -89,16 +90,23 @@ class DistanceField {
 
 /// Map and obstacles together: the smaller of the field's value and the exact distances to the
 /// obstacles at a time, at most max_distance(). Of a map that is too large for a field there are
-/// its leaves, whatever their sizes: then its distance is exact, too, and takes longer.
+/// its leaves, whatever their sizes: then its distance is exact, too, and takes longer. Where
+/// cameras fill a map, their window stands in its place.
 struct WorldDistance {
   std::shared_ptr<const DistanceField> map;  ///< may be null
   std::shared_ptr<const VoxelTree> leaves;   ///< instead of map; may be null
   double leaves_floor_z = -std::numeric_limits<double>::infinity();  ///< see VoxelTree::Query
+  std::shared_ptr<const DistanceSource> source;  ///< instead of map; may be null
   std::vector<Obstacle> obstacles;
   double max_distance_without_map_m = 1.0;
 
-  double max_distance() const { return map ? map->max_distance() : max_distance_without_map_m; }
-  bool sees_map() const { return leaves || (map && !map->empty()); }
+  double max_distance() const {
+    if (map) return map->max_distance();
+    return source ? source->max_distance() : max_distance_without_map_m;
+  }
+  bool sees_map() const { return leaves || source || (map && !map->empty()); }
+  /// Whether what is at the point has been seen; of a map and of obstacles all is.
+  bool is_known(const Eigen::Vector3d& point) const { return !source || source->is_known(point); }
   /// To the map alone.
   DistanceSample sample_map(const Eigen::Vector3d& point) const;
   DistanceSample sample(const Eigen::Vector3d& point, double time_s) const;

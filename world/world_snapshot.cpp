@@ -15,6 +15,11 @@ WorldSnapshot::WorldSnapshot(World world, double stamp_s, WorldFiles files,
   view_.validate();
 }
 
+WorldSnapshot::WorldSnapshot(World world, WorldDistance seen, double stamp_s)
+    : world_(std::move(world)), stamp_s_(stamp_s) {
+  std::call_once(distance_made_, [&] { distance_.emplace(std::move(seen)); });
+}
+
 WorldSnapshot::~WorldSnapshot() = default;
 
 const WorldDistance& WorldSnapshot::distance() const {

@@ -33,6 +33,9 @@ class WorldSnapshot {
   /// view: of distance(). Throws Error for options out of range.
   explicit WorldSnapshot(World world, double stamp_s = 0.0, WorldFiles files = {},
                          DistanceFieldOptions view = {});
+  /// seen: what distance() is to be, such as that of a window which cameras fill. The world's own
+  /// map, if there is one, is for solids() alone.
+  WorldSnapshot(World world, WorldDistance seen, double stamp_s = 0.0);
   ~WorldSnapshot();
   WorldSnapshot(const WorldSnapshot&) = delete;
   WorldSnapshot& operator=(const WorldSnapshot&) = delete;

@@ -8,6 +8,7 @@
 /// so that other work on the machine counts as little as it can.
 
 #include <locograph/common/error.h>
+#include <locograph/common/simd_level.h>
 #include <locograph/solvers/banded_solver.h>
 #include <locograph/solvers/block_cholesky.h>
 #include <locograph/solvers/kernels.h>
@@ -118,7 +119,7 @@ test::RandomSystem random_bundle(int cameras, int points) {
 Json compare(const System& system, int runs) {
   std::map<std::string, Times> best;
   for (int run = 0; run < runs; ++run) {
-    for (const std::string& level : kernel_levels()) {
+    for (const std::string& level : simd_levels()) {
       const Times times = measure_at(level, system);
       best[level].factorise = std::min(best[level].factorise, times.factorise);
       best[level].solve = std::min(best[level].solve, times.solve);
@@ -132,7 +133,7 @@ Json compare(const System& system, int runs) {
 }
 
 Json compare_all(const std::vector<std::filesystem::path>& files, int runs) {
-  Json all = {{"unit", "ms"}, {"runs", runs}, {"levels", kernel_levels()}};
+  Json all = {{"unit", "ms"}, {"runs", runs}, {"levels", simd_levels()}};
   const auto add = [&](const std::string& name, auto solver, const BlockPattern& pattern,
                        const double* values, const double* damping, const double* right) {
     std::cerr << name << "\n";

@@ -4,6 +4,7 @@
 #include <documentation/example_context.h>
 #include <documentation/example_robots.h>
 #include <documentation/example_world.h>
+#include <locograph/common/simd_level.h>
 #include <locograph/robots/robot.h>
 #include <locograph/world/collision_world.h>
 #include <locograph/world/convex_shape.h>
@@ -13,6 +14,9 @@
 #include <locograph/world/perception/depth_image.h>
 #include <locograph/world/perception/depth_png.h>
 #include <locograph/world/perception/camera_noise.h>
+#include <locograph/world/perception/field_buffers.h>
+#include <locograph/world/perception/local_map.h>
+#include <locograph/world/perception/window_transform.h>
 #include <locograph/world/point_cloud.h>
 #include <locograph/world/surfaces_of.h>
 #include <locograph/world/world_snapshot.h>
@@ -65,6 +69,12 @@ struct Context : in_world::Context {
   const std::vector<Bar> bars = world.bars;
 };
 }  // namespace leftover_map_h
+namespace distance_source_h {
+struct Context : in_world::Context {
+  LocalMap map;
+  const std::shared_ptr<const DistanceSource> source = map.field();
+};
+}  // namespace distance_source_h
 namespace link_pairs_h {
 struct Context : in_world::Context {
   const Robot robot = small_arm();
@@ -163,6 +173,34 @@ using Context = ChestCameraContext;
 namespace perception_simulated_camera_h {
 using Context = ChestCameraContext;
 }
+namespace perception_field_buffers_h {
+struct Context : in_world::Context {
+  FieldBuffers buffers{LocalField{}, 3};
+  static void fill(LocalField&) {}
+};
+}  // namespace perception_field_buffers_h
+namespace perception_local_field_h {
+struct Context : in_world::Context {
+  LocalMap map;
+  const std::shared_ptr<const LocalField> field = map.field();
+  static void slow_down() {}
+};
+}  // namespace perception_local_field_h
+namespace perception_local_map_h {
+struct Context : in_world::Context {
+  const DepthCamera camera{
+      .name = "head", .width = 4, .height = 3, .fx = 2.0, .fy = 2.0, .cx = 1.5, .cy = 1.0};
+  const DepthImage image{.width = 4, .height = 3, .depth_mm = std::vector<std::uint16_t>(12, 1500)};
+  const Eigen::Isometry3d world_from_optical = world_from_arm;
+  const Eigen::Vector3d robot_at = {0.0, 0.0, 0.8};
+};
+}  // namespace perception_local_map_h
+namespace perception_window_transform_h {
+struct Context : in_world::Context {
+  const VoxelWindow window{.resolution_m = 0.05, .size = {32, 16, 16}};
+  const std::vector<std::int8_t> log_odds = std::vector<std::int8_t>(32 * 16 * 16, 0);
+};
+}  // namespace perception_window_transform_h
 namespace planar_patches_h {
 struct Context : in_world::Context {
   const std::vector<Eigen::Vector3d> points = scanned_points();

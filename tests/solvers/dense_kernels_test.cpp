@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <locograph/common/simd_level.h>
 #include <locograph/solvers/kernels.h>
 
 #include <Eigen/Dense>
@@ -21,7 +22,7 @@ class DenseKernelsTest : public testing::TestWithParam<std::string> {
  protected:
   const DenseKernels& dense_ = kernels_at(GetParam()).dense;
 };
-INSTANTIATE_TEST_SUITE_P(Levels, DenseKernelsTest, testing::ValuesIn(kernel_levels()),
+INSTANTIATE_TEST_SUITE_P(Levels, DenseKernelsTest, testing::ValuesIn(simd_levels()),
                          [](const auto& info) { return info.param; });
 
 TEST_P(DenseKernelsTest, CholeskyOfAPanelFactorsItsTopAndDividesTheRest) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <locograph/common/error.h>
+#include <locograph/common/simd_level.h>
 #include <locograph/solvers/kernels.h>
 
 #include <algorithm>
@@ -15,7 +16,7 @@ class LevelOfTheRun : public testing::Environment {
   void SetUp() override {
     const char* wanted = std::getenv("LOCOGRAPH_SIMD");
     if (wanted == nullptr) return;
-    const std::vector<std::string> all = {"v2", "v3", "v4"}, here = kernel_levels();
+    const std::vector<std::string> all = {"v2", "v3", "v4"}, here = simd_levels();
     const auto is_in = [&](const std::vector<std::string>& levels) {
       return std::find(levels.begin(), levels.end(), wanted) != levels.end();
     };
@@ -38,13 +39,13 @@ std::string message(const std::string& level) {
 
 TEST(Kernels, TheHighestLevelRunsUnlessAnotherIsAskedFor) {
   const char* wanted = std::getenv("LOCOGRAPH_SIMD");
-  EXPECT_EQ(kernels().level, wanted != nullptr ? wanted : kernel_levels().back());
+  EXPECT_EQ(kernels().level, wanted != nullptr ? wanted : simd_levels().back());
   EXPECT_EQ(&kernels(), &kernels_at(kernels().level));
 }
 
 TEST(Kernels, EveryLevelHasItsOwn) {
   int lanes = 0;
-  for (const std::string& level : kernel_levels()) {
+  for (const std::string& level : simd_levels()) {
     const Kernels& k = kernels_at(level);
     EXPECT_EQ(k.level, level);
     EXPECT_GT(k.lanes(), lanes);
@@ -60,12 +61,12 @@ TEST(Kernels, AnUnknownLevelIsAnError) {
   for (const char* word : {"v9", "V3", "avx2", ""}) {
     EXPECT_NE(message(word).find(std::string("no level is called '") + word + "'"),
               std::string::npos);
-    EXPECT_NE(message(word).find("expected one of " + kernel_levels().front()), std::string::npos);
+    EXPECT_NE(message(word).find("expected one of " + simd_levels().front()), std::string::npos);
   }
 }
 
 TEST(Kernels, ALevelThatTheProcessorLacksIsAnError) {
-  const std::vector<std::string> here = kernel_levels();
+  const std::vector<std::string> here = simd_levels();
   if (here.front() == "portable") GTEST_SKIP() << "the processor has one level only";
   if (here.back() == "v4") GTEST_SKIP() << "the processor has all levels";
   EXPECT_NE(message("v4").find("this processor lacks level 'v4'"), std::string::npos);
