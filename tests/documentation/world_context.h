@@ -9,6 +9,7 @@
 #include <locograph/world/convex_shape.h>
 #include <locograph/world/distance_field.h>
 #include <locograph/world/octree.h>
+#include <locograph/world/perception/perception.h>
 #include <locograph/world/point_cloud.h>
 #include <locograph/world/surfaces_of.h>
 #include <locograph/world/world_snapshot.h>
@@ -66,6 +67,38 @@ struct Context : in_world::Context {
   const Robot robot = small_arm();
 };
 }  // namespace link_pairs_h
+/// CENTAURO at home, with cameras of a few pixels that see nothing.
+struct PerceptionContext : in_world::Context {
+  const std::shared_ptr<const Robot> robot = centauro();
+  const Eigen::VectorXd q = robot->named_configuration("home");
+  RobotState state = state_at(*robot, q);
+
+  static std::vector<DepthCamera> cameras_of(const Robot& robot) {
+    return {depth_camera("eye", robot.root_link(), 16, 12, 1.0)};
+  }
+  static DepthImage camera_image(double stamp_s) {
+    DepthImage image;
+    image.stamp_s = stamp_s;
+    image.width = 16;
+    image.height = 12;
+    image.depth_mm.assign(16 * 12, 0);
+    return image;
+  }
+  static void use(const std::shared_ptr<const WorldSnapshot>&) {}
+  static void use(const DepthImage&) {}
+};
+namespace perception_image_source_h {
+using Context = PerceptionContext;
+}
+namespace perception_perception_h {
+using Context = PerceptionContext;
+}
+namespace perception_perception_thread_h {
+struct Context : PerceptionContext {
+  std::unique_ptr<Perception> perception =
+      std::make_unique<Perception>(robot, cameras_of(*robot), World());
+};
+}  // namespace perception_perception_thread_h
 namespace planar_patches_h {
 struct Context : in_world::Context {
   const std::vector<Eigen::Vector3d> points = scanned_points();
