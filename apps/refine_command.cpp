@@ -135,11 +135,10 @@ void replace_world(PlanFile& file, const WorldOptions& given, const World& world
 }
 
 ExitCode refine_plan(const CommandOptions& options) {
-  check_output(options.output, {options.input, options.world.map, options.world.obstacles},
-               options.json);
-  check_perception_options(options.perception,
-                           {options.input, options.world.map, options.world.obstacles},
-                           options.json);
+  const std::vector<std::filesystem::path> inputs = {
+      options.input, options.world.map, options.world.obstacles, options.perception.known_map};
+  check_output(options.output, inputs, options.json);
+  check_perception_options(options.perception, inputs);
   WalkOptions walk_options;
   walk_options.planner.horizon = options.horizon;
   walk_options.cycle_deadline_s = 1e-3 * options.deadline_ms;

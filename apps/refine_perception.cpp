@@ -120,7 +120,7 @@ void add_perception_options(OptionParser& parser, PerceptionChoice& choice) {
 }
 
 void check_perception_options(const PerceptionChoice& choice,
-                              std::vector<std::filesystem::path> inputs, bool json) {
+                              const std::vector<std::filesystem::path>& inputs) {
   if (choice.cameras && !choice.clouds.empty()) {
     throw Error("both --cameras and --clouds", "one of them");
   }
@@ -131,9 +131,8 @@ void check_perception_options(const PerceptionChoice& choice,
     throw Error("--save-map without --cameras or --clouds", "one of them");
   }
   if (choice.save_map.empty()) return;
-  inputs.emplace_back(choice.known_map);
   if (choice.save_map == "-") throw Error("a map to standard output", "a file");
-  check_output(choice.save_map, inputs, json);
+  check_output(choice.save_map, inputs);
 }
 
 RefinePerception::RefinePerception(const PlanFile& file, const Judging& judging,

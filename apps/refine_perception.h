@@ -45,9 +45,10 @@ struct PerceptionChoice {
 /// choice must outlive the parsing.
 void add_perception_options(OptionParser& parser, PerceptionChoice& choice);
 
-/// Throws Error for options that do not go together, and where save_map cannot be written.
+/// Throws Error for options that do not go together, and for a save_map that is one of the inputs
+/// or cannot be written.
 void check_perception_options(const PerceptionChoice& choice,
-                              std::vector<std::filesystem::path> inputs, bool json);
+                              const std::vector<std::filesystem::path>& inputs);
 
 class RefinePerception {
  public:

@@ -467,7 +467,7 @@ struct Context {
 namespace online_camera_walk_h {
 /// A camera of a few pixels.
 struct Context : DriveContext {
-  const Judging judging = judging_of(graph, plan_of(graph), {.data_folder = data_folder()});
+  const Judging judging = judging_of(graph, plan_of(graph), {.data_folder = data_folder});
   const std::vector<DepthCamera> cameras = {
       depth_camera("eye", judging.robot->root_link(), 16, 12, 1.0)};
   Perception perception{judging.robot, cameras, {.surfaces = {ground()}}};

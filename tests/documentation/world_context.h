@@ -97,6 +97,9 @@ namespace perception_perception_thread_h {
 struct Context : PerceptionContext {
   std::unique_ptr<Perception> perception =
       std::make_unique<Perception>(robot, cameras_of(*robot), World());
+  struct {
+    void show(const std::shared_ptr<const WorldSnapshot>&) const {}
+  } planner;
 };
 }  // namespace perception_perception_thread_h
 namespace planar_patches_h {

@@ -2,11 +2,13 @@
 /// Perception in a thread of its own, so that whoever gives it images and whoever plans wait for
 /// nothing.
 ///
-///     PerceptionThread thread(std::move(perception), {.on_snapshot = [&](auto seen) { use(seen);
-///     }}); thread.configuration(0.0, q);                // from the drives, as they come
-///     thread.image(camera_image(0.0));             // from the cameras, as they come
-///     use(thread.newest());                        // a planner, at any time
-///     perception = thread.finish();                // all that was given has been taken in
+///     PerceptionThreadOptions options;
+///     options.on_snapshot = [&](auto seen) { planner.show(seen); };
+///     PerceptionThread thread(std::move(perception), options);
+///     thread.configuration(0.0, q);       // from the drives, as they come
+///     thread.image(camera_image(0.0));    // from the cameras, as they come
+///     use(thread.newest());               // at any time
+///     perception = thread.finish();       // all that was given has been taken in
 ///
 /// An image waits until the configuration of its stamp is known, which may come later. Of more than
 /// most_waiting images the oldest is dropped: a planner needs what is there now. Images that
