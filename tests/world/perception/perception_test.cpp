@@ -184,9 +184,10 @@ TEST(Perception, KeepsInItsMapWhatTheWindowLeaves) {
   perception.configuration(11.0, standing_at(*robot, 10.0));
   perception.image(wall_image(11.0, 0.0));
   EXPECT_EQ(perception.newest()->distance().distance({1.2, 0.0, 1.0}, 0.0), 1.0) << "far away";
-  const octomap::OcTreeNode* node = perception.map()->search(1.22, 0.01, 1.01);
+  const auto map = perception.map();
+  const octomap::OcTreeNode* node = map->search(1.22, 0.01, 1.01);
   ASSERT_NE(node, nullptr);
-  EXPECT_TRUE(perception.map()->isNodeOccupied(node));
+  EXPECT_TRUE(map->isNodeOccupied(node));
   // Back again it is known.
   perception.configuration(21.0, standing_at(*robot, 0.0));
   perception.image(wall_image(21.0, 0.0));

@@ -4,6 +4,7 @@
 #include <locograph/world/perception/perception_thread.h>
 
 #include <atomic>
+#include <limits>
 #include <thread>
 
 #include "common/sanitized.h"
@@ -50,7 +51,7 @@ TEST(PerceptionThread, SeesInTheEndWhatPerceptionWithoutAThreadSees) {
       for (int k = 0; k < kImages; ++k) thread.image(image_at(0.02 * k + 0.01));
     });
     const std::jthread planner([&] {
-      double before_s = -1e9;
+      double before_s = -std::numeric_limits<double>::infinity();
       for (int k = 0; k < 1000; ++k) {
         const std::shared_ptr<const WorldSnapshot> seen = thread.newest();
         EXPECT_GE(seen->stamp_s(), before_s) << "never back to an older world";
