@@ -2,6 +2,8 @@
 #include <locograph/apps/type_names.h>
 #include <locograph/world/octree.h>
 
+#include <cmath>
+
 namespace locograph {
 namespace {
 
@@ -44,6 +46,8 @@ Json describe_obstacles(const std::filesystem::path& path) {
     json["center_m"] = vector_json(obstacle.world_from_obstacle.translation());
     json.update(size_json(obstacle));
     json["key_frames"] = obstacle.motion.size();
+    if (std::isfinite(obstacle.appears_s)) json["appears_s"] = obstacle.appears_s;
+    if (std::isfinite(obstacle.vanishes_s)) json["vanishes_s"] = obstacle.vanishes_s;
     obstacles.push_back(json);
   }
   return {{"file", path.string()},

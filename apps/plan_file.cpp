@@ -1,7 +1,6 @@
 #include <locograph/apps/about_file.h>
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/plan_file.h>
-#include <locograph/check/judge.h>
 #include <locograph/common/data_folder.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 
@@ -71,17 +70,6 @@ Judging judging_of(const PlanFile& file, const WorldOptions& options) {
 
 CheckReport check_plan(const PlanFile& file, const Judging& judging) {
   return about_file(file.name, [&] { return judged(file.graph, file.plan, judging); });
-}
-
-std::function<CheckReport(const Motion&)> step_check(const Judging& judging) {
-  const auto judge = std::make_shared<const Judge>(judging.robot, judging.world);
-  CheckOptions options = judging.options;
-  options.starts_at_rest = false;
-  return [judge, options](const Motion& motion) {
-    CheckOptions asked = options;
-    asked.ends_at_rest = motion.slopes.back().isZero(0.0);
-    return judge->check(motion, asked);
-  };
 }
 
 }  // namespace locograph

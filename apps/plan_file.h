@@ -12,7 +12,6 @@
 #include <locograph/planners/plan/plan.h>
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -51,8 +50,5 @@ void add_world_options(OptionParser& parser, WorldOptions& options);
 Judging judging_of(const PlanFile& file, const WorldOptions& options);
 
 CheckReport check_plan(const PlanFile& file, const Judging& judging);
-
-/// The check of single steps of a plan, as walk_plan() wants it.
-std::function<CheckReport(const Motion&)> step_check(const Judging& judging);
 
 }  // namespace locograph

@@ -5,6 +5,7 @@
 #include <locograph/apps/plan_file.h>
 #include <locograph/apps/progress.h>
 #include <locograph/apps/refine_command.h>
+#include <locograph/apps/refine_perception.h>
 #include <locograph/apps/statistics.h>
 #include <locograph/common/data_folder.h>
 #include <locograph/common/stop_signals.h>
@@ -22,6 +23,7 @@ namespace {
 struct CommandOptions {
   std::string input, output;
   WorldOptions world;
+  PerceptionChoice perception;
   int horizon = 20;
   double deadline_ms = 0.0;
   double goal_tolerance_m = WalkOptions().goal_tolerance_m;
@@ -92,21 +94,34 @@ Json report_json(const WalkReport& report, const CommandOptions& options, double
   };
 }
 
-/// A refined plan is a success if it is one for whoever checks the file that is written. task: of
-/// the plan's scenario, null where it has none. Returns the seconds that took.
-double require_feasible(const PlanFile& file, const std::shared_ptr<const Task>& task,
-                        WalkReport& report) {
-  const Stopwatch watch;
-  if (!report.success()) return 0.0;
+/// The judge's word on the plan as whoever checks the file that is written will have it. task: of
+/// the plan's scenario, null where it has none.
+CheckReport final_check(const PlanFile& file, const std::shared_ptr<const Task>& task) {
   const Plan plan = plan_of(file.graph);
   const Judging judging =
       judging_of(file.graph, plan, {.task = task, .data_folder = data_folder()});
-  const CheckReport check = judged(file.graph, plan, judging);
-  if (!check.feasible) {
-    report.status = PlannerStatus::kNotFound;
-    report.reason = "refused: " + violation_text(check.worst());
+  return judged(file.graph, plan, judging);
+}
+
+/// A refined plan is a success if it is one for the judge. Where a robot went by what its cameras
+/// showed, a part of a plan is no success either if the judge refuses it.
+void take_verdict(const CheckReport& check, WalkReport& report) {
+  if (check.feasible) return;
+  const std::string refused = "refused: " + violation_text(check.worst());
+  report.reason = report.success() ? refused : refused + "; " + report.reason;
+  report.status = PlannerStatus::kNotFound;
+}
+
+/// What of the judge's word is about the world that the cameras saw.
+Json truth_json(const CheckReport& check) {
+  bool touched = false;
+  for (const Violation& violation : check.violations) {
+    touched = touched || (violation.violated && (violation.constraint == "obstacle_distance" ||
+                                                 violation.constraint == "ground_penetration"));
   }
-  return watch.seconds();
+  Json json = {{"feasible", check.feasible}, {"contact", touched}, {"min_clearance_m", nullptr}};
+  if (check.min_clearance_m) json["min_clearance_m"] = *check.min_clearance_m;
+  return json;
 }
 
 /// From now on what the command line names is the plan's world: the file that is written needs
@@ -121,8 +136,10 @@ void replace_world(PlanFile& file, const WorldOptions& given, const World& world
 }
 
 ExitCode refine_plan(const CommandOptions& options) {
-  check_output(options.output, {options.input, options.world.map, options.world.obstacles},
-               options.json);
+  const std::vector<std::filesystem::path> inputs = {
+      options.input, options.world.map, options.world.obstacles, options.perception.known_map};
+  check_output(options.output, inputs, options.json);
+  check_perception_options(options.perception, inputs);
   WalkOptions walk_options;
   walk_options.planner.horizon = options.horizon;
   walk_options.cycle_deadline_s = 1e-3 * options.deadline_ms;
@@ -136,29 +153,46 @@ ExitCode refine_plan(const CommandOptions& options) {
   check_not_input(options.output, files_of(file));
   const Judging judging = judging_of(file, options.world);
   const Stopwatch watch;
-  const auto seen = seen_world(file.graph, file.plan, judging.world->world());
-  seen->distance();
+  std::optional<RefinePerception> eyes;
+  std::shared_ptr<const WorldSnapshot> seen;
+  WorldAt world_at;
+  if (options.perception.given()) {
+    eyes.emplace(file, judging, options.perception);
+    world_at = eyes->world_at();
+    eyes->equip(walk_options);
+  } else {
+    seen = seen_world(file.graph, file.plan, judging.world->world());
+    seen->distance();
+    world_at = [&seen](int executed) { return executed == 0 ? seen : nullptr; };
+    walk_options.verify = step_check(judging);
+  }
   const double field_s = watch.seconds();
   if (options.world.given()) replace_world(file, options.world, judging.world->world());
 
-  walk_options.verify = step_check(judging);
   const double configurations = static_cast<double>(file.plan.slots.size());
   progress.emplace("refining " + options.input);
   walk_options.on_cycle = [&](const CycleReport& cycle) {
     progress->show((cycle.executed + 1) / configurations);
   };
   const FinishOnSignal finish;
-  WalkReport report = about_file(file.name, [&] {
-    return walk_plan(
-        file.graph, [&seen](int executed) { return executed == 0 ? seen : nullptr; }, walk_options);
-  });
+  WalkReport report =
+      about_file(file.name, [&] { return walk_plan(file.graph, world_at, walk_options); });
   progress.emplace("judging " + options.input);
-  const double judge_s = require_feasible(file, judging.task, report);
+  const Stopwatch judge_watch;
+  std::optional<CheckReport> check;
+  if (report.success() || (eyes && report.configurations > 1)) {
+    check = final_check(file, judging.task);
+    take_verdict(*check, report);
+  }
+  const double judge_s = check ? judge_watch.seconds() : 0.0;
   progress.emplace("writing " + options.output);
   write_graph(file.graph, options.output);
+  if (eyes) eyes->save_map();
   progress.reset();
 
-  const Json json = report_json(report, options, field_s, judge_s);
+  Json json = report_json(report, options, field_s, judge_s);
+  if (eyes) eyes->tell(json);
+  if (eyes && check) json["truth"] = truth_json(*check);
   if (options.json) {
     print_result(json, true);
     return report.success() ? kDone : kNo;
@@ -172,8 +206,8 @@ ExitCode refine_plan(const CommandOptions& options) {
              " degrees of freedom\n" + (report.success() ? "" : "not refined: ") + report.reason +
              "\ncycle time " + ms("p50") + " ms (p95 " + ms("p95") + ", max " + ms("max") +
              ")\nends " + short_number(report.goal_distance_m) + " m and " +
-             short_number(report.goal_angle_rad) +
-             " rad from the goal\nwritten: " + options.output + '\n');
+             short_number(report.goal_angle_rad) + " rad from the goal\n" +
+             (eyes ? eyes->text() : "") + "written: " + options.output + '\n');
   return report.success() ? kDone : kNo;
 }
 
@@ -188,6 +222,7 @@ Command add_refine(OptionParser& app) {
   parser.add_option("-o,--output", o.output, "Refined plan to write (.g2o); - is standard output")
       .required();
   add_world_options(parser, o.world);
+  add_perception_options(parser, o.perception);
   parser.add_option("--horizon", o.horizon, "Configurations that one cycle optimises")
       .show_default();
   parser.add_option("--deadline-ms", o.deadline_ms, "Time one cycle may take; 0: no limit")

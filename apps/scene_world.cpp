@@ -58,6 +58,8 @@ Json obstacle_json(const Obstacle& obstacle) {
     json["keyframes"].push_back({{"time", frame.time_s}, {"pose", pose_json(frame.pose)}});
   }
   json["repeat"] = obstacle.repeat_s;
+  if (std::isfinite(obstacle.appears_s)) json["appears"] = obstacle.appears_s;
+  if (std::isfinite(obstacle.vanishes_s)) json["vanishes"] = obstacle.vanishes_s;
   return json;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace locograph {
 namespace {
@@ -10,6 +11,7 @@ namespace {
 /// How much further than the cutoff is looked between vertices: what is beyond both may come near
 /// by as much before an interval has to be halved.
 constexpr double kFurther_m = 0.25;
+constexpr double kEver_s = std::numeric_limits<double>::infinity();
 
 /// One of the stance's contacts, or of its grasps, is of these links.
 bool holds(const JudgedStance* stance, const std::vector<int>& links, bool grasps = false) {
@@ -204,7 +206,21 @@ void ClearanceSearch::run_step(int step, const JudgedStance* stance, const Sampl
   Sample begin = from, end = to;
   begin.fraction = 0.0;
   end.fraction = 1.0;
+  const double begin_s = standing_ ? from_s_ : context_.motion.time_s[std::size_t(step)];
+  const double end_s = standing_ ? to_s_ : context_.motion.time_s[std::size_t(step) + 1];
+  for (const double change_s : obstacle_path_.changes_s()) {
+    if (self_ || !(change_s > begin_s && change_s <= end_s)) continue;
+    const double before_s = std::exchange(earliest_s_, change_s);
+    latest_s_ = change_s;
+    Sample change = sample(step, (change_s - begin_s) / (end_s - begin_s), stance);
+    earliest_s_ = before_s;
+    refine(step, stance, begin, change);
+    earliest_s_ = change_s;
+    latest_s_ = kEver_s;
+    begin = std::move(change);
+  }
   refine(step, stance, begin, end);
+  earliest_s_ = -kEver_s;
 }
 
 void ClearanceSearch::stand(int vertex, const JudgedStance* stance, double from_s, double to_s) {

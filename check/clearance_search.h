@@ -8,6 +8,8 @@
 ///
 /// A distance changes by no more than what the things concerned travel. If it is d0 and d1 at the
 /// ends of an interval in which they travel at most L, it is at least (d0 + d1 - L) / 2 inside.
+/// Obstacles come and go at ends of intervals only: there steps are cut, and looked at with those
+/// that are there before or after.
 /// Intervals whose bound could matter (see CheckOptions::clearance_resolution_m) are halved: for a
 /// violation, and for a new smallest distance to obstacles and of the robot to itself.
 ///
@@ -24,14 +26,16 @@
 ///
 /// Until the first time of a motion the robot stands in its first configuration, after the last one
 /// in the last until CheckOptions::until_s: obstacles that move are looked at all along their way,
-/// once round where they repeat it. Nobody knows when a plan of stances is carried out: they are
-/// looked at likewise in each configuration.
+/// once round where they repeat it, and those that appear meanwhile. Nobody knows when a plan of
+/// stances is carried out: they are looked at likewise in each configuration.
 
 #include <locograph/check/check_context.h>
 #include <locograph/check/obstacle_path.h>
 #include <locograph/check/violation_tally.h>
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -84,8 +88,9 @@ class ClearanceSearch {
   /// In the configuration of a vertex, while obstacles move.
   void stand(int vertex, const JudgedStance* stance, double from_s, double to_s);
   double time_s(int step, double fraction) const {
-    return standing_ ? from_s_ + fraction * (to_s_ - from_s_)
-                     : context_.curve.time_s(step, fraction);
+    const double time_s =
+        standing_ ? from_s_ + fraction * (to_s_ - from_s_) : context_.curve.time_s(step, fraction);
+    return std::clamp(time_s, earliest_s_, latest_s_);
   }
   double path_bound(int step, const Sample& from, const Sample& to, const Channel& channel) const;
 
@@ -95,6 +100,9 @@ class ClearanceSearch {
   ObstaclePath obstacle_path_;
   bool standing_ = false;  // fractions are of the time between these
   double from_s_ = 0.0, to_s_ = 0.0;
+  // Of samples: fractions tell times up to rounding, which obstacles come and go at exactly.
+  double earliest_s_ = -std::numeric_limits<double>::infinity();
+  double latest_s_ = std::numeric_limits<double>::infinity();
   double further_m_;
   std::vector<Channel> channels_;
   bool keeps_from_surfaces_ = false;

@@ -7,6 +7,11 @@
 namespace locograph {
 ObstaclePath::ObstaclePath(std::span<const Obstacle> obstacles) {
   for (const Obstacle& obstacle : obstacles) {
+    for (const double time_s : {obstacle.appears_s, obstacle.vanishes_s}) {
+      if (std::isfinite(time_s)) changes_s_.push_back(time_s);
+    }
+    const double appears_s = std::max(0.0, obstacle.appears_s);
+    end_s_ = std::max(end_s_, appears_s);
     if (obstacle.motion.empty()) continue;
     Track track;
     track.repeats = obstacle.repeat_s > 0.0;
@@ -20,8 +25,11 @@ ObstaclePath::ObstaclePath(std::span<const Obstacle> obstacles) {
     };
     for (const KeyFrame& frame : obstacle.motion) append(frame.time_s, frame.pose);
     if (track.repeats) append(obstacle.repeat_s, obstacle.world_from_obstacle);
+    end_s_ = std::max(end_s_, track.time_s.back() + (track.repeats ? appears_s : 0.0));
     tracks_.push_back(std::move(track));
   }
+  std::ranges::sort(changes_s_);
+  changes_s_.erase(std::ranges::unique(changes_s_).begin(), changes_s_.end());
 }
 
 double ObstaclePath::Track::length_until(double time) const {
@@ -38,12 +46,6 @@ double ObstaclePath::Track::length_until(double time) const {
   if (after == 0) return length;
   const double share = (time - time_s[after - 1]) / (time_s[after] - time_s[after - 1]);
   return length + length_m[after - 1] + share * (length_m[after] - length_m[after - 1]);
-}
-
-double ObstaclePath::end_s() const {
-  double end = 0.0;
-  for (const Track& track : tracks_) end = std::max(end, track.time_s.back());
-  return end;
 }
 
 double ObstaclePath::bound(double from_s, double to_s) const {

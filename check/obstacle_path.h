@@ -1,8 +1,9 @@
 #pragma once
-/// How far moving obstacles can get in an interval of time.
+/// How far moving obstacles can get in an interval of time, and when obstacles come and go.
 ///
 ///     locograph::ObstaclePath path(obstacles);
 ///     double at_most_m = path.bound(2.0, 2.5);  // no point of any obstacle travels further
+///     for (double time_s : path.changes_s()) look_at(time_s);  // one appears or vanishes
 ///
 /// By world/obstacle_way.h, added up along the key frames.
 
@@ -19,8 +20,11 @@ class ObstaclePath {
 
   /// Path length [m] between two times, in either order: the largest of all obstacles.
   double bound(double from_s, double to_s) const;
-  /// When every obstacle has been wherever it gets to, counted from time 0; 0: none moves.
-  double end_s() const;
+  /// After so long, from any time that is not negative, every obstacle has been wherever it gets to
+  /// from then on; 0: none moves or appears.
+  double end_s() const { return end_s_; }
+  /// At which an obstacle appears or vanishes, ascending.
+  const std::vector<double>& changes_s() const { return changes_s_; }
 
  private:
   struct Track {
@@ -29,6 +33,8 @@ class ObstaclePath {
     double length_until(double time_s) const;
   };
   std::vector<Track> tracks_;  // of the obstacles that move
+  double end_s_ = 0.0;
+  std::vector<double> changes_s_;
 };
 
 }  // namespace locograph

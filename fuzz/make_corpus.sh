@@ -57,7 +57,7 @@ raw_string tests/world/obstacles_test.cpp kGood >"$seeds/obstacles/good" || true
 snippets tests/world/obstacles_test.cpp '\\n<' | tr -d '\n' | sed 's/<\(sphere\|box\|cyl\)/\n<\1/g' |
   wrap obstacles '<obstacles version="1">' '</obstacles>'
 printf '%s' '<obstacles version="1"><box name="cart" center="2 -1 0.5" size="0.6 0.4 1" ' \
-  'repeat="10"><keyframe time="4" position="2 1 0.5" rpy="0 0 1.57"/><keyframe time="5" ' \
+  'repeat="10" appears="1" vanishes="7"><keyframe time="4" position="2 1 0.5" rpy="0 0 1.57"/><keyframe time="5" ' \
   'position="2 1 0.5"/></box><sphere center="0 0 0" radius="1" rotation="1 0 0 0 1 0 0 0 1"/>' \
   '<cylinder center="3 1 1" radius="0.15" height="2"/></obstacles>' >"$seeds/obstacles/kinds"
 cp "$root"/planners/scenarios/*.xml "$seeds/scenario"

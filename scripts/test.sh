@@ -32,13 +32,13 @@ configure_sanitized() {
 }
 
 # The libraries' unit tests and examples; the command itself and the installed package are tested
-# in Release, planners_thread_tests under ThreadSanitizer.
+# in Release, those of threads under ThreadSanitizer.
 configure_sanitized build-asan address,undefined
 mapfile -t unit_tests < <(
   cd "$root/tests"
   sed -n 's/^locograph_test(\([a-z_]*\).*/\1/p' \
     {common,core,solvers,types,robots,world,check,plugins,planners}/CMakeLists.txt |
-    grep -vx planners_thread_tests
+    grep -vx '.*_thread_tests'
 )
 build build-asan --target "${unit_tests[@]}" header_examples
 say "running ${unit_tests[*]} and the examples of headers under AddressSanitizer and UBSan"
@@ -46,9 +46,9 @@ ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 run_tests build-asa
   --tests-regex "^($(IFS='|' && echo "${unit_tests[*]}")|header_examples)" >&2
 
 configure_sanitized build-tsan thread
-build build-tsan --target planners_thread_tests
-say "running planners_thread_tests under ThreadSanitizer"
-TSAN_OPTIONS=halt_on_error=1 run_tests build-tsan --tests-regex '^planners_thread_tests$' >&2
+build build-tsan --target planners_thread_tests world_thread_tests
+say "running planners_thread_tests and world_thread_tests under ThreadSanitizer"
+TSAN_OPTIONS=halt_on_error=1 run_tests build-tsan --tests-regex '_thread_tests$' >&2
 
 "$root/scripts/fuzz.sh" 20000x
 

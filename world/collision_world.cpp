@@ -111,6 +111,7 @@ CollisionWorld::Closest CollisionWorld::environment_distance(
   const auto done = [&] { return best.distance < stop_below; };
 
   for (std::size_t o = 0; o < parts.solids->obstacles.size() && !done(); ++o) {
+    if (!parts.solids->obstacles[o].is_there(time_s)) continue;
     const Eigen::Isometry3d world_from_obstacle = parts.solids->obstacles[o].pose_at(time_s);
     const ConvexShape& shape = parts.solids->obstacle_shapes[o];
     for (std::size_t b = 0; b < parts.bodies.size() && !done(); ++b) {
@@ -266,6 +267,7 @@ struct CollisionWorld::Parts::Search {
 
   void obstacles() {
     for (std::size_t o = 0; o < parts.solids->obstacles.size(); ++o) {
+      if (!parts.solids->obstacles[o].is_there(query.time_s)) continue;
       const Eigen::Isometry3d world_from_obstacle =
           parts.solids->obstacles[o].pose_at(query.time_s);
       const ConvexShape& shape = parts.solids->obstacle_shapes[o];

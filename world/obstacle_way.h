@@ -18,7 +18,8 @@ namespace locograph {
 double way_m(const Obstacle& obstacle, const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
 
 /// The obstacle at rest, at places all along its motion: no point of it travels further than
-/// apart_m from one to the next, or than a 500th part of its way. One at rest is itself.
+/// apart_m from one to the next, or than a 500th part of its way. One at rest is itself. All of
+/// them are always there.
 std::vector<Obstacle> all_along(const Obstacle& obstacle, double apart_m);
 
 /// Of its fastest point, anywhere along its motion and back to its first pose; 0 at rest.

@@ -128,6 +128,8 @@ std::vector<Obstacle> all_along(const Obstacle& obstacle, double apart_m) {
   Obstacle still = obstacle;
   still.motion.clear();
   still.repeat_s = 0.0;
+  still.appears_s = Obstacle().appears_s;
+  still.vanishes_s = Obstacle().vanishes_s;
   std::vector<Obstacle> all = {still};
   for (std::size_t i = 1; i < corners.size(); ++i) {
     const double steps = std::ceil(way_m(obstacle, corners[i - 1], corners[i]) / apart_m);
@@ -140,6 +142,11 @@ std::vector<Obstacle> all_along(const Obstacle& obstacle, double apart_m) {
 }
 
 DistanceSample Obstacle::sample(const Eigen::Vector3d& point, double time_s) const {
+  if (!is_there(time_s)) return {std::numeric_limits<double>::infinity(), Eigen::Vector3d::Zero()};
+  return sample_shape(point, time_s);
+}
+
+DistanceSample Obstacle::sample_shape(const Eigen::Vector3d& point, double time_s) const {
   const Eigen::Isometry3d pose = pose_at(time_s);
   const Eigen::Vector3d local = pose.linear().transpose() * (point - pose.translation());
   DistanceSample result;
@@ -174,6 +181,10 @@ void Obstacle::validate() const {
   if (repeat_s != 0.0 && (!std::isfinite(repeat_s) || repeat_s <= last || motion.empty()))
     throw Error(owner + ": period " + std::to_string(repeat_s) + " s",
                 "key frames and a period longer than the last time");
+  if (!(appears_s < vanishes_s))
+    throw Error(owner + ": there from " + std::to_string(appears_s) + " s to " +
+                    std::to_string(vanishes_s) + " s",
+                "a time at which it vanishes after the one at which it appears");
 }
 
 }  // namespace locograph

@@ -20,14 +20,19 @@
 /// between the position is linear and the orientation turns at constant rate about one axis. A key
 /// frame without `rpy` keeps the orientation of the one before. After the last key frame the
 /// obstacle stays; with `repeat` (a period longer than the last time) it returns to its first pose
-/// at the end of the period and starts again. `rpy` may be replaced by `rotation`, the nine entries
-/// of the rotation matrix row by row, which is how orientations are saved that rpy would round.
-/// Names are optional and unique if present. Any mistake throws Error with file and line.
+/// at the end of the period and starts again. An obstacle is there from `appears` to `vanishes`
+/// (seconds, both included; each optional: it has always been there, it stays), whatever its motion
+/// does meanwhile: `<box appears="3" vanishes="9" ...>`. `rpy` may be replaced by `rotation`, the
+/// nine entries of the rotation matrix row by row, which is how orientations are saved that rpy
+/// would round. Names are optional and unique if present. Any mistake throws Error with file and
+/// line.
 
 #include <locograph/world/distance_sample.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -49,19 +54,32 @@ struct Obstacle {
   Eigen::Vector3d size = Eigen::Vector3d::Zero();
   std::vector<KeyFrame> motion;  ///< after time 0; empty: at rest
   double repeat_s = 0.0;         ///< period; 0: the motion happens once
+  /// It is there from the one time to the other, both included; infinite: always.
+  double appears_s = -std::numeric_limits<double>::infinity();
+  double vanishes_s = std::numeric_limits<double>::infinity();
+
+  bool is_there(double time_s) const { return appears_s <= time_s && time_s <= vanishes_s; }
+  /// At some time between these, in either order.
+  bool is_there(double from_s, double to_s) const {
+    return appears_s <= std::max(from_s, to_s) && std::min(from_s, to_s) <= vanishes_s;
+  }
 
   /// Pose at a time [s]; times before 0 give the pose at 0.
   Eigen::Isometry3d pose_at(double time_s) const;
 
   /// Exact signed distance to the surface [m], and its gradient (a unit vector; where it is not
-  /// unique, e.g. at the centre of a sphere, one of the possible ones).
+  /// unique, e.g. at the centre of a sphere, one of the possible ones). Where the obstacle is not
+  /// there, infinity and zero.
   DistanceSample sample(const Eigen::Vector3d& point, double time_s) const;
   double distance(const Eigen::Vector3d& point, double time_s) const {
     return sample(point, time_s).distance;
   }
 
+  /// The same of its shape at its pose, whether it is there or not.
+  DistanceSample sample_shape(const Eigen::Vector3d& point, double time_s) const;
+
   /// Throws Error when a size is not positive and finite, a pose is not finite or not a rotation,
-  /// or times do not increase.
+  /// times do not increase, or the obstacle vanishes before it appears.
   void validate() const;
 };
 

@@ -75,17 +75,20 @@ class Reader {
     Obstacle out;
     const std::string_view kind = e.Name();
     if (kind == "box") {
-      only_attributes(e, {"name", "center", "rpy", "rotation", "repeat", "size"});
+      only_attributes(
+          e, {"name", "center", "rpy", "rotation", "repeat", "appears", "vanishes", "size"});
       out.shape = Obstacle::Shape::kBox;
       const std::vector<double> extents = numbers(e, "size", 3);
       out.size = Eigen::Vector3d(extents[0], extents[1], extents[2]);
       for (const double extent : extents) require_size(e, "size", extent);
     } else if (kind == "sphere") {
-      only_attributes(e, {"name", "center", "rpy", "rotation", "repeat", "radius"});
+      only_attributes(
+          e, {"name", "center", "rpy", "rotation", "repeat", "appears", "vanishes", "radius"});
       out.shape = Obstacle::Shape::kSphere;
       out.size[0] = size(e, "radius");
     } else if (kind == "cylinder") {
-      only_attributes(e, {"name", "center", "rpy", "rotation", "repeat", "radius", "height"});
+      only_attributes(e, {"name", "center", "rpy", "rotation", "repeat", "appears", "vanishes",
+                          "radius", "height"});
       out.shape = Obstacle::Shape::kCylinder;
       out.size[0] = size(e, "radius");
       out.size[1] = size(e, "height");
@@ -101,6 +104,7 @@ class Reader {
     }
     out.world_from_obstacle = pose(e, "center", Eigen::Matrix3d::Identity());
     key_frames(e, out);
+    presence(e, out);
     if (const double speed = fastest_m_s(out); !(speed <= ranges::kObstacleSpeed_m_s))
       fail(e.GetLineNum(), "the obstacle moves at up to " + brief(speed) + " m/s",
            "at most " + brief(ranges::kObstacleSpeed_m_s) + " m/s (positions are in metres)");
@@ -136,6 +140,22 @@ class Reader {
     if (out.repeat_s <= last)
       fail(e.GetLineNum(), "repeat=\"" + text(e, "repeat") + "\"",
            "a period longer than the last key frame's time");
+  }
+
+  void presence(const XMLElement& e, Obstacle& out) const {
+    if (e.Attribute("appears") != nullptr) {
+      out.appears_s = time(e, "appears");
+      if (!(out.appears_s >= 0.0))
+        fail(e.GetLineNum(), "appears=\"" + text(e, "appears") + "\"",
+             "seconds from the start of the plan, 0 or more");
+    }
+    if (e.Attribute("vanishes") != nullptr) {
+      out.vanishes_s = time(e, "vanishes");
+      const double appears_s = std::max(0.0, out.appears_s);
+      if (!(out.vanishes_s > appears_s))
+        fail(e.GetLineNum(), "vanishes=\"" + text(e, "vanishes") + "\"",
+             "seconds, later than it appears (" + brief(appears_s) + ")");
+    }
   }
 
   Eigen::Isometry3d pose(const XMLElement& e, const char* position,
@@ -303,6 +323,10 @@ void save_obstacles(std::span<const Obstacle> obstacles, const std::filesystem::
       e->SetAttribute("height", number(size[1]).c_str());
     put_pose(*e, "center", obstacle.world_from_obstacle);
     if (obstacle.repeat_s > 0.0) e->SetAttribute("repeat", number(obstacle.repeat_s).c_str());
+    if (std::isfinite(obstacle.appears_s))
+      e->SetAttribute("appears", number(obstacle.appears_s).c_str());
+    if (std::isfinite(obstacle.vanishes_s))
+      e->SetAttribute("vanishes", number(obstacle.vanishes_s).c_str());
     for (const KeyFrame& frame : obstacle.motion) {
       XMLElement* k = e->InsertNewChildElement("keyframe");
       k->SetAttribute("time", number(frame.time_s).c_str());

@@ -49,6 +49,10 @@ class Walk {
       const bool inside = i > 0 && i + 1 < planner_.plan_size();
       faster_.push_back(inside ? ratio(curve.slope(i), careful_slope(model_, planned_, i)) : 0.0);
     }
+    if (options_.pace && !planner_.plan().segments.empty()) {
+      throw Error("a plan that tells its segments and how long they take",
+                  "one without, where steps may take longer");
+    }
     report_.dof = model_.tangent_size();
     report_.status = PlannerStatus::kSolved;
     report_.reason = "every configuration is feasible";
@@ -80,6 +84,7 @@ class Walk {
     const Stopwatch watch;
     if (auto world = world_at ? world_at(executed) : nullptr) planner_.show(std::move(world));
     report_.map_update_s.push_back(watch.seconds());
+    if (options_.pace) go_at(executed, options_.pace(executed));
     const CycleReport cycle =
         planner_.cycle(executed, {.deadline = Deadline::of_limit(options_.cycle_deadline_s)});
     report_.cycles.push_back(cycle);
@@ -115,6 +120,20 @@ class Walk {
   VertexConfiguration& vertex(int i) {
     const int slot = planner_.plan().slots[static_cast<std::size_t>(i)];
     return graph_.vertex(VertexId<VertexConfiguration>{slot});
+  }
+
+  /// The steps from here on take as many times as long as they were planned.
+  void go_at(int executed, double pace) {
+    if (pace == pace_) return;
+    double time_s = vertex(executed).time_s, before_s = time_s;
+    for (int i = executed + 1; i < planner_.plan_size(); ++i) {
+      const double duration_s = vertex(i).time_s - before_s;
+      before_s = vertex(i).time_s;
+      time_s += duration_s * pace / pace_;
+      vertex(i).time_s = time_s;
+      vertex(i).slopes *= pace_ / pace;
+    }
+    pace_ = pace;
   }
 
   /// Decides how fast the robot passes a configuration: as fast as fits the window after it, and as
@@ -239,6 +258,7 @@ class Walk {
   const Robot& model_;
   const Motion planned_;
   std::vector<double> faster_;  // than careful, of slopes of the plan
+  double pace_ = 1.0;           // how many times as long as planned steps take
   WalkReport report_;
 };
 

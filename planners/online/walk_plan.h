@@ -37,6 +37,10 @@ struct WalkOptions {
   /// only now is it known how the robot accelerates between them, and slip of wheels counts over a
   /// stretch. May be empty: then the local planner alone decides.
   std::function<CheckReport(const Motion&)> verify = {};
+  /// How many times as long as planned the steps after the executed configuration are to take, 1 or
+  /// more, asked after the world was shown. May be empty: as planned. Other times than planned do
+  /// not go with a plan that tells its segments.
+  std::function<double(int executed)> pace = {};
 
   /// Throws Error naming the option that is out of range.
   void validate() const;

@@ -36,13 +36,16 @@ class AsPlanned {
   std::vector<Eigen::VectorXd> kept_;
 };
 
-/// The name of the obstacle that is nearest to a point, or the map.
-std::string nearest_thing(const WorldDistance& world, const Eigen::Vector3d& point, double time_s) {
+/// The name of the obstacle that is nearest to a point at a time, of those that are there since
+/// another one, or the map.
+std::string nearest_thing(const WorldDistance& world, const Eigen::Vector3d& point, double since_s,
+                          double time_s) {
   std::string name = "the map";
   double nearest =
       world.sees_map() ? world.sample_map(point).distance : std::numeric_limits<double>::infinity();
   for (const Obstacle& obstacle : world.obstacles) {
-    const double distance = obstacle.distance(point, time_s);
+    if (!obstacle.is_there(since_s, time_s)) continue;
+    const double distance = obstacle.sample_shape(point, time_s).distance;
     if (distance >= nearest) continue;
     nearest = distance;
     name = obstacle.name;
@@ -60,8 +63,9 @@ std::string obstacle_of(const OnlinePlan& plan, const ConstraintViolation& viola
   state.update(graph.state(plan.slot(at)));
   const CollisionSphere& sphere =
       plan.plan().robot->spheres[static_cast<std::size_t>(violation.row)];
+  const bool on_its_way = type == typeid(EdgeSweptObstacleDistance);
   return nearest_thing(plan.world().distance(), state.world_from_link(sphere.link) * sphere.center,
-                       plan.time_s(at));
+                       plan.time_s(on_its_way ? at - 1 : at), plan.time_s(at));
 }
 
 }  // namespace

@@ -232,4 +232,15 @@ std::optional<CheckReport> judged(const Motion& motion, const Judging& judging,
   return report;
 }
 
+std::function<CheckReport(const Motion&)> step_check(const Judging& judging) {
+  const auto judge = std::make_shared<const Judge>(judging.robot, judging.world);
+  CheckOptions options = judging.options;
+  options.starts_at_rest = false;
+  return [judge, options](const Motion& motion) {
+    CheckOptions asked = options;
+    asked.ends_at_rest = motion.slopes.back().isZero(0.0);
+    return judge->check(motion, asked);
+  };
+}
+
 }  // namespace locograph

@@ -29,6 +29,7 @@
 #include <locograph/world/world_snapshot.h>
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -72,5 +73,8 @@ CheckReport judged(const Graph& graph, const Plan& plan, const Judging& judging)
 /// The same of motion_of(graph, plan); nothing when the job ends before the check does.
 std::optional<CheckReport> judged(const Motion& motion, const Judging& judging,
                                   const JobControl& job);
+
+/// The check of single steps of a plan, as walk_plan() wants it.
+std::function<CheckReport(const Motion&)> step_check(const Judging& judging);
 
 }  // namespace locograph

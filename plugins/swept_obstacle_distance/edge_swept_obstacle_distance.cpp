@@ -1,5 +1,6 @@
 #include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace locograph {
@@ -78,6 +79,7 @@ class Step {
         a_(a),
         b_(b) {
     for (const Obstacle& obstacle : world_.obstacles) {
+      if (!is_there(obstacle)) continue;
       const ObstacleStep step = obstacle_step(obstacle, a.time_s, b.time_s);
       world_moves_m_ = std::max(world_moves_m_, step.shift.norm() + step.turn);
     }
@@ -98,6 +100,7 @@ class Step {
 
  private:
   double time_at(double fraction) const { return a_.time_s + fraction * (b_.time_s - a_.time_s); }
+  bool is_there(const Obstacle& obstacle) const { return obstacle.is_there(a_.time_s, b_.time_s); }
 
   /// At any time a centre of the link's spheres is within radius − r of the point on the way of the
   /// bound's centre, and that is within half its length of its middle.
@@ -109,8 +112,14 @@ class Step {
                                              .norm();  // of a unit vector, at most
     const double half_gap = (length + turn * bound.radius + world_moves_m_) / (2.0 * samples_);
     const double reach = bound.radius + margin_m_ + half_gap + 0.5 * length + world_moves_m_;
-    return reach < world_.max_distance() &&
-           world_.distance(0.5 * (from + to), time_at(0.5)) > reach;
+    if (reach >= world_.max_distance()) return false;
+    const Eigen::Vector3d middle = 0.5 * (from + to);
+    const double time_s = time_at(0.5);
+    return world_.distance(middle, time_s) > reach &&
+           std::ranges::none_of(world_.obstacles, [&](const Obstacle& obstacle) {
+             return is_there(obstacle) && !obstacle.is_there(time_s) &&
+                    obstacle.sample_shape(middle, time_s).distance <= reach;
+           });
   }
 
   Worst worst_of(int sphere) const {
@@ -128,8 +137,9 @@ class Step {
       }
     }
     for (const Obstacle& obstacle : world_.obstacles) {
+      if (!is_there(obstacle)) continue;
       const auto sample = [&](const Eigen::Vector3d& point, double fraction) {
-        return obstacle.sample(point, time_at(fraction));
+        return obstacle.sample_shape(point, time_at(fraction));
       };
       if (obstacle.motion.empty()) {
         try_samples(from, way, at_rest, worst, sample);

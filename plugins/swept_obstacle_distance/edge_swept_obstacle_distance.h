@@ -15,7 +15,8 @@
 /// next to it sees p within √(ρ² + h²). Too few samples make the edge pessimistic (by h²/2ρ where
 /// h is small), never blind. An obstacle that moves counts with the way relative to it: h is half
 /// the gap of c_b − c_a − (its displacement), and more by how far it turns its surface; it is taken
-/// to move evenly between the two times. A map answers with max_distance() at most: where
+/// to move evenly between the two times. One that is there for a part of the step counts all along
+/// it. A map answers with max_distance() at most: where
 /// √(ρ² + h²) exceeds that, the step counts as violated, unknown as it is.
 ///
 /// Not covered: the two ends themselves, which are EDGE_OBSTACLE_DISTANCE's, and the arc by which a

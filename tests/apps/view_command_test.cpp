@@ -67,6 +67,16 @@ TEST_F(ViewPlan, ObstaclesKeepShapeAndMotion) {
   EXPECT_EQ(roller["size"], nlohmann::json({0.2, 0.6}));
   EXPECT_EQ(roller["repeat"], 9.0);
   EXPECT_EQ(roller["keyframes"][0]["pose"], nlohmann::json({3, 2, 0.3, 0, 0, 0, 1}));
+  EXPECT_FALSE(roller.contains("appears") || roller.contains("vanishes"));
+}
+
+TEST_F(ViewPlan, ObstaclesAreShownOnlyWhileTheyAreThere) {
+  runner.write("passing.xml",
+               "<obstacles version=\"1\"><sphere center=\"9 0 0\" radius=\"0.1\" appears=\"3\" "
+               "vanishes=\"4.5\"/></obstacles>\n");
+  const nlohmann::json scene = view(runner, "p.g2o --obstacles passing.xml --no-check");
+  EXPECT_EQ(scene["obstacles"][0]["appears"], 3.0);
+  EXPECT_EQ(scene["obstacles"][0]["vanishes"], 4.5);
 }
 
 TEST_F(ViewPlan, ViolationsSayWhereAndWhen) {

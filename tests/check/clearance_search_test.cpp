@@ -223,6 +223,31 @@ TEST(ClearanceSearch, LooksAllAlongTheWayOfObstaclesInAPlanOfStances) {
   }
 }
 
+TEST(ClearanceSearch, FindsAnObstacleThatIsThereForAnInstantAlsoInAPlanOfStances) {
+  const Robot robot = load_centauro();
+  const Eigen::VectorXd home = robot.named_configuration("home");
+  Motion motion{{0.0, 1.0}, {home, home}, {}, {}};
+  Obstacle ball;
+  ball.shape = Obstacle::Shape::kSphere;
+  ball.size = {5.0, 0.0, 0.0};
+  for (const double appears_s : {1.0 / 3.0, 1.0, 2.0}) {
+    ball.appears_s = appears_s;
+    ball.vanishes_s = std::nextafter(appears_s, 3.0);
+    for (const bool stances_only : {false, true}) {
+      motion.stances_only = stances_only;
+      Searched searched(robot, {ball}, motion);
+      searched.context.usable.vertices = {true, true};
+      searched.context.usable.steps = {!stances_only, false};
+      ViolationTally tally("distance", "m", 0.0, Worse::kLower, 2);
+      search(searched, Kind::kObstacles, tally);
+      ASSERT_EQ(tally.result().violated, stances_only || appears_s <= 1.0) << appears_s;
+      if (tally.result().violated) {
+        EXPECT_EQ(tally.result().time_s, appears_s);
+      }
+    }
+  }
+}
+
 TEST(ClearanceSearch, LooksAtFewSamplesWhereNothingIsNear) {
   const Robot robot = load_centauro();
   Random random(1);
@@ -396,6 +421,23 @@ TEST(ObstaclePath, BoundsWhatEveryPointTravels) {
     EXPECT_LE(length, path.bound(begin, end) + 1e-9);
     EXPECT_EQ(path.bound(begin, end), path.bound(end, begin));
   }
+}
+
+TEST(ObstaclePath, KnowsWhenObstaclesComeAndGo) {
+  Obstacle ball, other, cart;
+  ball.appears_s = other.vanishes_s = 3.0;
+  ball.vanishes_s = 9.0;
+  EXPECT_EQ(ObstaclePath(std::vector{other}).end_s(), 0.0);
+  EXPECT_EQ(ObstaclePath(std::vector{ball, other}).end_s(), 3.0);
+  EXPECT_EQ(ObstaclePath(std::vector{ball, other}).changes_s(), (std::vector{3.0, 9.0}));
+  cart.size.setOnes();
+  cart.motion = {{2.0, Eigen::Isometry3d::Identity()}};
+  EXPECT_EQ(ObstaclePath(std::vector{ball, cart}).end_s(), 3.0);
+  cart.repeat_s = 4.0;
+  EXPECT_EQ(ObstaclePath(std::vector{cart}).end_s(), 4.0);
+  cart.appears_s = 3.0;
+  EXPECT_EQ(ObstaclePath(std::vector{cart}).end_s(), 7.0) << "once round since it appears";
+  EXPECT_TRUE(ObstaclePath({}).changes_s().empty());
 }
 
 TEST(ObstaclePath, IsZeroBeforeTheStartAndAfterTheEndOfAMotion) {

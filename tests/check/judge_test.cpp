@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 #include <locograph/check/judge.h>
+#include <locograph/check/motion_curve.h>
 #include <locograph/common/error.h>
+#include <locograph/world/collision_world.h>
 #include <locograph/world/octree.h>
+
+#include <cmath>
 
 #include "check/centauro_on_wheels.h"
 #include "common/temporary_folder.h"
@@ -136,6 +140,79 @@ TEST(Judge, SeesAnObstacleRunThroughTheRobotThatStandsStill) {
   ball.world_from_obstacle.translation().z() = 2.0;
   for (KeyFrame& frame : ball.motion) frame.pose.translation().z() = 2.0;
   EXPECT_TRUE(check_with({ball}, motion).feasible);
+}
+
+/// Across the robot's way; there from one time to another.
+Obstacle wall_at(double x, double appears_s, double vanishes_s = kInfinity) {
+  Obstacle wall = box("wall", {x, 0.0, 1.0}, {0.002, 4.0, 2.0});
+  wall.appears_s = appears_s;
+  wall.vanishes_s = vanishes_s;
+  return wall;
+}
+
+TEST(Judge, RefusesAWallThatAppearsAsTheRobotIsInItAndAcceptsOneThatComesTooLate) {
+  const Motion motion = centauro().drive(2, 4.0, 12.0);  // is at x = 2 after 6 s
+  const auto violation = [&](double appears_s, double vanishes_s = kInfinity) {
+    const CheckReport report = check_with({wall_at(2.0, appears_s, vanishes_s)}, motion);
+    EXPECT_EQ(report.feasible, !report.constraint("obstacle_distance").violated);
+    return report.constraint("obstacle_distance");
+  };
+  const Violation caught = violation(6.0);
+  EXPECT_TRUE(caught.violated);
+  EXPECT_GE(caught.time_s, 6.0);
+  EXPECT_NE(caught.what.find("wall"), std::string::npos);
+  const Violation left = violation(-kInfinity, 6.0);
+  EXPECT_TRUE(left.violated);
+  EXPECT_LE(left.time_s, 6.0);
+  // However short it is there, and between which vertices.
+  EXPECT_TRUE(violation(5.7, std::nextafter(5.7, 6.0)).violated);
+  EXPECT_TRUE(violation(6.0, std::nextafter(6.0, 7.0)).violated);
+  EXPECT_FALSE(violation(11.9).violated) << "it has passed";
+  EXPECT_FALSE(violation(12.0).violated);
+  EXPECT_FALSE(violation(-kInfinity, 0.1).violated) << "it has not come yet";
+  EXPECT_FALSE(violation(20.0).violated) << "the motion is over";
+}
+
+TEST(Judge, KnowsToTheInstantWhenAPlaceHasToBeFree) {
+  const Motion motion = centauro().drive(2, 4.0, 12.0);
+  const auto feasible = [&](double appears_s) {
+    return check_with({wall_at(2.0, appears_s)}, motion).feasible;
+  };
+  double caught_s = 6.0, free_s = 12.0;
+  while (free_s - caught_s > 1e-7) {
+    const double middle_s = 0.5 * (caught_s + free_s);
+    (feasible(middle_s) ? free_s : caught_s) = middle_s;
+  }
+  // By a look at one instant after the other.
+  const MotionCurve curve(centauro().robot, motion);
+  const CollisionWorld exact(centauro().robot, nullptr, {wall_at(2.0, -kInfinity)});
+  MotionSampler sampler(curve);
+  std::vector<Eigen::Isometry3d> poses;
+  const auto distance = [&](double time_s) {
+    sampler.link_poses(0, time_s / 12.0, poses);
+    return exact.environment_distance(poses, time_s).distance_m;
+  };
+  EXPECT_LT(distance(caught_s), 1e-5);
+  EXPECT_GT(distance(free_s), -1e-5);
+}
+
+TEST(Judge, MeetsAWallThatAppearsWhereTheRobotStandsAndWaits) {
+  Motion motion = centauro().drive(2, 4.0, 12.0);
+  for (double& time : motion.time_s) time += 5.0;
+  CheckOptions options;
+  options.until_s = 30.0;
+  const auto feasible = [&](const Obstacle& wall) {
+    return check_with({wall}, motion, options).feasible;
+  };
+  EXPECT_FALSE(feasible(wall_at(0.0, 2.0, 3.0))) << "before it starts";
+  EXPECT_TRUE(feasible(wall_at(0.0, 17.0)));
+  EXPECT_FALSE(feasible(wall_at(4.0, 17.0))) << "as it arrives";
+  EXPECT_FALSE(feasible(wall_at(4.0, 20.0, 20.1))) << "as it waits at the goal";
+  EXPECT_FALSE(feasible(wall_at(4.0, 30.0)));
+  EXPECT_TRUE(feasible(wall_at(4.0, 30.1)));
+  EXPECT_TRUE(feasible(wall_at(4.0, 0.0, 5.1)));
+  options.until_s.reset();
+  EXPECT_TRUE(feasible(wall_at(4.0, 20.0, 20.1)));
 }
 
 TEST(Judge, DrivesOverAMappedFloorButNotThroughAMappedWall) {

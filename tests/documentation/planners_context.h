@@ -24,6 +24,7 @@
 #include <locograph/planners/offline/stance/standing_wheels.h>
 #include <locograph/planners/offline/stance/started_task.h>
 #include <locograph/planners/offline/timing/path_timing.h>
+#include <locograph/planners/online/camera_walk.h>
 #include <locograph/planners/online/sideways_detour.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/judging.h>
@@ -462,6 +463,17 @@ struct Context {
   LocalPlannerOptions options;
 };
 }  // namespace online_sideways_detour_h
+namespace online_camera_walk_h {
+/// A camera of a few pixels.
+struct Context : DriveContext {
+  const Judging judging = judging_of(graph, plan_of(graph), {.data_folder = data_folder});
+  const std::vector<DepthCamera> cameras = {
+      depth_camera("eye", judging.robot->root_link(), 16, 12, 1.0)};
+  Perception perception{judging.robot, cameras, {.surfaces = {ground()}}};
+  SimulatedImages images{judging.robot, {.surfaces = {ground()}}, cameras, {.rate_hz = 1.0}};
+  WalkOptions options;
+};
+}  // namespace online_camera_walk_h
 namespace online_walk_plan_h {
 /// Nothing new is seen.
 struct Context : DriveContext {

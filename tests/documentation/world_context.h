@@ -17,6 +17,7 @@
 #include <locograph/world/perception/field_buffers.h>
 #include <locograph/world/perception/local_map.h>
 #include <locograph/world/perception/window_transform.h>
+#include <locograph/world/perception/perception.h>
 #include <locograph/world/point_cloud.h>
 #include <locograph/world/surfaces_of.h>
 #include <locograph/world/world_snapshot.h>
@@ -201,6 +202,41 @@ struct Context : in_world::Context {
   const std::vector<std::int8_t> log_odds = std::vector<std::int8_t>(32 * 16 * 16, 0);
 };
 }  // namespace perception_window_transform_h
+/// CENTAURO at home, with cameras of a few pixels that see nothing.
+struct PerceptionContext : in_world::Context {
+  const std::shared_ptr<const Robot> robot = centauro();
+  const Eigen::VectorXd q = robot->named_configuration("home");
+  RobotState state = state_at(*robot, q);
+
+  static std::vector<DepthCamera> cameras_of(const Robot& robot) {
+    return {depth_camera("eye", robot.root_link(), 16, 12, 1.0)};
+  }
+  static DepthImage camera_image(double stamp_s) {
+    DepthImage image;
+    image.stamp_s = stamp_s;
+    image.width = 16;
+    image.height = 12;
+    image.depth_mm.assign(16 * 12, 0);
+    return image;
+  }
+  static void use(const std::shared_ptr<const WorldSnapshot>&) {}
+  static void use(const DepthImage&) {}
+};
+namespace perception_image_source_h {
+using Context = PerceptionContext;
+}
+namespace perception_perception_h {
+using Context = PerceptionContext;
+}
+namespace perception_perception_thread_h {
+struct Context : PerceptionContext {
+  std::unique_ptr<Perception> perception =
+      std::make_unique<Perception>(robot, cameras_of(*robot), World());
+  struct {
+    void show(const std::shared_ptr<const WorldSnapshot>&) const {}
+  } planner;
+};
+}  // namespace perception_perception_thread_h
 namespace planar_patches_h {
 struct Context : in_world::Context {
   const std::vector<Eigen::Vector3d> points = scanned_points();

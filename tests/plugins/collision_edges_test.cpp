@@ -394,6 +394,26 @@ TEST_F(SweptObstacleDistance, CountsTheWayRelativeToAnObstacleThatMovesAlong) {
   EXPECT_LT((swept - middle).cwiseAbs().maxCoeff(), 1e-12) << "relative to it the robot stands";
 }
 
+TEST_F(SweptObstacleDistance, CountsAnObstacleAllAlongAStepThatItIsThereForAPartOf) {
+  Obstacle wall = box_obstacle({0.0, 0.0, 1.0}, {0.01, 6.0, 4.0});
+  world = world_of({wall});
+  const Eigen::VectorXd always = between(-1.4, 1.4, 0.05, 3, 4.0, 6.0);
+  ASSERT_GT(always.maxCoeff(), 0.0);
+  const auto error = [&](double appears_s, double vanishes_s) {
+    wall.appears_s = appears_s;
+    wall.vanishes_s = vanishes_s;
+    world = world_of({wall});
+    return between(-1.4, 1.4, 0.05, 3, 4.0, 6.0);
+  };
+  EXPECT_EQ(error(0.0, 10.0), always);
+  EXPECT_EQ(error(5.9, 10.0), always) << "it appears after the last look at the way";
+  EXPECT_EQ(error(6.0, 10.0), always);
+  EXPECT_EQ(error(0.0, 4.0), always);
+  EXPECT_EQ(error(4.9, 4.95), always) << "it is there between two looks";
+  EXPECT_TRUE(error(6.1, 10.0).isZero(0.0));
+  EXPECT_TRUE(error(0.0, 3.9).isZero(0.0));
+}
+
 TEST_F(SweptObstacleDistance, IsThatOfAWorldThatIsBoundAsIfItWereTheGraphsOwn) {
   Graph graph = graph_of(robot);
   graph.parameters().set(kWorld, world);

@@ -225,6 +225,25 @@ TEST_F(CollisionWorldTest, FollowsMovingObstacles) {
   EXPECT_EQ(world.environment_distance(with("rod", 0.4, -3, 0), 0.0).what, "pillar");
 }
 
+TEST_F(CollisionWorldTest, MeetsObstaclesOnlyWhileTheyAreThere) {
+  Obstacle globe;
+  globe.name = "globe";
+  globe.shape = Obstacle::Shape::kSphere;
+  globe.size = Eigen::Vector3d(0.2, 0, 0);
+  globe.appears_s = 1.0;
+  globe.vanishes_s = 2.0;
+  const CollisionWorld world(robot_, nullptr, {globe});
+  const std::vector<Eigen::Isometry3d> poses = with("ball", 0.1, 0, 0);
+  for (const double time_s : {0.0, std::nextafter(1.0, 0.0), 1.0, 2.0, std::nextafter(2.0, 3.0)}) {
+    const bool there = time_s >= 1.0 && time_s <= 2.0;
+    EXPECT_EQ(world.environment_distance(poses, time_s).distance_m < 0.0, there) << time_s;
+    const CollisionWorld::Surroundings around =
+        world.surroundings({.world_from_link = poses, .time_s = time_s});
+    EXPECT_EQ(around.obstacle.distance_m < 0.0, there) << time_s;
+    EXPECT_EQ(around.obstacle.what, there ? "globe" : "");
+  }
+}
+
 TEST_F(CollisionWorldTest, LinksThatMayTouchTheFloorSeeOnlyWhatRisesAboveIt) {
   std::vector<Box> boxes(2);
   boxes[0].world_from_box.translation().z() = -0.1;

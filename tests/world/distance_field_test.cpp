@@ -367,6 +367,9 @@ TEST(WorldDistance, IsTheSmallerOfMapAndObstacles) {
   EXPECT_EQ(world.distance(p, 0.0), 1.0);
   EXPECT_EQ(world.sample(p, 0.0).gradient, Eigen::Vector3d::Zero());
   EXPECT_EQ(world.distance(p, 1.0), ball.distance(p, 1.0));
+  world.obstacles[0].vanishes_s = 0.9;
+  EXPECT_EQ(world.distance(p, 1.0), 1.0);
+  EXPECT_EQ(world.sample(p, 1.0).gradient, Eigen::Vector3d::Zero());
 }
 
 }  // namespace

@@ -93,6 +93,19 @@ const Bad kBad[] = {
     {"repeat=\"2\"", 2,
      "\n<sphere center='0 0 0' radius='1' repeat='2'>\n<keyframe time='2' position='1 0 "
      "0'/></sphere>"},
+    {"appears=\"-1\", expected seconds from the start of the plan, 0 or more", 2,
+     "\n<sphere center='0 0 0' radius='1' appears='-1'/>"},
+    {"'soon' is not a finite number", 2, "\n<sphere center='0 0 0' radius='1' appears='soon'/>"},
+    {"'inf' is not a finite number", 2, "\n<sphere center='0 0 0' radius='1' vanishes='inf'/>"},
+    {"appears=\"1e300\", expected seconds, at most 1e+06", 2,
+     "\n<sphere center='0 0 0' radius='1' appears='1e300'/>"},
+    {"has 2 numbers", 2, "\n<sphere center='0 0 0' radius='1' appears='1 2'/>"},
+    {"vanishes=\"3\", expected seconds, later than it appears (3)", 2,
+     "\n<box center='0 0 0' size='1 1 1' appears='3' vanishes='3'/>"},
+    {"vanishes=\"0\"", 2, "\n<cylinder center='0 0 0' radius='1' height='1' vanishes='0'/>"},
+    {"unknown attribute appears of <keyframe>", 3,
+     "\n<sphere center='0 0 0' radius='1'>\n<keyframe time='1' position='1 0 0' appears='2'/>"
+     "</sphere>"},
     {"text inside <obstacles>", 2, "\nhello"},
     {"not well-formed", 2, "\n<sphere center='0 0 0' radius='1'>"},
 };
@@ -162,6 +175,8 @@ TEST(Obstacles, SurviveSavingAndLoadingBitByBit) {
     obstacle.world_from_obstacle = pose();
     obstacle.motion.push_back({1.0 / 3.0, pose()});
     if (i % 2) obstacle.repeat_s = 0.9;
+    if (i % 3 == 0) obstacle.appears_s = i / 7.0;
+    if (i % 5 == 0) obstacle.vanishes_s = i / 7.0 + 1.0 / 3.0;
     obstacles.push_back(obstacle);
   }
   save_obstacles(obstacles, folder.file("saved.xml"));
@@ -172,6 +187,8 @@ TEST(Obstacles, SurviveSavingAndLoadingBitByBit) {
     EXPECT_EQ(loaded[i].shape, obstacles[i].shape);
     EXPECT_EQ(loaded[i].size, obstacles[i].size);
     EXPECT_EQ(loaded[i].repeat_s, obstacles[i].repeat_s);
+    EXPECT_EQ(loaded[i].appears_s, obstacles[i].appears_s);
+    EXPECT_EQ(loaded[i].vanishes_s, obstacles[i].vanishes_s);
     EXPECT_EQ(loaded[i].world_from_obstacle.matrix(), obstacles[i].world_from_obstacle.matrix());
     ASSERT_EQ(loaded[i].motion.size(), obstacles[i].motion.size());
     for (std::size_t k = 0; k < loaded[i].motion.size(); ++k) {
@@ -201,6 +218,41 @@ TEST(Obstacles, MoveLinearlyBetweenKeyFramesAndComeBackWithARepeat) {
   EXPECT_NEAR(y(11), -0.5, 1e-12);
   cart.repeat_s = 0.0;
   EXPECT_DOUBLE_EQ(y(100), 1);
+}
+
+TEST(Obstacles, AreThereFromWhenTheyAppearUntilTheyVanishBothIncluded) {
+  const TemporaryFolder folder;
+  const std::vector<Obstacle> obstacles = load_obstacles(folder.write(
+      "passing.xml",
+      "<obstacles version='1'><sphere center='0 0 0' radius='0.1' appears='3' vanishes='9'/>"
+      "<sphere center='0 0 0' radius='0.1' appears='3'/>"
+      "<sphere center='0 0 0' radius='0.1' vanishes='9'/></obstacles>"));
+  const Eigen::Vector3d point(0.5, 0.0, 0.0);
+  for (const Obstacle& ball : obstacles) {
+    const bool early = &ball == &obstacles[2], late = &ball == &obstacles[1];
+    for (const double time_s :
+         {-1.0, 0.0, std::nextafter(3.0, 0.0), 3.0, 5.0, 9.0, std::nextafter(9.0, 10.0), 100.0}) {
+      const bool there = (early || time_s >= 3.0) && (late || time_s <= 9.0);
+      EXPECT_EQ(ball.is_there(time_s), there) << time_s;
+      const DistanceSample sample = ball.sample(point, time_s);
+      if (there) {
+        EXPECT_DOUBLE_EQ(sample.distance, 0.4);
+        continue;
+      }
+      EXPECT_TRUE(std::isinf(sample.distance) && sample.distance > 0.0) << time_s;
+      EXPECT_EQ(sample.gradient, Eigen::Vector3d::Zero());
+      EXPECT_DOUBLE_EQ(ball.sample_shape(point, time_s).distance, 0.4);
+    }
+    EXPECT_EQ(ball.is_there(0.0, 2.9), early);
+    EXPECT_TRUE(ball.is_there(2.0, 3.0) && ball.is_there(9.0, 2.0));
+    EXPECT_EQ(ball.is_there(10.0, 9.5), late);
+    EXPECT_TRUE(all_along(ball, 0.1).front().is_there(0.0) &&
+                all_along(ball, 0.1).front().is_there(100.0));
+  }
+  Obstacle never = obstacles[0];
+  never.vanishes_s = never.appears_s;
+  EXPECT_THROW(never.validate(), Error);
+  EXPECT_THROW(save_obstacles({&never, 1}, folder.file("never.xml")), Error);
 }
 
 // Nearest of many points on the surface, and a membership test for the sign.

@@ -129,6 +129,9 @@ export interface ObstacleDescription {
   pose?: Pose;
   keyframes?: { time: number; pose: Pose }[];
   repeat?: number;
+  /** It is there from the one time to the other. */
+  appears?: number;
+  vanishes?: number;
 }
 
 export interface SurfaceDescription {

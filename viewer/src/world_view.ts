@@ -1,4 +1,4 @@
-/** Surfaces, bars and obstacles; obstacles with key frames move with the plan's time. */
+/** Surfaces, bars and obstacles, which move, appear and vanish with the plan's time. */
 import {
   BackSide,
   Box3,
@@ -39,6 +39,12 @@ interface MovingObstacle {
   repeat: number;
 }
 
+interface PassingObstacle {
+  object: Group;
+  appears: number;
+  vanishes: number;
+}
+
 function keyFrame(time: number, pose: Pose | undefined): KeyFrame {
   const [x, y, z, qx, qy, qz, qw] = pose?.length === 7 ? pose : [0, 0, 0, 0, 0, 0, 1];
   return {
@@ -58,6 +64,7 @@ export class WorldView {
   readonly obstacles = new Group();
   readonly surfaces = new Group();
   private readonly moving: MovingObstacle[] = [];
+  private readonly passing: PassingObstacle[] = [];
   private readonly shape = new Box3();
   private readonly resting = new MeshLambertMaterial();
   private readonly mobile = new MeshLambertMaterial();
@@ -138,6 +145,10 @@ export class WorldView {
     object.quaternion.copy(frames[0].rotation);
     this.obstacles.add(object);
     if (frames.length > 1) this.moving.push({ object, frames, repeat });
+    const { appears = -Infinity, vanishes = Infinity } = obstacle;
+    if (appears > -Infinity || vanishes < Infinity) {
+      this.passing.push({ object, appears, vanishes });
+    }
   }
 
   applyTheme(theme: Theme): void {
@@ -150,12 +161,16 @@ export class WorldView {
   /** Adds the obstacles where they are now. */
   addTo(near: NearBox): void {
     for (const object of this.obstacles.children) {
+      if (!object.visible) continue;
       this.shape.setFromObject(object);
       near.add(this.shape.min, this.shape.max);
     }
   }
 
   update(time: number): void {
+    for (const { object, appears, vanishes } of this.passing) {
+      object.visible = appears <= time && time <= vanishes;
+    }
     for (const { object, frames, repeat } of this.moving) {
       const t = repeat > 0 ? ((time % repeat) + repeat) % repeat : time;
       let next = 1;

@@ -1,0 +1,199 @@
+#include <locograph/apps/refine_perception.h>
+#include <locograph/apps/statistics.h>
+#include <locograph/world/distance_view.h>
+#include <locograph/world/octree.h>
+
+#include <cmath>
+#include <utility>
+
+namespace locograph {
+namespace {
+
+UnknownSpace unknown_space(const std::string& name) {
+  if (name == "occupied") return UnknownSpace::kOccupied;
+  return name == "slow" ? UnknownSpace::kSlow : UnknownSpace::kFree;
+}
+
+/// Where the wheels stand: the ground, or, without one, what the first stance stands on.
+double floor_of(const PlanFile& file, const World& world) {
+  const double ground_m = ground_height(world);
+  if (std::isfinite(ground_m) || file.plan.stance_from.empty()) return ground_m;
+  const auto& first = file.plan.stance_from.front();
+  double lowest_m = std::numeric_limits<double>::infinity();
+  for (const Contact& contact : first ? first->stance.contacts : std::vector<Contact>()) {
+    lowest_m = std::min(lowest_m, contact.position.z());
+  }
+  return std::isfinite(lowest_m) ? lowest_m : ground_m;
+}
+
+PerceptionOptions options_of(const PlanFile& file, const World& world,
+                             const PerceptionChoice& choice) {
+  PerceptionOptions options;
+  options.map.resolution_m = choice.voxel_m;
+  options.map.size_m.head<2>().setConstant(choice.window_m);
+  options.map.unknown = unknown_space(choice.unknown);
+  options.map.floor_z_m = floor_of(file, world);
+  options.keeps_map = !choice.save_map.empty();
+  return options;
+}
+
+World known_beforehand(const World& world, const PerceptionChoice& choice) {
+  World known = world;
+  if (!choice.cameras) return known;
+  known.map = nullptr;
+  known.obstacles.clear();
+  if (choice.known_map.empty()) return known;
+  known.map = load_octree(choice.known_map);
+  const double voxel_m = known.map->getResolution();
+  if (std::abs(voxel_m - choice.voxel_m) > 1e-9 * voxel_m) {
+    throw Error(choice.known_map, 0, "voxels of " + short_number(voxel_m) + " m",
+                "those of the window, --voxel " + short_number(choice.voxel_m));
+  }
+  return known;
+}
+
+std::unique_ptr<ImageSource> images_of(const PlanFile& file, const Judging& judging,
+                                       const PerceptionChoice& choice,
+                                       std::vector<DepthCamera> cameras) {
+  if (!choice.cameras) {
+    return std::make_unique<RecordedImages>(CloudsFolder(choice.clouds, std::move(cameras)));
+  }
+  // Some looks before it starts: one image alone says little.
+  constexpr double kLooks = 5.0;
+  const int first = file.plan.slots.front();
+  const double start_s = file.graph.vertex(VertexId<VertexConfiguration>{first}).time_s;
+  SimulatedImagesOptions options;
+  options.rate_hz = choice.rate_hz;
+  options.begin_s = start_s - (kLooks - 0.5) / choice.rate_hz;
+  options.seed = choice.seed;
+  return std::make_unique<SimulatedImages>(judging.robot, judging.world->world(),
+                                           std::move(cameras), options);
+}
+
+Json window_json(const Perception& perception) {
+  const LocalField& field = *perception.field();
+  const VoxelWindow& window = field.window();
+  std::size_t known = 0, occupied = 0;
+  for (int k = 0; k < window.size.z(); ++k) {
+    for (int j = 0; j < window.size.y(); ++j) {
+      for (int i = 0; i < window.size.x(); ++i) {
+        const Eigen::Vector3i index = window.first + Eigen::Vector3i(i, j, k);
+        known += field.is_known(index) ? 1 : 0;
+        occupied += field.is_occupied(index) ? 1 : 0;
+      }
+    }
+  }
+  const Eigen::Vector3d size = window.bounds().sizes();
+  return {{"resolution_m", window.resolution_m},
+          {"window_m", {size.x(), size.y(), size.z()}},
+          {"occupied_voxels", occupied},
+          {"known_share", static_cast<double>(known) / static_cast<double>(window.count())}};
+}
+
+}  // namespace
+
+void add_perception_options(OptionParser& parser, PerceptionChoice& choice) {
+  parser.add_flag("--cameras", choice.cameras,
+                  "Know of the world what the robot's depth cameras, simulated, show of it");
+  parser.add_option("--clouds", choice.clouds,
+                    "Folder of recorded clouds to be shown at their times (clouds.csv)");
+  parser.add_option("--camera-rate", choice.rate_hz, "Images of each simulated camera [1/s]")
+      .between(0.1, 1000.0)
+      .show_default();
+  parser
+      .add_option(
+          "--unknown", choice.unknown,
+          "What was never seen: free, occupied, or slow: free, and steps take twice as long")
+      .one_of({"free", "occupied", "slow"})
+      .show_default();
+  parser.add_option("--known-map", choice.known_map,
+                    "With --cameras: OctoMap of what is known beforehand");
+  parser.add_option("--save-map", choice.save_map,
+                    "Where to write the OctoMap of what was seen and known (.bt)");
+  parser.add_option("--voxel", choice.voxel_m, "Voxels of the map around the robot [m]")
+      .between(0.01, 1.0)
+      .show_default();
+  parser.add_option("--window", choice.window_m, "How long and wide that map is [m]")
+      .between(1.0, 1000.0)
+      .show_default();
+  parser.add_option("--seed", choice.seed, "Of the noise of simulated cameras").show_default();
+}
+
+void check_perception_options(const PerceptionChoice& choice,
+                              const std::vector<std::filesystem::path>& inputs) {
+  if (choice.cameras && !choice.clouds.empty()) {
+    throw Error("both --cameras and --clouds", "one of them");
+  }
+  if (!choice.cameras && !choice.known_map.empty()) {
+    throw Error("--known-map without --cameras", "--map: with --clouds, that is known beforehand");
+  }
+  if (!choice.given() && !choice.save_map.empty()) {
+    throw Error("--save-map without --cameras or --clouds", "one of them");
+  }
+  if (choice.save_map.empty()) return;
+  if (choice.save_map == "-") throw Error("a map to standard output", "a file");
+  check_output(choice.save_map, inputs);
+}
+
+RefinePerception::RefinePerception(const PlanFile& file, const Judging& judging,
+                                   const PerceptionChoice& choice)
+    : choice_(choice) {
+  if (choice.unknown == "slow" && !file.plan.segments.empty()) {
+    throw Error(file.name, 0, "the plan tells its segments and how long they take",
+                "--unknown free or occupied");
+  }
+  const World& world = judging.world->world();
+  const std::vector<DepthCamera> cameras =
+      judging.task ? judging.task->cameras : cameras_of(*judging.robot);
+  perception_ = std::make_unique<Perception>(
+      judging.robot, cameras, known_beforehand(world, choice), options_of(file, world, choice));
+  images_ = images_of(file, judging, choice, cameras);
+  walk_.emplace(file.graph, judging, *perception_, *images_);
+}
+
+void RefinePerception::equip(WalkOptions& options) {
+  options.verify = [this](const Motion& step) { return walk_->check_step(step); };
+  if (choice_.unknown == "slow") {
+    options.pace = [this](int executed) { return walk_->pace(executed); };
+  }
+}
+
+WorldAt RefinePerception::world_at() {
+  return [this](int executed) { return walk_->world_at(executed); };
+}
+
+void RefinePerception::tell(Json& result) const {
+  Json cameras = Json::array();
+  for (const DepthCamera& camera : perception_->cameras()) cameras.push_back(camera.name);
+  result["cameras"] = std::move(cameras);
+  result["images"] = perception_->images();
+  result["blind_images"] = perception_->blind();
+  result["refused_images"] = walk_->refused();
+  result["perception_time"] = statistics_json(walk_->perception_s());
+  result["camera_time_s"] = walk_->images_s();
+  result["map"] = window_json(*perception_);
+  if (walk_->refused() > 0) result["refused_because"] = walk_->last_refusal();
+  if (!choice_.save_map.empty()) result["map"]["file"] = choice_.save_map;
+}
+
+std::string RefinePerception::text() const {
+  const Json times = statistics_json(walk_->perception_s());
+  const auto ms = [&times](const char* which) {
+    return short_number(1e3 * times[which].get<double>()) + " ms";
+  };
+  std::string text = counted(perception_->images(), "image", "images") + " seen, " + ms("mean") +
+                     " each (p99 " + ms("p99") + ")";
+  if (perception_->blind() > 0) {
+    text += ", " + std::to_string(perception_->blind()) + " of them without anything to see";
+  }
+  if (walk_->refused() > 0) {
+    text += ", " + std::to_string(walk_->refused()) + " refused: " + walk_->last_refusal();
+  }
+  return text + '\n';
+}
+
+void RefinePerception::save_map() const {
+  if (!choice_.save_map.empty()) save_octree(*perception_->map(), choice_.save_map);
+}
+
+}  // namespace locograph

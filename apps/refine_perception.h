@@ -1,0 +1,77 @@
+#pragma once
+/// `refine --cameras` and `refine --clouds DIR`: the robot walks along its plan knowing of the
+/// world what its depth cameras show.
+///
+///     PerceptionChoice choice;
+///     add_perception_options(parser, choice);
+///     RefinePerception eyes(file, judging, choice);      // once the plan is read
+///     eyes.equip(walk_options);
+///     walk_plan(file.graph, eyes.world_at(), walk_options);
+///
+/// With `--cameras` images are simulated in the true world, that of `judging`; of it the robot
+/// knows beforehand the surfaces, bars and boxes that may be touched, and the map of `--known-map`.
+/// With
+/// `--clouds` nobody knows the truth: what is known beforehand is all that the plan, `--map` and
+/// `--obstacles` tell.
+
+#include <locograph/apps/option_parser.h>
+#include <locograph/apps/output.h>
+#include <locograph/apps/plan_file.h>
+#include <locograph/planners/online/camera_walk.h>
+#include <locograph/planners/online/walk_plan.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace locograph {
+
+struct PerceptionChoice {
+  bool cameras = false;
+  std::string clouds;  ///< a folder; empty: none
+  double rate_hz = SimulatedImagesOptions().rate_hz;
+  std::string unknown = "free";
+  std::string known_map, save_map;  ///< files; empty: none
+  double voxel_m = LocalMapOptions().resolution_m;
+  double window_m = LocalMapOptions().size_m.x();
+  std::uint64_t seed = 0;
+
+  bool given() const { return cameras || !clouds.empty(); }
+};
+
+/// choice must outlive the parsing.
+void add_perception_options(OptionParser& parser, PerceptionChoice& choice);
+
+/// Throws Error for options that do not go together, and for a save_map that is one of the inputs
+/// or cannot be written.
+void check_perception_options(const PerceptionChoice& choice,
+                              const std::vector<std::filesystem::path>& inputs);
+
+class RefinePerception {
+ public:
+  /// The file must outlive it. Throws Error for files that cannot be used, a robot without cameras,
+  /// a map of other voxels than the window's, and a window that is too large.
+  RefinePerception(const PlanFile& file, const Judging& judging, const PerceptionChoice& choice);
+
+  /// Sets what is asked on the way: verify, and pace.
+  void equip(WalkOptions& options);
+  WorldAt world_at();
+
+  /// Fields of the command's result.
+  void tell(Json& result) const;
+  /// Of what was seen on the way.
+  std::string text() const;
+  /// Writes the map, if that was asked for.
+  void save_map() const;
+
+ private:
+  PerceptionChoice choice_;
+  std::unique_ptr<Perception> perception_;
+  std::unique_ptr<ImageSource> images_;
+  std::optional<CameraWalk> walk_;
+};
+
+}  // namespace locograph

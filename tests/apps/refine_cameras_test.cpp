@@ -1,0 +1,101 @@
+// `refine --cameras` and `refine --clouds`, as a user runs them.
+#include <apps/command_runner.h>
+#include <locograph/world/octree.h>
+
+namespace locograph {
+namespace {
+
+/// A folder with the shipped drive as plan.g2o.
+class CameraRunner : public CommandRunner {
+ public:
+  CameraRunner() {
+    const Outcome outcome = run("plan centauro_drive -o plan.g2o");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+  void write_map(const std::string& name) const {
+    Box box;
+    box.world_from_box.translation() = Eigen::Vector3d(2.0, 3.0, 0.25);
+    box.size.setConstant(0.5);
+    save_octree(*octree_from_boxes({&box, 1}, 0.05), folder() / name);
+  }
+  /// A cloud of a square metre, two metres ahead of the camera, listed with this line.
+  void write_clouds(const std::string& line) const {
+    std::filesystem::create_directory(folder() / "clouds");
+    std::string points;
+    for (int i = -20; i <= 20; ++i) {
+      for (int k = -20; k <= 20; ++k) {
+        points += std::to_string(0.025 * i) + ' ' + std::to_string(0.025 * k) + " 2\n";
+      }
+    }
+    const std::string count = std::to_string(41 * 41);
+    write("clouds/a.pcd", "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " +
+                              count + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + count +
+                              "\nDATA ascii\n" + points);
+    write("clouds/clouds.csv", "time_s,camera,file\n" + line + '\n');
+  }
+};
+
+TEST(RefineCameras, TellsWhatTheCamerasSaw) {
+  const CameraRunner runner;
+  runner.write("box.xml",
+               "<obstacles version=\"1\"><box name=\"box\" center=\"2 0 0.25\" size=\"0.5 0.5 "
+               "0.5\"/></obstacles>\n");
+  const std::string command =
+      "refine plan.g2o --obstacles box.xml --cameras --camera-rate 3 --save-map seen.bt ";
+  const Outcome outcome = runner.run(command + "-o out.g2o --json");
+  EXPECT_LE(outcome.exit_code, 1) << outcome.err;
+  const nlohmann::json json = outcome.json();
+  EXPECT_EQ(json["cameras"].size(), 2u);
+  EXPECT_GT(json["images"], 100);
+  EXPECT_EQ(json["refused_images"], 0);
+  EXPECT_GT(json["perception_time"]["mean"], 0.0);
+  EXPECT_GE(json["perception_time"]["p99"], json["perception_time"]["p50"]);
+  EXPECT_EQ(json["map"]["resolution_m"], 0.05);
+  EXPECT_GT(json["map"]["known_share"], 0.0);
+  EXPECT_EQ(json["truth"]["contact"], false);
+  EXPECT_EQ(json["success"], outcome.exit_code == 0);
+  EXPECT_GT(octree_info(*load_octree(runner.folder() / "seen.bt")).occupied_leaves, 0u);
+  EXPECT_EQ(runner.run("check out.g2o").exit_code, 0) << "as far as it got";
+  // The same bits again.
+  EXPECT_EQ(runner.run(command + "-o again.g2o").exit_code, outcome.exit_code);
+  EXPECT_EQ(runner.read("again.g2o"), runner.read("out.g2o"));
+}
+
+TEST(RefineCameras, ShowsRecordedCloudsAtTheirTimes) {
+  const CameraRunner runner;
+  runner.write_clouds("0.0,D435i_camera,a.pcd\n1.5,D435i_camera,a.pcd\n900,D435i_camera,a.pcd");
+  const Outcome outcome = runner.run("refine plan.g2o --clouds clouds -o out.g2o --json");
+  EXPECT_LE(outcome.exit_code, 1) << outcome.err;
+  EXPECT_EQ(outcome.json()["images"], 2) << "the last one comes too late";
+  EXPECT_EQ(outcome.json()["blind_images"], 0);
+  EXPECT_EQ(outcome.json()["refused_images"], 0);
+}
+
+TEST(RefineCameras, RefuseWhatCannotBeUsedInOneLine) {
+  const CameraRunner runner;
+  runner.write_map("box.bt");
+  const auto refused = [&](const std::string& options, const std::string& place,
+                           const std::string& words) {
+    SCOPED_TRACE(options);
+    expect_refusal(runner.run("refine plan.g2o -o out.g2o " + options), place, words);
+    EXPECT_FALSE(runner.exists("out.g2o"));
+  };
+  refused("--clouds nowhere", "nowhere", "");
+  refused("--clouds nowhere --cameras", "", "both --cameras and --clouds");
+  refused("--known-map box.bt", "", "--known-map without --cameras");
+  refused("--save-map seen.bt", "", "--save-map without --cameras or --clouds");
+  refused("--cameras --known-map none.bt", "none.bt", "");
+  refused("--cameras --known-map box.bt --voxel 0.1", "box.bt", "those of the window");
+  refused("--cameras --known-map box.bt --save-map box.bt", "", "box.bt");
+  refused("--cameras --window 1000", "", "");
+  refused("--cameras --unknown perhaps", "", "unknown");
+  refused("--cameras --camera-rate 0", "", "camera-rate");
+  refused("--cameras --save-map none/seen.bt", "", "none/seen.bt");
+  runner.write_clouds("0.0,ear,a.pcd");
+  refused("--clouds clouds", "clouds/clouds.csv:2", "ear");
+  runner.write_clouds("0.0,D435i_camera,b.pcd");
+  refused("--clouds clouds", "clouds/clouds.csv:2", "b.pcd");
+}
+
+}  // namespace
+}  // namespace locograph

@@ -1,0 +1,204 @@
+#include <locograph/common/error.h>
+#include <locograph/robots/covering_capsules.h>
+#include <locograph/world/perception/perception.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace locograph {
+namespace {
+
+std::vector<DepthCamera> usable(std::vector<DepthCamera> cameras, const Robot& robot) {
+  if (cameras.empty()) {
+    throw Error("the robot " + robot.name() + " has no depth camera",
+                "a link *_depth_optical_frame, or a <camera> in the scenario");
+  }
+  for (const DepthCamera& camera : cameras) {
+    camera.validate();
+    if (camera.link < 0 || camera.link >= static_cast<int>(robot.links().size())) {
+      throw Error("camera " + camera.name + " is on link " + std::to_string(camera.link),
+                  "a link of the robot");
+    }
+  }
+  return cameras;
+}
+
+PerceptionOptions usable(const PerceptionOptions& options) {
+  options.validate();
+  return options;
+}
+
+std::shared_ptr<octomap::OcTree> known_map(const World& known, const PerceptionOptions& options) {
+  const double voxel_m = options.map.resolution_m;
+  if (!known.map) {
+    return options.keeps_map ? std::make_shared<octomap::OcTree>(voxel_m) : nullptr;
+  }
+  const double theirs_m = known.map->getResolution();
+  if (std::abs(theirs_m - voxel_m) > 1e-9 * voxel_m) {
+    throw Error("the map that is known beforehand has voxels of " + std::to_string(theirs_m) + " m",
+                "those of the window, " + std::to_string(voxel_m) + " m");
+  }
+  return std::make_shared<octomap::OcTree>(*known.map);
+}
+
+constexpr int kKeyOffset = 1 << 15;  // OctoMap: key = index + 2^15
+
+octomap::OcTreeKey key_of(const Eigen::Vector3i& index) {
+  const auto key = [](int i) { return static_cast<octomap::key_type>(i + kKeyOffset); };
+  return {key(index.x()), key(index.y()), key(index.z())};
+}
+
+/// Of the window's voxels those that a box meets, within OctoMap's range.
+template <class Visit>
+void each_voxel(const VoxelWindow& window, const Eigen::AlignedBox3d& box, Visit&& visit) {
+  const Eigen::AlignedBox3d within = box.intersection(window.bounds());
+  if (within.isEmpty()) return;
+  const Eigen::Vector3i last = window.first + window.size - Eigen::Vector3i::Ones();
+  const Eigen::Vector3i from =
+      window.index_at(within.min()).cwiseMax(window.first).cwiseMax(-kKeyOffset);
+  const Eigen::Vector3i to = window.index_at(within.max()).cwiseMin(last).cwiseMin(kKeyOffset - 1);
+  for (int k = from.z(); k <= to.z(); ++k) {
+    for (int j = from.y(); j <= to.y(); ++j) {
+      for (int i = from.x(); i <= to.x(); ++i) visit(Eigen::Vector3i(i, j, k));
+    }
+  }
+}
+
+}  // namespace
+
+void PerceptionOptions::validate() const {
+  map.validate();
+  filter.validate();
+  if (!(kept_s > 0.0)) throw Error("kept_s is " + std::to_string(kept_s), "above 0 s");
+  if (!(around_m >= 0.0 && std::isfinite(around_m)))
+    throw Error("around_m is " + std::to_string(around_m), "0 m or more");
+}
+
+Perception::Perception(std::shared_ptr<const Robot> robot, std::vector<DepthCamera> cameras,
+                       World known, const PerceptionOptions& options)
+    : robot_(std::move(robot)),
+      cameras_(usable(std::move(cameras), *robot_)),
+      options_(usable(options)),
+      known_(std::move(known)),
+      beforehand_(known_map(known_, options_)),
+      configurations_(*robot_, options_.kept_s),
+      filter_(*robot_, options_.filter),
+      map_(options_.map),
+      state_(*robot_),
+      last_stamp_s_(cameras_.size(), -std::numeric_limits<double>::infinity()) {
+  known_.map = nullptr;
+  if (beforehand_) map_.load(*beforehand_);
+  publish();
+}
+
+void Perception::stand(const Eigen::VectorXd& q) {
+  if (q.size() != robot_->configuration_size()) {
+    throw Error("a configuration of " + std::to_string(q.size()) + " numbers",
+                std::to_string(robot_->configuration_size()));
+  }
+  if (!q.allFinite()) throw Error("a configuration that is not finite", "finite numbers");
+  state_.update(q.data());
+  follow_robot();
+  octomap::OcTree here(options_.map.resolution_m);
+  for (const CollisionCapsule& one : filter_.capsules()) {
+    const Capsule capsule = transformed(state_.world_from_link(one.link), one.capsule);
+    Eigen::AlignedBox3d box(capsule.from);
+    box.extend(capsule.to);
+    const double around_m = capsule.radius + options_.around_m;
+    each_voxel(map_.window(), {box.min().array() - around_m, box.max().array() + around_m},
+               [&](const Eigen::Vector3i& index) {
+                 here.setNodeValue(key_of(index), here.getClampingThresMinLog(), true);
+               });
+  }
+  here.updateInnerOccupancy();
+  map_.load(here);
+  publish();
+}
+
+void Perception::configuration(double time_s, const Eigen::VectorXd& q) {
+  configurations_.add(time_s, q);
+}
+
+void Perception::require(const DepthImage& image) const {
+  if (image.camera < 0 || image.camera >= static_cast<int>(cameras_.size())) {
+    throw Error("an image of camera " + std::to_string(image.camera),
+                "0 to " + std::to_string(cameras_.size() - 1));
+  }
+  const auto index = static_cast<std::size_t>(image.camera);
+  const DepthCamera& camera = cameras_[index];
+  const auto size_text = [](int width, int height) {
+    return std::to_string(width) + " x " + std::to_string(height) + " pixels";
+  };
+  if (image.width != camera.width || image.height != camera.height) {
+    throw Error("an image of camera " + camera.name + " of " + size_text(image.width, image.height),
+                size_text(camera.width, camera.height));
+  }
+  const std::size_t pixels =
+      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  if (image.depth_mm.size() != pixels) {
+    throw Error("an image of camera " + camera.name + " with " +
+                    std::to_string(image.depth_mm.size()) + " depths",
+                std::to_string(pixels));
+  }
+  if (!(image.stamp_s > last_stamp_s_[index])) {
+    throw Error("an image of camera " + camera.name + " at " + std::to_string(image.stamp_s) + " s",
+                "a time after its last one, " + std::to_string(last_stamp_s_[index]) + " s");
+  }
+}
+
+std::shared_ptr<const WorldSnapshot> Perception::image(DepthImage image) {
+  require(image);
+  const Eigen::VectorXd q = configurations_.at(image.stamp_s);
+  // From here on nothing is wrong with it.
+  const auto index = static_cast<std::size_t>(image.camera);
+  const DepthCamera& camera = cameras_[index];
+  last_stamp_s_[index] = image.stamp_s;
+  ++images_;
+  if (pixels_seen(image) == 0) ++blind_;
+  state_.update(q.data());
+  filter_.remove(state_, camera, image);
+  follow_robot();
+  map_.insert(camera, state_.world_from_link(camera.link) * camera.link_from_optical, image);
+  publish();
+  return newest_;
+}
+
+void Perception::follow_robot() {
+  const Eigen::Vector3i before = map_.window().first;
+  map_.move_to(state_.world_from_link(robot_->root_link()).translation());
+  if (!beforehand_ || map_.window().first == before) return;
+  if (options_.keeps_map && field_) field_->merge_into(*beforehand_);
+  map_.load(*beforehand_);
+}
+
+void Perception::publish() {
+  field_ = map_.field();
+  WorldDistance seen;
+  seen.source = field_;
+  seen.obstacles = known_.obstacles;
+  newest_ = std::make_shared<const WorldSnapshot>(known_, std::move(seen), field_->stamp_s());
+}
+
+World Perception::seen_near(const Eigen::AlignedBox3d& box) const {
+  auto voxels = std::make_shared<octomap::OcTree>(options_.map.resolution_m);
+  const bool unknown_counts = options_.map.unknown == UnknownSpace::kOccupied;
+  each_voxel(field_->window(), box, [&](const Eigen::Vector3i& index) {
+    if (!field_->is_occupied(index) && !(unknown_counts && !field_->is_known(index))) return;
+    voxels->setNodeValue(key_of(index), voxels->getClampingThresMaxLog(), true);
+  });
+  voxels->updateInnerOccupancy();
+  World seen = known_;
+  seen.map = std::move(voxels);
+  return seen;
+}
+
+std::shared_ptr<const octomap::OcTree> Perception::map() const {
+  if (!beforehand_) return nullptr;
+  auto map = std::make_shared<octomap::OcTree>(*beforehand_);
+  map_.merge_into(*map);
+  return map;
+}
+
+}  // namespace locograph
