@@ -26,6 +26,7 @@
 #include <locograph/plugins/time_step/edge_time_step_limits.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits_timed.h>
+#include <locograph/plugins/velocity_tracking/edge_acceleration_tracking.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
 
 namespace locograph {
@@ -47,6 +48,7 @@ void add_robot_types(TypeRegistry& types) {
   types.add_edge<EdgeAccelerationLimits>();
   types.add_edge<EdgeAccelerationLimitsTimed>();
   types.add_edge<EdgeAccelerationLimitsTimedSigned>();
+  types.add_edge<EdgeAccelerationTracking>();
   types.add_edge<EdgeBalance>();
   types.add_edge<EdgeCom>();
   types.add_edge<EdgeContact>();

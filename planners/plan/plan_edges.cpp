@@ -16,6 +16,7 @@
 #include <locograph/plugins/surface_distance/edge_surface_distance.h>
 #include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
+#include <locograph/plugins/velocity_tracking/edge_acceleration_tracking.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
 #include <locograph/robots/statics.h>
 
@@ -132,7 +133,9 @@ class PlanEdges {
       if (i == 0 || plan_.stances_only) continue;
       add_to_step(i);
       graph_.add_edge(swept, ids_[i - 1], ids_[i]);
-      if (i == 1 || !is_limited(options_.joint_acceleration_rad_s2)) continue;
+      if (i == 1) continue;
+      if (is_smooth()) track_acceleration(i - 1);
+      if (!is_limited(options_.joint_acceleration_rad_s2)) continue;
       graph_.add_edge(EdgeAccelerationLimits(robot_, options_.joint_acceleration_rad_s2, 0.0, 0.0,
                                              options_.acceleration_weight),
                       ids_[i - 2], ids_[i - 1], ids_[i]);
@@ -349,16 +352,34 @@ class PlanEdges {
       return;
     }
     EdgeMovingBalance edge(weight, weight);
-    const auto at = [&](std::size_t k, ConfigurationState& state) -> const ConfigurationState& {
-      state.time_s = graph_.vertex(ids_[k]).time_s;
-      state.update(configurations_[k].data());
-      return state;
-    };
     const WrenchesState wrenches = state_of(graph_.vertex(forces));
     Eigen::Matrix<double, 6, 1> left_over;
     edge.error(at(i, state_), wrenches, at(i - 1, before_), at(i + 1, after_), left_over);
     edge.load = left_over;
     graph_.add_edge(edge, ids_[i], forces, ids_[i - 1], ids_[i + 1]);
+  }
+
+  bool is_smooth() const { return options_.smooth_over_s > 0.0; }
+  bool rests(std::size_t i) const {
+    const Eigen::VectorXd& slopes = graph_.vertex(ids_[i]).slopes;
+    return i == 0 || i + 1 == ids_.size() || (slopes.size() > 0 && slopes.isZero(0.0));
+  }
+
+  /// At configuration i, neither first nor last.
+  void track_acceleration(std::size_t i) {
+    const double smooth = options_.smooth_over_s * options_.smooth_over_s;
+    EdgeAccelerationTracking edge(Eigen::VectorXd::Zero(track_.size()), smooth * smooth * track_);
+    Eigen::VectorXd planned(track_.size());
+    edge.error(at(i - 1, before_), at(i, state_), at(i + 1, after_), planned);
+    edge.acceleration = planned;
+    graph_.add_edge(std::move(edge), ids_[i - 1], ids_[i], ids_[i + 1]);
+  }
+
+  /// The plan's configuration.
+  const ConfigurationState& at(std::size_t i, ConfigurationState& state) const {
+    state.time_s = graph_.vertex(ids_[i]).time_s;
+    state.update(configurations_[i].data());
+    return state;
   }
 
   /// Of the step that ends at configuration i.
@@ -367,9 +388,14 @@ class PlanEdges {
     Eigen::VectorXd step(robot_.tangent_size());
     robot_.difference(configurations_[i - 1].data(), configurations_[i].data(), step.data());
     const double dt_s = graph_.vertex(b).time_s - graph_.vertex(a).time_s;
-    const double share = options_.smooth_over_s / dt_s;
-    graph_.add_edge(EdgeVelocityTracking(step, share > 0.0 ? share * share * track_ : steps_), a,
-                    b);
+    if (!is_smooth()) {
+      graph_.add_edge(EdgeVelocityTracking(step, steps_), a, b);
+    } else if (rests(i - 1) || rests(i)) {
+      const Eigen::VectorXd held =
+          (track_.array() > 0.0)
+              .select(Eigen::VectorXd::Constant(track_.size(), options_.rest_weight), 0.0);
+      graph_.add_edge(EdgeVelocityTracking(step, held), a, b);
+    }
     graph_.add_edge(EdgeVelocityLimits(robot_, options_.velocity_fraction, options_.base_linear_m_s,
                                        options_.base_angular_rad_s, options_.limit_weight),
                     a, b);
@@ -426,11 +452,12 @@ PlanEdgeOptions drive_edges() {
 PlanEdgeOptions motion_edges(const CheckOptions& check) {
   PlanEdgeOptions options;
   options.acceleration_weight = 1e-2;
-  options.smooth_over_s = 0.5;
-  options.constraint_weight = 1e6;
-  options.balance_weight = 1e5;
-  options.friction_weight = 1e4;
-  options.torque_weight = 1e3;
+  options.smooth_over_s = 0.3;
+  options.limit_weight = 1e5;
+  options.constraint_weight = 3e6;
+  options.balance_weight = 1e4;
+  options.friction_weight = 3e1;
+  options.torque_weight = 1e2;
   options.obstacle_margin_m = 2e-3;
   options.swept_samples = 2;
   options.excuse_near_world = true;

@@ -66,9 +66,12 @@ struct PlanEdgeOptions {
   double track_tilt = 50.0, track_yaw = 5.0, track_joint = 1.0;
   double track_goal = 50.0;  ///< forward, lateral and yaw of the last configuration: to come back
   double step_base = 50.0, step_joint = 5.0, step_steering = 0.5;
-  /// Above 0: weights of steps of this duration are those of tracking, those of shorter ones
-  /// quadratically more, so that a detour takes about as long, however finely the plan is sampled.
+  /// Above 0, in the place of tracking steps: how fast a detour is taken. Accelerations are
+  /// tracked, with the weights of tracking times the fourth power of this, so that a detour takes
+  /// about as long, however finely the plan is sampled; and the steps before and after a
+  /// configuration at rest, as the motion comes to rest there, too.
   double smooth_over_s = 0.0;
+  double rest_weight = 1e5;
 };
 
 /// Of a drive: wheels roll, and what stands beside the way is kept clear of.

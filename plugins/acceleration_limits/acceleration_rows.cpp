@@ -19,6 +19,13 @@ SecondDifference SecondDifference::from_rest(double dt_s) {
   return difference;
 }
 
+void SecondDifference::require_increasing(std::string_view tag) const {
+  if (dt_2 > 0.0 && (dt_1 > 0.0 || step_1 == 0.0)) return;
+  throw Error(std::string(tag) + " between configurations " + std::to_string(dt_1) + " and " +
+                  std::to_string(dt_2) + " s apart",
+              "times that increase");
+}
+
 void AccelerationRows::check(std::string_view tag, const Eigen::VectorXd& limits, int rows,
                              const Parameters& parameters) {
   require_fitting_robot(parameters, tag, rows,
@@ -60,11 +67,7 @@ void AccelerationRows::error(LimitKind kind, Eigen::Ref<Eigen::VectorXd> e) cons
   require_same_robot(tag_, m_.before.robot, m_.after.robot);
   require_rows(tag_, e.size(), n + 2);
   const SecondDifference& d = m_.difference;
-  if (!d.increasing()) {
-    throw Error(std::string(tag_) + " between configurations " + std::to_string(d.dt_1) + " and " +
-                    std::to_string(d.dt_2) + " s apart",
-                "times that increase");
-  }
+  d.require_increasing(tag_);
   e.setZero();
   for (int i = 0; i < n; ++i) {
     if (limited(i)) e[i] = limit_error(kind, std::abs(joint(i)) - limits_[i]);

@@ -22,7 +22,8 @@ struct SecondDifference {
 
   SecondDifference(double dt_1_s, double dt_2_s);
   static SecondDifference from_rest(double dt_s);
-  bool increasing() const { return dt_2 > 0.0 && (dt_1 > 0.0 || step_1 == 0.0); }
+  /// Throws Error, naming the tag, where time does not increase.
+  void require_increasing(std::string_view tag) const;
 
  private:
   SecondDifference() = default;

@@ -22,7 +22,9 @@ class LinkForces {
         robot_(here.model()),
         base_(here_.world_from_link(0).linear().transpose()),
         origin_(here_.world_from_link(0).translation()),
-        difference_(difference(before.time_s, here.time_s, after.time_s)) {}
+        difference_(here.time_s - before.time_s, after.time_s - here.time_s) {
+    difference_.require_increasing(EdgeMovingBalance::kTag);
+  }
 
   void subtract_from(BaseWrench wrench) const {
     Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = force;
@@ -58,15 +60,6 @@ class LinkForces {
   }
 
  private:
-  static SecondDifference difference(double before_s, double here_s, double after_s) {
-    if (!(before_s < here_s) || !(here_s < after_s)) {
-      throw locograph::Error(
-          std::string(EdgeMovingBalance::kTag) + " between configurations of the same time",
-          "times that increase");
-    }
-    return SecondDifference(here_s - before_s, after_s - here_s);
-  }
-
   int links() const { return static_cast<int>(robot_.links().size()); }
   double mass_of(int link) const { return robot_.links()[static_cast<std::size_t>(link)].mass; }
   Eigen::Vector3d centre(const RobotState& state, int link) const {

@@ -20,6 +20,7 @@
 #include <locograph/plugins/surface_distance/edge_surface_distance.h>
 #include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
+#include <locograph/plugins/velocity_tracking/edge_acceleration_tracking.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
 #include <locograph/solvers/linear_solvers.h>
 
@@ -149,7 +150,8 @@ TEST_F(MotionGraph, HasEveryConstraintAndEveryCost) {
   EXPECT_EQ(graph.edges_of<EdgeMovingBalance>().size(), count - 2);
   EXPECT_EQ(graph.edges_of<EdgeContactWrench>().size(), count);
   EXPECT_EQ(graph.edges_of<EdgeWrenchNorm>().size(), count);
-  EXPECT_EQ(graph.edges_of<EdgeVelocityTracking>().size(), count - 1);
+  EXPECT_EQ(graph.edges_of<EdgeAccelerationTracking>().size(), count - 2);
+  EXPECT_GE(graph.edges_of<EdgeVelocityTracking>().size(), 2u);  // next to rest
   EXPECT_EQ(graph.edges_of<EdgeVelocityLimits>().size(), count - 1);
   EXPECT_EQ(graph.edges_of<EdgeSweptObstacleDistance>().size(), count - 1);
   EXPECT_EQ(graph.edges_of<EdgeAccelerationLimits>().size(), count - 2);

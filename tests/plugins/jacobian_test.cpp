@@ -135,6 +135,31 @@ TEST_P(JacobianOf, VelocityTrackingIsThatOfNumericDifferences) {
                 0.5);
 }
 
+TEST_P(JacobianOf, AccelerationTrackingIsThatOfNumericDifferences) {
+  Random random(15);
+  const Robot& model = robot.model();
+  const int n = model.tangent_size();
+  Graph graph = graph_of(robot);
+  for (int i = 0; i < kStates; ++i) {
+    const Eigen::VectorXd here = random.configuration(model, 2.0, 0.0);
+    const auto near = [&](int id, double time_s) {
+      Eigen::VectorXd moved(model.configuration_size());
+      const Eigen::VectorXd by = random.vector(n, 0.3);
+      model.integrate(here.data(), by.data(), moved.data());
+      return add_configuration(graph, robot, id, time_s, moved);
+    };
+    const auto before = near(3 * i, 0.5), after = near(3 * i + 1, 1.4);
+    graph.add_edge(EdgeAccelerationTracking(random.vector(n, 0.3), Eigen::VectorXd::Ones(n)),
+                   before, add_configuration(graph, robot, 3 * i + 2, 1.0, here), after);
+  }
+  Evaluated evaluated(graph);
+  Compared compared;
+  for (int k = 0; k < kStates; ++k) {
+    for (const int slot : {0, 1, 2}) compare(evaluated, k, slot, kEverywhere, compared);
+  }
+  EXPECT_EQ(compared.nonzero, 3 * n * kStates);
+}
+
 class WheelJacobianOf : public JacobianOf {};
 
 TEST_P(WheelJacobianOf, WheelContactIsThatOfNumericDifferences) {

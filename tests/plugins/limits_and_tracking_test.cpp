@@ -110,6 +110,29 @@ TEST_P(LimitsOf, PlanTrackingIsTheStepFromTheReference) {
   }
 }
 
+TEST_P(LimitsOf, AccelerationTrackingIsZeroAtConstantVelocityAndAtThePlansOwn) {
+  Random random(17);
+  const Robot& model = robot.model();
+  const int n = model.tangent_size();
+  const Eigen::VectorXd here = random.configuration(model, 2.0, 0.0), rate = random.vector(n, 0.3);
+  const auto error = [&](double faster, const Eigen::VectorXd& acceleration) {
+    Graph graph = graph_of(robot);
+    const auto at = [&](int id, double from_here_s, double times) {
+      Eigen::VectorXd q(model.configuration_size());
+      const Eigen::VectorXd by = from_here_s * times * rate;
+      model.integrate(here.data(), by.data(), q.data());
+      return add_configuration(graph, robot, id, 1.0 + from_here_s, q);
+    };
+    const auto before = at(0, -0.2, 1.0), middle = at(1, 0.0, 1.0), after = at(2, 0.3, faster);
+    graph.add_edge(EdgeAccelerationTracking(acceleration, Eigen::VectorXd::Ones(n)), before, middle,
+                   after);
+    return Evaluated(graph).error(0);
+  };
+  EXPECT_LT(error(1.0, Eigen::VectorXd::Zero(n)).norm(), 1e-12);
+  // Twice as fast after 0.1 s before and 0.15 s after the middle.
+  EXPECT_LT(error(2.0, rate / 0.25).norm(), 1e-12);
+}
+
 TEST_P(LimitsOf, VelocityTrackingIsZeroAtThePlansStepWhereverItStarts) {
   Random random(13);
   const Robot& model = robot.model();

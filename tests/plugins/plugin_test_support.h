@@ -23,6 +23,7 @@
 #include <locograph/plugins/self_collision/edge_self_collision.h>
 #include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
+#include <locograph/plugins/velocity_tracking/edge_acceleration_tracking.h>
 #include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
 #include <locograph/world/octree.h>
 

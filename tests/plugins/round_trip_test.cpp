@@ -90,6 +90,12 @@ class RoundTrip : public testing::TestWithParam<std::string> {
           EdgeVelocityTracking(random.vector(model.tangent_size(), 1.0),
                                random.weights(model.tangent_size())),
           ids[i - 1], ids[i]);
+      if (i > 1) {
+        add(graph, random, i,
+            EdgeAccelerationTracking(random.vector(model.tangent_size(), 1.0),
+                                     random.weights(model.tangent_size())),
+            ids[i - 2], ids[i - 1], ids[i]);
+      }
       if (!robot.wheels.empty()) {
         add(graph, random, i, rolling_of(graph), ids[i - 1], ids[i]);
         add(graph, random, i, steering_slip_of(graph, 0.002), ids[i - 1], ids[i]);
@@ -161,6 +167,10 @@ class RoundTrip : public testing::TestWithParam<std::string> {
     expect_same_edges<EdgeVelocityLimits>(a, b, [](const auto& x, const auto& y) {
       return x.fraction == y.fraction && x.base_linear_m_s == y.base_linear_m_s &&
              x.base_angular_rad_s == y.base_angular_rad_s;
+    });
+    expect_same_edges<EdgeAccelerationTracking>(a, b, [](const auto& x, const auto& y) {
+      expect_same_bits(x.acceleration, y.acceleration);
+      return true;
     });
     expect_same_edges<EdgeVelocityTracking>(a, b, [](const auto& x, const auto& y) {
       expect_same_bits(x.step, y.step);

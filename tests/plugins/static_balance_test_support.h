@@ -7,6 +7,7 @@
 
 #include <locograph/plugins/static_balance/edge_balance.h>
 #include <locograph/plugins/static_balance/edge_contact_wrench.h>
+#include <locograph/plugins/static_balance/edge_moving_balance.h>
 #include <locograph/plugins/static_balance/edge_torque_limits.h>
 #include <locograph/plugins/static_balance/edge_wrench_norm.h>
 

@@ -229,8 +229,9 @@ void RayCaster::Parts::place(const DepthCamera& camera, const RobotState& state,
         part.mesh ? &*part.mesh : nullptr);
   }
   std::int64_t who = first_of(Shown::Kind::kObstacle);
-  for (std::size_t o = 0; o < solids.obstacles.size(); ++o) {
-    add(camera, who++, optical_from_world * solids.obstacles[o].pose_at(time_s),
+  for (std::size_t o = 0; o < solids.obstacles.size(); ++o, ++who) {
+    if (!solids.obstacles[o].is_there(time_s)) continue;
+    add(camera, who, optical_from_world * solids.obstacles[o].pose_at(time_s),
         &solids.obstacle_shapes[o]);
   }
   for (const PlateSolid& plate : solids.plates) {

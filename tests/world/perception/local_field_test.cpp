@@ -7,10 +7,14 @@
 
 #include <random>
 
+#include "world/perception/each_voxel.h"
+
 namespace locograph {
 namespace {
 
-LocalMapOptions small_window() {
+using test::each_voxel;
+
+LocalMapOptions box_window() {
   LocalMapOptions options;
   options.size_m = {4.8, 4.8, 3.2};
   options.max_distance_m = 0.5;
@@ -37,14 +41,6 @@ std::shared_ptr<octomap::OcTree> cluttered(double resolution_m) {
   return octree_from_boxes(boxes, resolution_m);
 }
 
-template <class Visit>
-void each_voxel(const VoxelWindow& window, Visit visit) {
-  for (int z = 0; z < window.size[2]; ++z)
-    for (int y = 0; y < window.size[1]; ++y)
-      for (int x = 0; x < window.size[0]; ++x)
-        visit(Eigen::Vector3i(window.first + Eigen::Vector3i(x, y, z)));
-}
-
 Eigen::Vector3d centre_of(const VoxelWindow& window, const Eigen::Vector3i& index) {
   return (index.cast<double>() + Eigen::Vector3d::Constant(0.5)) * window.resolution_m;
 }
@@ -61,7 +57,7 @@ TEST(LocalField, ReadsWhatAFieldOfTheSameOctoMapReads) {
   options.lower = Eigen::Vector3d(-2.2, -2.2, -1.5);
   options.upper = Eigen::Vector3d(2.2, 2.2, 1.5);
   const DistanceField expected = DistanceField::from_octree(*tree, options);
-  LocalMap map(small_window());
+  LocalMap map(box_window());
   map.move_to({0.3, -0.2, 0.1});
   map.load(*tree);
   const std::shared_ptr<const LocalField> field = map.field();
@@ -93,7 +89,7 @@ TEST(LocalField, ReadsWhatAFieldOfTheSameOctoMapReads) {
 }
 
 TEST(LocalField, GradientIsTheDerivativeOfTheDistance) {
-  LocalMap map(small_window());
+  LocalMap map(box_window());
   map.load(*cluttered(0.05));
   const std::shared_ptr<const LocalField> field = map.field();
   std::mt19937 generator(7);
@@ -117,7 +113,7 @@ TEST(LocalField, GradientIsTheDerivativeOfTheDistance) {
 }
 
 TEST(LocalField, IsWhatASnapshotOfAWorldShows) {
-  LocalMap map(small_window());
+  LocalMap map(box_window());
   map.load(*cluttered(0.05));
   const std::shared_ptr<const LocalField> field = map.field();
   WorldDistance seen;
@@ -148,7 +144,7 @@ TEST(LocalMap, OctoMapsComeInAndGoOutAgain) {
     for (double y = -1.0; y < 0.6; y += 0.02)
       for (double z = -1.0; z < 0.6; z += 0.02) tree.updateNode(x, y, z, false);
   tree.prune();
-  LocalMap map(small_window());
+  LocalMap map(box_window());
   map.move_to({0.4, 0.8, -0.4});
   map.load(tree);
   octomap::OcTree out(0.05);
@@ -175,7 +171,7 @@ TEST(LocalMap, OctoMapsComeInAndGoOutAgain) {
   octomap::OcTree other(0.05);
   other.updateNode(0.525, 0.525, 0.525, true);
   other.updateNode(9.025, 0.025, 0.025, true);
-  LocalMap empty(small_window());
+  LocalMap empty(box_window());
   empty.clear(Eigen::AlignedBox3d(Eigen::Vector3d::Constant(0.4), Eigen::Vector3d::Constant(0.7)));
   empty.field()->merge_into(other);
   EXPECT_FALSE(occupied_in(other, {0.525, 0.525, 0.525}));
@@ -184,7 +180,7 @@ TEST(LocalMap, OctoMapsComeInAndGoOutAgain) {
 
 TEST(LocalMap, LoadFillsOnlyWhatWasNeverSeen) {
   const std::shared_ptr<const octomap::OcTree> tree = cluttered(0.05);
-  LocalMap map(small_window());
+  LocalMap map(box_window());
   map.clear(Eigen::AlignedBox3d(Eigen::Vector3d(0.0, -0.5, -0.2), Eigen::Vector3d(1.0, 1.2, 0.2)));
   map.load(*tree);
   EXPECT_FALSE(map.field()->is_occupied(map.window().index_at({0.5, 0.3, 0.0})));
@@ -193,7 +189,7 @@ TEST(LocalMap, LoadFillsOnlyWhatWasNeverSeen) {
 
 TEST(LocalMap, TheFloorOfAMapIsNoObstacle) {
   const Box slab = box_at({0.0, 0.0, -0.05}, {2.0, 2.0, 0.2});  // up to z = 0.05
-  LocalMapOptions options = small_window();
+  LocalMapOptions options = box_window();
   options.floor_z_m = 0.0;
   LocalMap map(options);
   map.load(*octree_from_boxes(std::vector{slab}, 0.05));
@@ -206,7 +202,7 @@ TEST(LocalMap, TheFloorOfAMapIsNoObstacle) {
 TEST(LocalMap, MapsOfAnotherResolutionAreOccupiedWhereTheirLeavesReach) {
   for (const double resolution_m : {0.02, 0.0333, 0.1, 0.2}) {
     const std::shared_ptr<const octomap::OcTree> tree = cluttered(resolution_m);
-    LocalMap map(small_window());
+    LocalMap map(box_window());
     map.load(*tree);
     const std::shared_ptr<const LocalField> field = map.field();
     int occupied = 0, missed = 0, too_far = 0;

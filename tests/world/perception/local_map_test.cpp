@@ -14,11 +14,13 @@
 #include <thread>
 
 #include "common/allocation_counter.h"
+#include "world/perception/each_voxel.h"
 #include "world/perception/room_camera.h"
 
 namespace locograph {
 namespace {
 
+using test::each_voxel;
 using test::looking;
 using test::room_camera;
 using test::RoomCamera;
@@ -31,14 +33,6 @@ LocalMapOptions small_window() {
   LocalMapOptions options;
   options.size_m = {4.8, 3.2, 1.6};
   return options;
-}
-
-template <class Visit>
-void each_voxel(const VoxelWindow& window, Visit visit) {
-  for (int z = 0; z < window.size[2]; ++z)
-    for (int y = 0; y < window.size[1]; ++y)
-      for (int x = 0; x < window.size[0]; ++x)
-        visit(Eigen::Vector3i(window.first + Eigen::Vector3i(x, y, z)));
 }
 
 Eigen::Vector3d centre_of(const LocalMap& map, const Eigen::Vector3i& index) {

@@ -275,7 +275,9 @@ TEST(RayCaster, LooksToTheEndOfTheRangeAndNotFromInside) {
     rays.cast(camera, state, 0.0, hits);
     EXPECT_EQ(rays.shown(hits.shows[middle]).kind,
               most < 4.95 ? Shown::Kind::kNothing : Shown::Kind::kObstacle);
-    if (most > 4.95) EXPECT_NEAR(hits.depth_m[middle], 4.95, 1e-6);
+    if (most > 4.95) {
+      EXPECT_NEAR(hits.depth_m[middle], 4.95, 1e-6);
+    }
   }
 }
 
