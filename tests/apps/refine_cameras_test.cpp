@@ -80,7 +80,7 @@ TEST(RefineCameras, RefuseWhatCannotBeUsedInOneLine) {
     expect_refusal(runner.run("refine plan.g2o -o out.g2o " + options), place, words);
     EXPECT_FALSE(runner.exists("out.g2o"));
   };
-  refused("--clouds nowhere", "nowhere", "");
+  refused("--clouds nowhere", "nowhere/clouds.csv", "no such file");
   refused("--clouds nowhere --cameras", "", "both --cameras and --clouds");
   refused("--known-map box.bt", "", "--known-map without --cameras");
   refused("--save-map seen.bt", "", "--save-map without --cameras or --clouds");

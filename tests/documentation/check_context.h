@@ -149,6 +149,11 @@ struct Context : in_check::Context {
   }
 };
 }  // namespace moving_shapes_h
+namespace obstacle_path_h {
+struct Context : in_check::Context {
+  static void look_at(double) {}
+};
+}  // namespace obstacle_path_h
 namespace plan_ends_h {
 struct Context : in_check::Context {
   const Stance on_the_floor = both_feet, on_top = raised();
