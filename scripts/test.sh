@@ -14,21 +14,17 @@ run_tests() {
 }
 
 install_missing
-# Several sources at a time, as below: a third less to compile.
-configure build -DLOCOGRAPH_BENCHMARKS=ON -DLOCOGRAPH_UNITY_TESTS=ON -DCMAKE_UNITY_BUILD=ON \
-  -DCMAKE_UNITY_BUILD_BATCH_SIZE=16
+configure build -DLOCOGRAPH_BENCHMARKS=ON -DLOCOGRAPH_UNITY_TESTS=ON
 build build
 
 say "checking the layout of the sources"
 "$root/scripts/format.sh" --check
 
 # configure_sanitized FOLDER SANITIZERS: without NDEBUG, so that Eigen's own assertions count too.
-# Several sources at a time, as nobody edits here: what they share is compiled once. -Og takes a
-# quarter less to compile than -O1.
+# -Og takes a quarter less to compile than -O1.
 configure_sanitized() {
   configure "$1" -DLOCOGRAPH_SANITIZE="$2" -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-    -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=16 -DLOCOGRAPH_UNITY_TESTS=ON \
-    "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-Og -g1" -DLOCOGRAPH_BENCHMARKS=OFF
+    -DLOCOGRAPH_UNITY_TESTS=ON "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-Og -g1" -DLOCOGRAPH_BENCHMARKS=OFF
 }
 
 # The libraries' unit tests and examples; the command itself and the installed package are tested
