@@ -158,6 +158,7 @@ ExitCode refine_plan(const CommandOptions& options) {
   WorldAt world_at;
   if (options.perception.given()) {
     eyes.emplace(file, judging, options.perception);
+    check_not_input(options.output, eyes->files());
     world_at = eyes->world_at();
     eyes->equip(walk_options);
   } else {

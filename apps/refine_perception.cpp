@@ -3,7 +3,9 @@
 #include <locograph/world/distance_view.h>
 #include <locograph/world/octree.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace locograph {
@@ -52,12 +54,9 @@ World known_beforehand(const World& world, const PerceptionChoice& choice) {
   return known;
 }
 
-std::unique_ptr<ImageSource> images_of(const PlanFile& file, const Judging& judging,
-                                       const PerceptionChoice& choice,
-                                       std::vector<DepthCamera> cameras) {
-  if (!choice.cameras) {
-    return std::make_unique<RecordedImages>(CloudsFolder(choice.clouds, std::move(cameras)));
-  }
+std::unique_ptr<ImageSource> simulated_images(const PlanFile& file, const Judging& judging,
+                                              const PerceptionChoice& choice,
+                                              std::vector<DepthCamera> cameras) {
   // Some looks before it starts: one image alone says little.
   constexpr double kLooks = 5.0;
   const int first = file.plan.slots.front();
@@ -130,6 +129,9 @@ void check_perception_options(const PerceptionChoice& choice,
   if (!choice.given() && !choice.save_map.empty()) {
     throw Error("--save-map without --cameras or --clouds", "one of them");
   }
+  if (!choice.given() && choice.unknown != PerceptionChoice().unknown) {
+    throw Error("--unknown without --cameras or --clouds", "one of them");
+  }
   if (choice.save_map.empty()) return;
   if (choice.save_map == "-") throw Error("a map to standard output", "a file");
   check_output(choice.save_map, inputs);
@@ -147,7 +149,15 @@ RefinePerception::RefinePerception(const PlanFile& file, const Judging& judging,
       judging.task ? judging.task->cameras : cameras_of(*judging.robot);
   perception_ = std::make_unique<Perception>(
       judging.robot, cameras, known_beforehand(world, choice), options_of(file, world, choice));
-  images_ = images_of(file, judging, choice, cameras);
+  files_ = files_of(file);
+  if (choice.cameras) {
+    images_ = simulated_images(file, judging, choice, cameras);
+  } else {
+    CloudsFolder folder(choice.clouds, cameras);
+    std::ranges::copy(folder.files(), std::back_inserter(files_));
+    images_ = std::make_unique<RecordedImages>(std::move(folder));
+  }
+  if (!choice.save_map.empty()) check_not_input(choice.save_map, files_);
   walk_.emplace(file.graph, judging, *perception_, *images_);
 }
 

@@ -53,8 +53,12 @@ void check_perception_options(const PerceptionChoice& choice,
 class RefinePerception {
  public:
   /// The file must outlive it. Throws Error for files that cannot be used, a robot without cameras,
-  /// a map of other voxels than the window's, and a window that is too large.
+  /// a map of other voxels than the window's, a window that is too large, and a save_map that is
+  /// one of files().
   RefinePerception(const PlanFile& file, const Judging& judging, const PerceptionChoice& choice);
+
+  /// Of the plan and of recorded clouds: all that must not be written.
+  const std::vector<std::filesystem::path>& files() const { return files_; }
 
   /// Sets what is asked on the way: verify, and pace.
   void equip(WalkOptions& options);
@@ -69,6 +73,7 @@ class RefinePerception {
 
  private:
   PerceptionChoice choice_;
+  std::vector<std::filesystem::path> files_;
   std::unique_ptr<Perception> perception_;
   std::unique_ptr<ImageSource> images_;
   std::optional<CameraWalk> walk_;

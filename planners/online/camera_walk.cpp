@@ -79,8 +79,8 @@ void CameraWalk::step_to(int executed) {
     const double time_s = k == parts ? to_s : from_s + (to_s - from_s) * k / parts;
     where(time_s, q);
     perception_.configuration(time_s, q);
+    show_until(time_s, where);  // a step may take longer than configurations are kept
   }
-  show_until(to_s, where);
 }
 
 void CameraWalk::show_until(double time_s,

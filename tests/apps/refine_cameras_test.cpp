@@ -84,6 +84,7 @@ TEST(RefineCameras, RefuseWhatCannotBeUsedInOneLine) {
   refused("--clouds nowhere --cameras", "", "both --cameras and --clouds");
   refused("--known-map box.bt", "", "--known-map without --cameras");
   refused("--save-map seen.bt", "", "--save-map without --cameras or --clouds");
+  refused("--unknown occupied", "", "--unknown without --cameras or --clouds");
   refused("--cameras --known-map none.bt", "none.bt", "");
   refused("--cameras --known-map box.bt --voxel 0.1", "box.bt", "those of the window");
   refused("--cameras --known-map box.bt --save-map box.bt", "", "box.bt");
@@ -95,6 +96,26 @@ TEST(RefineCameras, RefuseWhatCannotBeUsedInOneLine) {
   refused("--clouds clouds", "clouds/clouds.csv:2", "ear");
   runner.write_clouds("0.0,D435i_camera,b.pcd");
   refused("--clouds clouds", "clouds/clouds.csv:2", "b.pcd");
+}
+
+TEST(RefineCameras, WritesOntoNothingThatItReads) {
+  const CameraRunner runner;
+  runner.write_clouds("0.0,D435i_camera,a.pcd");
+  runner.write("box.xml",
+               "<obstacles version=\"1\"><box center=\"2 3 1\" size=\"1 1 1\"/></obstacles>\n");
+  ASSERT_EQ(runner.run("refine plan.g2o --obstacles box.xml -o with_box.g2o").exit_code, 0);
+  const auto is_kept = [&](const std::string& file, const std::string& options) {
+    SCOPED_TRACE(options + ' ' + file);
+    const std::string before = runner.read(file);
+    expect_refusal(runner.run("refine with_box.g2o " + options + ' ' + file), file,
+                   "would be lost");
+    EXPECT_EQ(runner.read(file), before);
+  };
+  is_kept("box.xml", "--cameras -o out.g2o --save-map");
+  for (const std::string file : {"clouds/clouds.csv", "clouds/a.pcd"}) {
+    is_kept(file, "--clouds clouds -o");
+    is_kept(file, "--clouds clouds -o out.g2o --save-map");
+  }
 }
 
 }  // namespace

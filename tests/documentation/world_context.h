@@ -10,14 +10,14 @@
 #include <locograph/world/convex_shape.h>
 #include <locograph/world/distance_field.h>
 #include <locograph/world/octree.h>
+#include <locograph/world/perception/camera_noise.h>
 #include <locograph/world/perception/configuration_buffer.h>
 #include <locograph/world/perception/depth_image.h>
 #include <locograph/world/perception/depth_png.h>
-#include <locograph/world/perception/camera_noise.h>
 #include <locograph/world/perception/field_buffers.h>
 #include <locograph/world/perception/local_map.h>
-#include <locograph/world/perception/window_transform.h>
 #include <locograph/world/perception/perception.h>
+#include <locograph/world/perception/window_transform.h>
 #include <locograph/world/point_cloud.h>
 #include <locograph/world/surfaces_of.h>
 #include <locograph/world/world_snapshot.h>

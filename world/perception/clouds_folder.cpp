@@ -139,6 +139,12 @@ void CloudsFolder::add_line(const std::string& csv, int line, std::string_view t
   clouds_.push_back(std::move(cloud));
 }
 
+std::vector<std::filesystem::path> CloudsFolder::files() const {
+  std::vector<std::filesystem::path> files = {folder_ / kClouds};
+  for (const Cloud& cloud : clouds_) files.push_back(folder_ / cloud.file);
+  return files;
+}
+
 DepthImage CloudsFolder::load(int i) const {
   const Cloud& cloud = clouds_[static_cast<std::size_t>(i)];
   const DepthCamera& camera = cameras_[static_cast<std::size_t>(cloud.camera)];

@@ -37,6 +37,8 @@ class CloudsFolder {
   /// Index into cameras().
   int camera(int i) const { return clouds_[static_cast<std::size_t>(i)].camera; }
   const std::vector<DepthCamera>& cameras() const { return cameras_; }
+  /// The list and all that it names.
+  std::vector<std::filesystem::path> files() const;
 
   /// Of its camera's size, stamped, without depths nearer than the camera's range. An image without
   /// any return is one that sees nothing: it is no mistake, and pixels_seen() tells it. Throws

@@ -21,6 +21,10 @@ std::vector<DepthCamera> usable(std::vector<DepthCamera> cameras, const Robot& r
       throw Error("camera " + camera.name + " is on link " + std::to_string(camera.link),
                   "a link of the robot");
     }
+    if (camera.width < 2 || camera.height < 2) {
+      throw Error("camera " + camera.name + " has one row or column of pixels",
+                  "at least 2 x 2 pixels");
+    }
   }
   return cameras;
 }
@@ -151,15 +155,15 @@ void Perception::require(const DepthImage& image) const {
 std::shared_ptr<const WorldSnapshot> Perception::image(DepthImage image) {
   require(image);
   const Eigen::VectorXd q = configurations_.at(image.stamp_s);
+  state_.update(q.data());
+  follow_robot();
   // From here on nothing is wrong with it.
   const auto index = static_cast<std::size_t>(image.camera);
   const DepthCamera& camera = cameras_[index];
   last_stamp_s_[index] = image.stamp_s;
   ++images_;
   if (pixels_seen(image) == 0) ++blind_;
-  state_.update(q.data());
   filter_.remove(state_, camera, image);
-  follow_robot();
   map_.insert(camera, state_.world_from_link(camera.link) * camera.link_from_optical, image);
   publish();
   return newest_;

@@ -23,7 +23,6 @@ void PerceptionThread::configuration(double time_s, Eigen::VectorXd q) {
   {
     const std::lock_guard lock(mutex_);
     configurations_.emplace_back(time_s, std::move(q));
-    if (time_s > known_until_s_) known_until_s_ = time_s;
   }
   given_.notify_one();
 }
@@ -115,7 +114,11 @@ void PerceptionThread::take_in(F&& f) {
 
 void PerceptionThread::do_work(Work work) {
   for (const auto& [time_s, q] : work.configurations) {
-    take_in([&] { perception_->configuration(time_s, q); });
+    take_in([&] {
+      perception_->configuration(time_s, q);
+      const std::lock_guard lock(mutex_);
+      known_until_s_ = time_s;
+    });
   }
   if (!work.image) return;
   take_in([&] {

@@ -91,7 +91,7 @@ class PerceptionThread {
   std::condition_variable given_;
   std::deque<std::pair<double, Eigen::VectorXd>> configurations_;
   std::deque<DepthImage> images_;
-  double known_until_s_ = -std::numeric_limits<double>::infinity();  // configurations given
+  double known_until_s_ = -std::numeric_limits<double>::infinity();  // configurations taken in
   bool stopping_ = false, at_once_ = false;
   std::shared_ptr<const WorldSnapshot> newest_;
   PerceptionCounts counts_;

@@ -112,6 +112,19 @@ TEST(CameraWalk, GivesTheSameBitsAgain) {
   EXPECT_EQ(write_graph_text(first.graph), write_graph_text(second.graph));
 }
 
+TEST(CameraWalk, SeesAllImagesOfAStepThatTakesLongerThanConfigurationsAreKept) {
+  if (test::kSanitized) GTEST_SKIP() << "takes long there";
+  Drive drive({});
+  for (const int slot : plan_of(drive.graph).slots)
+    drive.graph.vertex(VertexId<VertexConfiguration>{slot}).time_s *= 10.0;
+  const Motion step = motion_of(drive.graph, plan_of(drive.graph), 0, 1);
+  ASSERT_GT(step.time_s[1], drive.perception->options().kept_s + 1.0);
+  drive.eyes->world_at(0);
+  drive.eyes->world_at(1);
+  EXPECT_EQ(drive.eyes->refused(), 0) << drive.eyes->last_refusal();
+  EXPECT_GE(drive.perception->images(), static_cast<int>(2 * 5.0 * step.time_s[1]));
+}
+
 TEST(CameraWalk, TakesItsTimeWhereItHasNotSeen) {
   if (test::kSanitized) GTEST_SKIP() << "takes long there";
   PerceptionOptions options;

@@ -118,6 +118,10 @@ TEST(Perception, RefusesImagesThatCannotBeUsedAndStaysAsItIs) {
   refused(wall_image(0.1, 3.0), "a time after its last one");
   refused(wall_image(std::numeric_limits<double>::quiet_NaN(), 3.0), "eye");
   refused(wall_image(1.5, 3.0), "");  // where the robot will be nobody knows
+  perception.configuration(2.0, standing_at(*seeing.robot, 0.0));
+  perception.configuration(3.0, standing_at(*seeing.robot, 1e4));
+  refused(wall_image(3.0, 3.0), "the range of OctoMap's keys");
+  EXPECT_EQ(perception.blind(), 0);
   EXPECT_NE(refusal([&] { perception.configuration(0.5, standing_at(*seeing.robot, 0.0)); }),
             "accepted");
   EXPECT_NE(refusal([&] { perception.stand(Eigen::VectorXd::Zero(3)); }), "accepted");
@@ -249,6 +253,9 @@ TEST(Perception, RefusesRobotsWithoutCamerasAndMapsAndWindowsThatItCannotUse) {
   DepthCamera elsewhere = camera;
   elsewhere.link = 7;
   EXPECT_NE(why({elsewhere}, {}, {}).find("link 7"), std::string::npos);
+  DepthCamera line = camera;
+  line.height = 1;
+  EXPECT_NE(why({line}, {}, {}).find("one row or column"), std::string::npos);
   World coarse;
   coarse.map = box_map({0.0, 1.0, 1.0}, 0.1);
   const std::string resolution = why({camera}, coarse, {});

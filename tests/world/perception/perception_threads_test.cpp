@@ -94,6 +94,22 @@ TEST(PerceptionThread, KeepsAnImageUntilItsConfigurationIsKnown) {
   EXPECT_EQ(thread.counts().refused, 1) << "nobody says where the robot was";
 }
 
+TEST(PerceptionThread, AConfigurationThatIsRefusedLetsNoImageGo) {
+  const std::shared_ptr<const Robot> robot = camera_robot();
+  std::atomic<int> shown = 0;
+  PerceptionThread thread(small_perception(robot),
+                          {.on_snapshot = [&](auto) { shown.fetch_add(1), shown.notify_all(); }});
+  thread.configuration(0.0, standing_at(*robot, 0.0));
+  thread.configuration(std::numeric_limits<double>::infinity(), standing_at(*robot, 0.0));
+  thread.image(image_at(0.05));  // waits
+  thread.image(image_at(0.0));
+  shown.wait(0);
+  thread.configuration(0.1, standing_at(*robot, 0.0));
+  shown.wait(1);
+  EXPECT_EQ(thread.finish()->images(), 2);
+  EXPECT_EQ(thread.counts().refused, 1) << "the configuration";
+}
+
 TEST(PerceptionThread, DropsTheOldestOfTooManyImages) {
   const std::shared_ptr<const Robot> robot = camera_robot();
   PerceptionThread thread(small_perception(robot), {.most_waiting = 3});
