@@ -295,8 +295,6 @@ void print_summary(const OptimizeOptions& options, const Json& result) {
   if (result.contains("diagnosis_text")) text += result["diagnosis_text"].get<std::string>();
   if (result.contains("output")) {
     text += "written: " + result["output"].get<std::string>() + '\n';
-  } else if (!options.output.empty()) {
-    text += "not written: " + options.output + '\n';
   }
   print_text(text);
 }
@@ -385,10 +383,8 @@ ExitCode optimize(const OptimizeOptions& options) {
     json["diagnosis"] = diagnosis;
     json["diagnosis_text"] = diagnosis_text;
   }
-  // What is not done is told and not written: a graph cannot say that it is unfinished.
-  const bool done = result.converged && !interrupted;
-  if (done && !options.output.empty()) {
-    if (before) carry_slopes(before->motion, before->plan, graph);
+  if (before) carry_slopes(before->motion, before->plan, graph);
+  if (!options.output.empty() && std::isfinite(result.final.robust)) {
     const Progress progress("writing " + options.output);
     write_graph(graph, options.output);
     json["output"] = options.output;
@@ -398,7 +394,7 @@ ExitCode optimize(const OptimizeOptions& options) {
   } else {
     print_summary(options, json);
   }
-  return done ? kDone : kNo;
+  return result.converged && !interrupted ? kDone : kNo;
 }
 
 }  // namespace
@@ -413,7 +409,7 @@ Command add_optimize(OptionParser& app) {
                   "standard input")
       .required();
   parser.add_option("-o,--output", o.output,
-                    "Where to write the optimised graph if it converges; - is standard output");
+                    "Where to write the optimised graph; - is standard output");
   parser.add_option("--algorithm", o.algorithm, "lm, gn or dogleg")
       .one_of({"lm", "gn", "dogleg"})
       .show_default();

@@ -154,7 +154,7 @@ TEST(Optimize, EndsADiagnosisOnASignal) {
   const nlohmann::json json = nlohmann::json::parse(runner.read("out"));
   EXPECT_EQ(json["reason"], "interrupted");
   EXPECT_EQ(json["diagnosis"]["complete"], false);
-  EXPECT_FALSE(runner.exists("b.g2o"));
+  EXPECT_TRUE(runner.exists("b.g2o"));
 }
 
 TEST(Optimize, GivesTheWholeGraphToCeres) {
@@ -352,20 +352,14 @@ TEST(Optimize, DoesNotBelieveAWrongLoopClosureForTheChordalGuessEither) {
   EXPECT_NEAR(with_kernel.json()["final_cost"].get<double>(), 1.0 / 3.0 + 3.0, 1e-3);
 }
 
-TEST(Optimize, SaysNoWhenTheIterationsRunOutAndWritesNothing) {
+TEST(Optimize, SaysNoWhenTheIterationsRunOutAndStillWritesWhatItHas) {
   const CommandRunner runner;
   runner.write("a.g2o", kTriangle);
-  runner.write("b.g2o", "what was there");
   const Outcome outcome = runner.run("optimize a.g2o --iterations 1 -o b.g2o --json");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_EQ(outcome.json()["converged"], false);
   EXPECT_EQ(outcome.json()["reason"], "the number of iterations is used up");
-  EXPECT_FALSE(outcome.json().contains("output"));
-  EXPECT_EQ(runner.read("b.g2o"), "what was there");
-  const Outcome told = runner.run("optimize a.g2o --iterations 1 -o b.g2o");
-  EXPECT_EQ(told.exit_code, 1);
-  EXPECT_NE(told.out.find("not written: b.g2o"), std::string::npos) << told.out;
-  EXPECT_EQ(runner.files(), 2);
+  EXPECT_TRUE(runner.exists("b.g2o"));
 }
 
 TEST(Optimize, NamesTheVertexWhereTheSystemIsSingular) {
