@@ -113,8 +113,9 @@ void PerceptionThread::take_in(F&& f) {
 }
 
 void PerceptionThread::do_work(Work work) {
-  for (const auto& [time_s, q] : work.configurations) {
+  for (const auto& configuration : work.configurations) {
     take_in([&] {
+      const auto& [time_s, q] = configuration;
       perception_->configuration(time_s, q);
       const std::lock_guard lock(mutex_);
       known_until_s_ = time_s;
