@@ -30,6 +30,19 @@ void require_in_range(const EndEffector& effector, const EffectorField& field) {
               positive ? "a positive number" : "zero or more");
 }
 
+void require_sound_bar(const std::string& name, const Contact& contact) {
+  const RoundBar& bar = *contact.bar;
+  if (!(bar.radius_m > 0.0 && std::isfinite(bar.radius_m))) {
+    throw Error(name + " is on a bar with a radius of " + std::to_string(bar.radius_m),
+                "a positive number");
+  }
+  const double length = std::hypot(bar.axis.x(), bar.axis.y(), bar.axis.z());
+  const Eigen::Vector3d along = bar.axis / length;
+  if (!(std::abs(along.dot(contact.normal.stableNormalized())) <= kSameAngle_rad)) {
+    throw Error(name + " is on a bar whose axis is not across its normal", "a direction across it");
+  }
+}
+
 /// Contacts of one rigid body: where they are to each other is fixed.
 void require_consistent(const RobotState& state, const Contact& a, const Contact& b,
                         const std::string& numbers) {
@@ -136,6 +149,7 @@ void require_sound_place(const Contact& contact) {
     throw Error(name + " is locked", "wheels only are");
   }
   axes_in_world(contact);
+  if (contact.bar) require_sound_bar(name, contact);
 }
 
 void require_sound_contact(const Robot& robot, const Contact& contact) {

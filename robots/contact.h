@@ -18,8 +18,8 @@
 ///
 ///   surface   point, normal and forward of link and world coincide; without `forward`, yaw about
 ///             the normal is free
-///   point     `point` is at `position`, or, with a radius (a ball), that far above it along the
-///             normal; the link may turn in any way
+///   point     `point` is at `position`, or, with a radius (a ball) as it touches down, that far
+///             above it along the normal; the link may turn in any way
 ///   rung      `point` is at `position` and the bar, normal × forward, has the world's direction;
 ///             turning round the bar is free
 ///   wheel     the disc of `radius_m` about `point`, normal to the axis of the joint above the
@@ -27,7 +27,8 @@
 ///             that plane; the touching point may be anywhere in it, that of a locked wheel is at
 ///             `position`
 ///
-/// While a stance is held its surfaces, points and rungs stay where they are. A wheel rolls: its
+/// While a stance is held its surfaces, bare points and rungs stay where they are. A ball rolls
+/// (rolling_ball.h): its contact says where it has touched down. A wheel rolls, too: its
 /// touching point moves along its heading only, as far as the disc turns. A locked wheel stands
 /// still on the ground: its touching point stays, and its joint turns back what its carrier
 /// pitches.
@@ -71,13 +72,20 @@ struct EndEffector {
   double max_moment_Nm = 0.0;  ///< rung: of each component
 };
 
+/// The axis is a direction of any length, across the normal of the contact, which lies on the bar.
+struct RoundBar {
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  double radius_m = 0.0;
+};
+
 struct Contact {
   EndEffector effector;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();     ///< m, world
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();      ///< world, out of the surface, any length
   std::optional<Eigen::Vector3d> forward = std::nullopt;  ///< world; a rung must have one
-  bool bears_load = true;  ///< false: closed, but balance does not count on it
-  bool locked = false;     ///< a wheel that stands still
+  bool bears_load = true;                      ///< false: closed, but balance does not count on it
+  bool locked = false;                         ///< a wheel that stands still
+  std::optional<RoundBar> bar = std::nullopt;  ///< that a ball touches; none: a plane
 
   /// The end effector's name, or its link's.
   const std::string& name() const { return effector.name.empty() ? effector.link : effector.name; }
@@ -117,7 +125,8 @@ double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 void require_sound_effector(const Robot& robot, const EndEffector& effector);
 
 /// Throws Error for a place that is not finite, a normal that is zero or along forward, a rung
-/// without forward, and a lock on what is no wheel. Of the end effector nothing is asked.
+/// without forward, a lock on what is no wheel, and a bar without axis or radius or whose axis is
+/// not across the normal. Of the end effector nothing is asked.
 void require_sound_place(const Contact& contact);
 
 /// Both for a contact and its end effector.

@@ -14,6 +14,8 @@
 ///   surface               6  c − p along x y z [m], rotation vector log(Cᵀ F) about x y z [rad]
 ///   surface, yaw is free  5  c − p along x y z [m], tilt of the normal about x y [rad]
 ///   point                 3  c − p − radius · normal along x y z [m]
+///   ball that rolled      3  its slip since another configuration along both directions of what it
+///                            touches, its height above that [m] (rolling_ball.h)
 ///   rung                  5  c − p along x y z [m], tilt of the bar about x z [rad]
 ///   wheel                 2  height of the disc's lowest point above the plane,
 ///                            n · (c − p) − r √(1 − (n · a)²) [m]; n · a, the sine of the tilt of
@@ -64,6 +66,8 @@ class ClosureRows {
   int link_;
 };
 
+struct BallPose;
+
 /// The rows of a contact of any kind, as a value.
 class ContactClosure {
  public:
@@ -71,6 +75,8 @@ class ContactClosure {
   ContactClosure() = default;
   /// Throws Error for an end effector that is not sound, or a place that is none.
   ContactClosure(const Robot& robot, const Contact& contact);
+  /// Of a ball that rolls from there.
+  ContactClosure(const Robot& robot, const Contact& contact, const BallPose& from);
 
   int rows() const { return static_cast<int>(held().size()); }
   std::span<const int> held() const { return rows_ ? rows_->held() : std::span<const int>(); }

@@ -1,11 +1,12 @@
 #include <locograph/robots/contact_kinds.h>
 #include <locograph/robots/frame_closure.h>
 #include <locograph/robots/pressed_cone.h>
+#include <locograph/robots/rolling_ball.h>
 
 namespace locograph {
 namespace {
 
-/// A ball that does not roll, or a bare point.
+/// A ball, or a bare point.
 struct PointContact final : ContactKindEntry {
   PointContact()
       : ContactKindEntry("point", {effector_fields::kBallRadius, effector_fields::kFriction,
@@ -28,6 +29,10 @@ struct PointContact final : ContactKindEntry {
 
   std::vector<BearingRay> rays(const BearingContact& bearing, double part, double) const override {
     return pressed_rays(bearing.contact, {Eigen::Vector2d::Zero()}, part);
+  }
+
+  Eigen::Vector3d touching_point(const RobotState& state, const Contact& contact) const override {
+    return rolled_to(state, contact).position;
   }
 };
 

@@ -90,6 +90,17 @@ struct Context {
 namespace robot_h {
 using Context = FilesContext;
 }
+namespace rolling_ball_h {
+struct Context : in_robots::Context {
+  const Contact contact = {.effector = {.name = "hand",
+                                        .link = "ball1_tip",
+                                        .kind = ContactKind::kPoint,
+                                        .radius_m = 0.05,
+                                        .friction = 0.5,
+                                        .max_force_N = 300.0}};
+  const Eigen::VectorXd next = robot.named_configuration("home");
+};
+}  // namespace rolling_ball_h
 namespace shape_covers_h {
 struct Context : in_robots::Context {
   const Link& link = robot.links()[0];
