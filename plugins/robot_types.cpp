@@ -12,6 +12,7 @@
 #include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/plugins/robot_types.h>
+#include <locograph/plugins/rolling/edge_ball_rolling.h>
 #include <locograph/plugins/rolling/edge_rolling.h>
 #include <locograph/plugins/rolling/edge_steering_slip.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
@@ -66,6 +67,7 @@ void add_robot_types(TypeRegistry& types) {
   types.add_edge<EdgeRolling>();
   types.add_edge<EdgeSelfCollision>();
   types.add_edge<EdgeSteeringSlip>();
+  types.add_edge<EdgeBallRolling>();
   types.add_edge<EdgeSurfaceDistance>();
   types.add_edge<EdgeSweptObstacleDistance>();
   types.add_edge<EdgeTimeStepLimits>();

@@ -75,6 +75,7 @@ ContactParameter::ContactParameter(std::shared_ptr<const RobotParameter> paramet
   axes_in_world = !entry.axes_on_link;
   axes = axes_in_world ? locograph::axes_in_world(contact) : axes_in_link(effector);
   if (axes_in_world) touching_offset = -effector.radius_m * axes.col(2);
+  if (contact.bar && is_ball(effector)) about_bar.emplace(contact);
   cone = entry.wrench_cone(contact, friction);
 }
 
@@ -103,8 +104,12 @@ void ContactParameter::read(FieldReader& in) {
     } else if ((word == "inner" || word == "outer") && model.cone == FrictionCone::kCircle) {
       model.cone = word == "inner" ? FrictionCone::kInner : FrictionCone::kOuter;
       model.facets = in.integer();
+    } else if (word == "bar" && !read.bar) {
+      const double radius_m = read_up_to(in, ranges::kCoordinate_m, "the radius");
+      read.bar = RoundBar{read_vector(in), radius_m};
     } else {
-      in.fail("'" + word + "'", "'unloaded', 'locked', 'inner', 'outer' or the end of the line");
+      in.fail("'" + word + "'",
+              "'unloaded', 'locked', 'inner', 'outer', 'bar' or the end of the line");
     }
   }
   *this = ContactParameter(of, number, std::move(read), model);
@@ -128,6 +133,11 @@ void ContactParameter::write(FieldWriter& out) const {
   }
   if (!contact.bears_load) out.word("unloaded");
   if (contact.locked) out.word("locked");
+  if (contact.bar) {
+    out.word("bar");
+    out.number(contact.bar->radius_m);
+    write_field(out, contact.bar->axis);
+  }
   if (friction.cone == FrictionCone::kCircle) return;
   out.word(friction.cone == FrictionCone::kInner ? "inner" : "outer");
   out.integer(friction.facets);

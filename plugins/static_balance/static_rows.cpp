@@ -5,6 +5,7 @@
 #include <locograph/robots/statics.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace locograph {
 namespace {
@@ -34,6 +35,12 @@ void add_turning(const Eigen::Vector3d& arm, const Eigen::Vector3d& force,
   gradient.block<3, 3>(3, 3) += skew(moment);
 }
 
+/// Force and moment about the point, for each radian that the normal of a ball turns about its bar.
+std::pair<Eigen::Vector3d, Eigen::Vector3d> turned_about_bar(const AppliedWrench& applied) {
+  const Eigen::Vector3d axis = applied.contact->about_bar->axis();
+  return {axis.cross(applied.force), axis.cross(applied.moment)};
+}
+
 }  // namespace
 
 Eigen::Vector3d point_column(const RobotState& state, int i, const Eigen::Vector3d& point) {
@@ -47,7 +54,14 @@ AppliedWrench::AppliedWrench(const RobotState& state, const ContactParameter& c,
     : contact(&c) {
   const Eigen::Isometry3d& world_from_link = state.world_from_link(c.link);
   point = world_from_link * c.contact.effector.point;
-  if (c.axes_in_world) {
+  touching_offset = c.touching_offset;
+  if (c.about_bar) {
+    const Eigen::Matrix3d round =
+        Eigen::Quaterniond::FromTwoVectors(c.axes.col(2), c.about_bar->normal(point))
+            .toRotationMatrix();
+    axes.noalias() = round * c.axes;
+    touching_offset = round * c.touching_offset;
+  } else if (c.axes_in_world) {
     axes = c.axes;
   } else {
     axes.noalias() = world_from_link.linear() * c.axes;
@@ -58,7 +72,7 @@ AppliedWrench::AppliedWrench(const RobotState& state, const ContactParameter& c,
     (component < 3 ? force : moment) += *components * axes.col(component % 3);
     ++components;
   }
-  moment += c.touching_offset.cross(force);
+  moment += touching_offset.cross(force);
 }
 
 void add_gravity_on_base(const RobotState& state, BaseWrench wrench) {
@@ -114,14 +128,22 @@ void add_wrench_on_base_gradient(const RobotState& state, const AppliedWrench& a
     }
     gradient.block<3, 1>(3, column).noalias() += base * moment;
   }
+  if (!applied.contact->about_bar) return;
+  const auto [force_turned, moment_turned] = turned_about_bar(applied);
+  Eigen::Matrix<double, 6, 1> turned;
+  turned << base * force_turned, base * (arm.cross(force_turned) + moment_turned);
+  const Eigen::Vector3d turn = applied.contact->about_bar->turn_per_metre(applied.point);
+  for (int row = 0; row < 6; ++row) {
+    state.add_point_gradient(applied.contact->link, applied.point, turn, turned[row],
+                             gradient.row(row).data());
+  }
 }
 
 void add_wrench_on_base_by_components(const RobotState& state, const AppliedWrench& applied,
                                       int first, BaseWrenchGradient gradient) {
   const Eigen::Matrix3d directions = base_from_world(state) * applied.axes;
-  const Eigen::Vector3d arm =
-      base_from_world(state) *
-      (applied.point + applied.contact->touching_offset - state.world_from_link(0).translation());
+  const Eigen::Vector3d arm = base_from_world(state) * (applied.point + applied.touching_offset -
+                                                        state.world_from_link(0).translation());
   for (const int component : applied.contact->cone->components()) {
     const Eigen::Vector3d direction = directions.col(component % 3);
     if (component < 3) {
@@ -200,6 +222,14 @@ void add_wrench_gradient(const RobotState& state, const AppliedWrench& applied, 
   const Robot& robot = state.robot();
   const bool turns = !applied.contact->axes_in_world;
   const int base = robot.base_tangent_size();
+  if (applied.contact->about_bar) {
+    const auto [force, moment] = turned_about_bar(applied);
+    double torque = point_column(state, i, applied.point).dot(force);
+    if (revolute(state, i)) torque += state.joint_axis(i).dot(moment);
+    state.add_point_gradient(applied.contact->link, applied.point,
+                             applied.contact->about_bar->turn_per_metre(applied.point),
+                             scale * torque, row);
+  }
   const auto entry = [&](int k) -> double& { return row[base + axis_at(state, k).active]; };
   const auto multiplier = [&](int k) { return axis_at(state, k).multiplier; };
   const Eigen::Vector3d axis = scale * state.joint_axis(i);
@@ -231,7 +261,7 @@ void add_wrench_gradient(const RobotState& state, const AppliedWrench& applied, 
 void add_wrench_gradient_by_components(const RobotState& state, const AppliedWrench& applied, int i,
                                        double scale, double* row) {
   const Eigen::Vector3d by_force =
-      scale * point_column(state, i, applied.point + applied.contact->touching_offset);
+      scale * point_column(state, i, applied.point + applied.touching_offset);
   Eigen::Vector3d by_moment = Eigen::Vector3d::Zero();
   if (revolute(state, i)) by_moment = scale * state.joint_axis(i);
   for (const int component : applied.contact->cone->components()) {

@@ -19,7 +19,8 @@
 ///
 /// A ball and a wheel touch at p + r, p their centre, r fixed in the world: a force f there is the
 /// force f at p and the moment r × f, which is fixed in the world as f is, and all of the above
-/// holds for p.
+/// holds for p. On a bar with the axis a, r and f turn with the normal, by dΦ = t · dp: f by
+/// dΦ a × f and r × f by dΦ a × (r × f).
 
 #include <locograph/plugins/configuration/contact_parameter.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
@@ -41,8 +42,9 @@ struct AppliedWrench {
 
   const ContactParameter* contact;
   Eigen::Matrix3d axes;
-  Eigen::Vector3d point;          ///< of the end effector, fixed in its link
-  Eigen::Vector3d force, moment;  ///< about the point
+  Eigen::Vector3d point;            ///< of the end effector, fixed in its link
+  Eigen::Vector3d force, moment;    ///< about the point
+  Eigen::Vector3d touching_offset;  ///< see ContactParameter
 };
 
 /// The six rows of the base. Only for robots with a floating base.

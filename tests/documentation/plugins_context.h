@@ -175,6 +175,20 @@ struct Context : RollingContext {
   Context() { write_graph(graph, "plan.g2o"); }
 };
 }  // namespace robot_types_h
+namespace rolling_edge_ball_rolling_h {
+/// 11: a ball.
+struct Context : in_plugins::Context {
+  Context() {
+    const Contact ball = {.effector = {.name = "hand",
+                                       .link = "ball1_tip",
+                                       .kind = ContactKind::kPoint,
+                                       .radius_m = 0.05,
+                                       .friction = 0.5,
+                                       .max_force_N = 300.0}};
+    graph.parameters().set(11, std::make_shared<const ContactParameter>(parameter, 0, ball));
+  }
+};
+}  // namespace rolling_edge_ball_rolling_h
 namespace rolling_edge_rolling_h {
 using Context = RollingContext;
 }

@@ -127,6 +127,7 @@ TEST_F(RobotParameters, AreAllRegisteredUnderTheirTags) {
                           "VERTEX_CONFIGURATION",
                           "PARAMS_FRAME",
                           "EDGE_ACCELERATION_LIMITS",
+                          "EDGE_BALL_ROLLING",
                           "EDGE_COM",
                           "EDGE_CONTACT",
                           "EDGE_FRAME_POSE",
