@@ -7,6 +7,7 @@
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
 #include <locograph/robots/contact_kinds.h>
 #include <locograph/robots/robot_state.h>
+#include <locograph/robots/rolling_ball.h>
 #include <locograph/world/convex_hull.h>
 
 #include <algorithm>
@@ -105,7 +106,7 @@ Json area_json(const Support& support, const ContactParameter& parameter, const 
 
 Json contact_json(const ContactParameter& parameter, const RobotState& state,
                   const Support& support) {
-  const Contact& contact = parameter.contact;
+  const Contact contact = rolled_to(state, parameter.contact);
   const ContactKindEntry& kind = contact_kind_entry(parameter.kind());
   Json json = {{"name", contact.name()},
                {"link", parameter.link},

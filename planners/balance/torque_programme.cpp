@@ -25,6 +25,9 @@ void TorqueProgramme::add(const BearingContact& bearing, double margin) {
   const int number = static_cast<int>(links_.size());
   links_.push_back(robot_.link_index(contact.effector.link));
   positions_.push_back(contact.position);
+  if (is_ball(contact.effector)) {
+    balls_.push_back({positions_.size() - 1, contact.effector, BallTrack(contact)});
+  }
   most_.push_back(most_of_rays(contact, margin, weight_N_));
   for (const BearingRay& ray : bearing_rays(bearing, margin, weight_N_)) {
     rays_.push_back(
@@ -37,6 +40,9 @@ double TorqueProgramme::solve(const RobotState& state, Eigen::VectorXd& gradient
   const int rays = static_cast<int>(rays_.size()), torques = static_cast<int>(joints_.size());
   const int limits = static_cast<int>(most_.size());
   const int rows = base + 2 * torques + limits;
+  for (const Ball& ball : balls_) {
+    positions_[ball.contact] = ball.track.touching(BallPose(state, ball.effector).centre);
+  }
   gravity_torques(state, standard_gravity(), gravity_);
   columns_.setZero(size, rays);
   for (int r = 0; r < rays; ++r) {

@@ -12,7 +12,7 @@
 
 #include <locograph/planners/balance/balance_region.h>
 #include <locograph/planners/balance/linear_programme.h>
-#include <locograph/robots/robot_state.h>
+#include <locograph/robots/rolling_ball.h>
 #include <locograph/robots/statics.h>
 
 #include <Eigen/Core>
@@ -47,7 +47,14 @@ class TorqueProgramme {
   const Robot& robot_;
   double weight_N_, effort_scale_;
   std::vector<int> links_;
-  std::vector<Eigen::Vector3d> positions_;
+  std::vector<Eigen::Vector3d> positions_;  ///< of balls, of the last solve
+  /// A ball and its contact.
+  struct Ball {
+    std::size_t contact;
+    EndEffector effector;
+    BallTrack track;
+  };
+  std::vector<Ball> balls_;
   std::vector<double> most_;  ///< pressing force of each contact; negative: no such limit
   std::vector<Ray> rays_;
   std::vector<int> joints_;  ///< with a limit

@@ -5,6 +5,7 @@
 #include <locograph/plugins/joint_limits/edge_joint_limits.h>
 #include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
+#include <locograph/plugins/rolling/edge_ball_rolling.h>
 #include <locograph/plugins/rolling/edge_rolling.h>
 #include <locograph/plugins/rolling/edge_steering_slip.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
@@ -229,8 +230,18 @@ class PlanEdges {
                     ids_[i]);
     for (const int number : contacts_at(plan_.stance_from, i)) {
       const auto contact = graph_.parameters().get<ContactParameter>(number);
-      graph_.add_edge(EdgeContact(*contact, number, options_.constraint_weight), ids_[i]);
+      if (i > 0 && is_ball(contact->contact.effector) && is_held(i - 1, number)) {
+        graph_.add_edge(EdgeBallRolling(number, options_.constraint_weight), ids_[i - 1], ids_[i]);
+      } else {
+        graph_.add_edge(EdgeContact(*contact, number, options_.constraint_weight), ids_[i]);
+      }
     }
+  }
+
+  /// From configuration i to the next one.
+  bool is_held(std::size_t i, int contact) const {
+    return plan_.stance_from[i] &&
+           std::ranges::count(plan_.stance_from[i]->contact_numbers, contact) > 0;
   }
 
   int stance_number(std::size_t i) const { return graph_.vertex(ids_[i]).stance_number; }
@@ -241,11 +252,8 @@ class PlanEdges {
     const std::size_t before = i == 0 ? i : i - 1;
     if (i == 0 || stance_number(before) != stance_number(i)) begin_stance(before, i);
     if (!places_number_ || !plan_.stance_from[before] || !plan_.stance_from[i]) return;
-    const auto holds = [&](std::size_t step, int number) {
-      return std::ranges::count(plan_.stance_from[step]->contact_numbers, number) > 0;
-    };
     if (std::ranges::none_of(plan_.stance_from[i]->contact_numbers,
-                             [&](int number) { return holds(before, number); })) {
+                             [&](int number) { return is_held(before, number); })) {
       return;
     }
     state_.update(configurations_[i].data());

@@ -7,13 +7,13 @@
 ///     add_plan_edges(graph, drive_edges());
 ///
 /// Each configuration gets tracking of the plan as it is, joint limits, the contacts of the stances
-/// on both sides and distances of its links to each other and, where the plan has a PARAMS_PLACES,
-/// to what they do not touch; each step tracking of its length,
-/// velocity limits, rolling where it has wheels and distances to the world on the way; each two
-/// steps acceleration limits; each configuration whose wrenches are known balance, friction, the
-/// least wrenches and, where they are enforced, torque limits. Nothing moves between the
-/// configurations of a plan of stances: it has no edges of steps. A posture, a plan of one
-/// configuration, has its distances to the world there.
+/// on both sides, where balls that were held before have rolled since, and distances of its links
+/// to each other and, where the plan has a PARAMS_PLACES, to what they do not touch; each step
+/// tracking of its length, velocity limits, rolling where it has wheels and distances to the world
+/// on the way; each two steps acceleration limits; each configuration whose wrenches are known
+/// balance, friction, the least wrenches and, where they are enforced, torque limits. A plan of
+/// stances has no edges of steps but those of balls. A posture, a plan of one configuration, has
+/// its distances to the world there.
 ///
 /// So a feasible plan is the optimum of its graph, up to micrometres, and refining it needs nothing
 /// added.

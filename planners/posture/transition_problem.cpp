@@ -18,10 +18,20 @@ void TransitionOptions::validate() const {
   termination.validate();
 }
 
+HeldBalls held_balls(const RobotState& state, std::span<const Contact> contacts,
+                     const std::function<bool(const Contact&)>& held) {
+  HeldBalls balls;
+  for (const Contact& contact : contacts) {
+    const bool rolls = is_ball(contact.effector) && held(contact);
+    balls.push_back(rolls ? std::optional(BallPose(state, contact.effector)) : std::nullopt);
+  }
+  return balls;
+}
+
 const std::string& transition_failure_name(TransitionFailure failure) {
-  static const std::array<std::string, 8> names = {"none",           "contact", "joint limit",
+  static const std::array<std::string, 9> names = {"none",           "contact", "joint limit",
                                                    "self-collision", "surface", "obstacle",
-                                                   "balance",        "torque"};
+                                                   "balance",        "torque",  "border"};
   return names[static_cast<std::size_t>(failure)];
 }
 

@@ -8,11 +8,15 @@
 #include <locograph/common/termination.h>
 #include <locograph/planners/balance/balance_region.h>
 #include <locograph/planners/balance/torque_programme.h>
+#include <locograph/robots/rolling_ball.h>
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace locograph {
 
@@ -33,8 +37,16 @@ struct TransitionOptions {
   bool operator==(const TransitionOptions&) const = default;
 };
 
+/// Of contacts: where each ball that is held is, to roll on from there; nothing for other contacts.
+using HeldBalls = std::vector<std::optional<BallPose>>;
+/// held: of each contact, whether it is.
+HeldBalls held_balls(const RobotState& state, std::span<const Contact> contacts,
+                     const std::function<bool(const Contact&)>& held);
+
 struct TransitionProblem {
   std::span<const Contact> closed;
+  /// Of each of them; of those beyond its end nothing: balls are at their places.
+  std::span<const std::optional<BallPose>> rolled_from = {};
   const BalanceRegion* balance = nullptr;  ///< null: not asked for
   TorqueProgramme* torques = nullptr;      ///< of the contacts that balance; null: not limited
   Eigen::VectorXd start;
@@ -63,7 +75,8 @@ enum class TransitionFailure {
   kSurface,
   kObstacle,
   kBalance,
-  kTorque
+  kTorque,
+  kBorder
 };
 const std::string& transition_failure_name(TransitionFailure failure);
 

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace locograph {
 namespace {
@@ -23,6 +24,47 @@ constexpr double kTorqueUnit_m = 0.1;
 /// How much more rows of links that touch something else near a place count: their margin is as
 /// much less than that of others.
 constexpr double kBesideScale = 20.0;
+/// Likewise of borders, which a ball may roll to.
+constexpr double kBorderScale = 10.0;
+constexpr double kOnPlace_m = 1e-4;
+
+/// How far a point is from the border of a surface or a bar, along each of its axes, and that axis.
+struct BorderRooms {
+  struct Room {
+    double value;
+    Eigen::Vector3d inwards;
+  };
+  std::array<Room, 2> rooms;
+  int count = 0;
+
+  void add(double half_m, const Eigen::Vector3d& axis, double at_m) {
+    if (std::isinf(half_m)) return;
+    rooms[static_cast<std::size_t>(count++)] = {half_m - std::abs(at_m),
+                                                at_m < 0.0 ? axis : Eigen::Vector3d(-axis)};
+  }
+  BorderRooms(const Surface& surface, const Eigen::Vector3d& point) {
+    const Eigen::Isometry3d& pose = surface.world_from_surface;
+    const Eigen::Vector3d off = point - pose.translation();
+    add(surface.half_x_m, pose.linear().col(0), off.dot(pose.linear().col(0)));
+    add(surface.half_y_m, pose.linear().col(1), off.dot(pose.linear().col(1)));
+  }
+  BorderRooms(const Bar& bar, const Eigen::Vector3d& point) {
+    const Eigen::Vector3d way = 0.5 * (bar.to - bar.from), axis = way.normalized();
+    add(way.norm(), axis, axis.dot(point - bar.from - way));
+  }
+  double least() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < count; ++i) {
+      least = std::min(least, rooms[static_cast<std::size_t>(i)].value);
+    }
+    return least;
+  }
+};
+
+BorderRooms border_rooms(const TouchablePlaces& places, int place, const Eigen::Vector3d& point) {
+  return places.is_surface(place) ? BorderRooms(places.surface(place), point)
+                                  : BorderRooms(places.bar(place), point);
+}
 
 }  // namespace
 
@@ -112,6 +154,7 @@ void TransitionRows::set_problem(const TransitionProblem& problem,
     balance_margin_m_ = std::min(options.balance_margin_m, 0.25 * balance_->width_m);
   }
   closures_.clear();
+  rolling_.clear();
   contact_names_.clear();
   contact_of_row_.clear();
   contact_links_.clear();
@@ -127,7 +170,13 @@ void TransitionRows::set_problem(const TransitionProblem& problem,
   };
   for (const Contact& contact : problem.closed) {
     const int number = static_cast<int>(closures_.size());
-    closures_.emplace_back(robot(), contact);
+    const std::size_t k = closures_.size();
+    if (k < problem.rolled_from.size() && problem.rolled_from[k]) {
+      closures_.emplace_back(robot(), contact, *problem.rolled_from[k]);
+      find_borders(contact);
+    } else {
+      closures_.emplace_back(robot(), contact);
+    }
     contact_names_.push_back(contact.name());
     contact_links_.push_back(closures_.back().link());
     for (int i = 0; i < closures_.back().rows(); ++i) contact_of_row_.push_back(number);
@@ -136,6 +185,28 @@ void TransitionRows::set_problem(const TransitionProblem& problem,
   // TransitionProblem::near
   for (const Contact& contact : problem.near) exempt(contact);
   closure_.resize(static_cast<Eigen::Index>(contact_of_row_.size()));
+}
+
+/// Of the places that the ball of the contact touched down on, the one it is furthest inside.
+void TransitionRows::find_borders(const Contact& contact) {
+  const TouchablePlaces& places = relations_.places();
+  double most = -kOnPlace_m;
+  std::optional<int> found;
+  for (const int place : places.tree().touching(box_around(contact.position, kOnPlace_m))) {
+    if (places.is_solid(place) || places.is_surface(place) == contact.bar.has_value()) continue;
+    if (places.is_surface(place)) {
+      const Eigen::Isometry3d& pose = places.surface(place).world_from_surface;
+      const Eigen::Vector3d normal = pose.linear().col(2);
+      if (!(normal.dot(contact.normal) > 0.0)) continue;
+      if (std::abs(normal.dot(contact.position - pose.translation())) > kOnPlace_m) continue;
+    }
+    const double room = border_rooms(places, place, contact.position).least();
+    if (!(room > most)) continue;
+    most = room;
+    found = place;
+  }
+  if (!found) return;
+  rolling_.push_back({static_cast<int>(closures_.size()) - 1, *found, contact.effector.point});
 }
 
 void TransitionRows::closure_at(const Eigen::VectorXd& q, Eigen::VectorXd& error) {
@@ -160,6 +231,7 @@ void TransitionRows::evaluate(const Eigen::VectorXd& q) {
   rows_.clear();
   gradients_.clear();
   add_joints();
+  add_borders();
   if (balance_ != nullptr) add_balance();
   if (torques_ != nullptr) add_torques();
   add_self();
@@ -185,6 +257,21 @@ void TransitionRows::add_joints() {
     }
     if (const double above = joint.upper - x - margin; above < kBandJoint_rad) {
       add(TransitionFailure::kJoint, i, 1, above)[base + i] = -1.0;
+    }
+  }
+}
+
+void TransitionRows::add_borders() {
+  for (const RollingOn& ball : rolling_) {
+    const int link = closures_[static_cast<std::size_t>(ball.closure)].link();
+    const Eigen::Vector3d centre = state_.kinematics.world_from_link(link) * ball.point_in_link;
+    const BorderRooms borders = border_rooms(relations_.places(), ball.place, centre);
+    for (int i = 0; i < borders.count; ++i) {
+      const BorderRooms::Room& room = borders.rooms[static_cast<std::size_t>(i)];
+      if (room.value >= kBand_m) continue;
+      double* row =
+          add(TransitionFailure::kBorder, ball.closure, ball.place, kBorderScale * room.value);
+      state_.kinematics.add_point_gradient(link, centre, room.inwards, kBorderScale, row);
     }
   }
 }
@@ -326,6 +413,8 @@ std::pair<int, int> TransitionRows::links(const Row& row) const {
     case TransitionFailure::kSurface:
     case TransitionFailure::kObstacle:
       return {link(row.first), -1};
+    case TransitionFailure::kBorder:
+      return {contact_links_[static_cast<std::size_t>(row.first)], -1};
     default:
       return {-1, -1};
   }
@@ -355,6 +444,9 @@ std::string TransitionRows::text(const Row& row) const {
       return name(first) + " in an obstacle";
     case TransitionFailure::kBalance:
       return "the centre of mass outside what the contacts balance";
+    case TransitionFailure::kBorder:
+      return "ball of " + contact_names_[static_cast<std::size_t>(row.first)] +
+             " over the border of " + relations_.places().name(row.second);
     case TransitionFailure::kTorque:
       return "torque of " + robot().active_joint(row.first).name;
     default:

@@ -6,9 +6,9 @@
 ///     rows.evaluate(q);
 ///     for (const TransitionRows::Row& row : rows.rows()) worst = std::min(worst, row.value);
 ///
-/// Rows are given for what is near only: nearer than kBand_m of its margin. Links that touch are
-/// kept from reaching deeper into what they touch than the judge allows, by their exact shapes; the
-/// others are kept away by the spheres that cover them.
+/// Balls stay on what they roll on. Rows are given for what is near only: nearer than kBand_m of
+/// its margin. Links that touch are kept from reaching deeper into what they touch than the judge
+/// allows, by their exact shapes; the others are kept away by the spheres that cover them.
 
 #include <locograph/planners/posture/transition_problem.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
@@ -25,7 +25,7 @@ class TransitionRows {
  public:
   struct Row {
     TransitionFailure kind;
-    int first, second;  ///< joint; bounds of links; bound and place
+    int first, second;  ///< joint; bounds of links; bound and place; ball and place
     double value;       ///< at least 0 where it holds, margin included [m, rad]
   };
 
@@ -68,10 +68,18 @@ class TransitionRows {
     LinkShapes first, second;
   };
 
+  /// A ball that is held, and the place whose border it keeps to.
+  struct RollingOn {
+    int closure, place;
+    Eigen::Vector3d point_in_link;
+  };
+
   void find_coarse_pairs();
   ShapeDistance exact_distance(const CoarsePair& pair, double limit) const;
   double* add(TransitionFailure kind, int first, int second, double value);
+  void find_borders(const Contact& contact);
   void add_joints();
+  void add_borders();
   void add_balance();
   void add_torques();
   void add_self();
@@ -94,6 +102,7 @@ class TransitionRows {
   Eigen::VectorXd torque_gradient_;
   double balance_margin_m_ = 0.0;
   std::vector<ContactClosure> closures_;
+  std::vector<RollingOn> rolling_;
   std::vector<std::string> contact_names_;
   std::vector<int> contact_of_row_, contact_links_;
   std::vector<bool> exempt_;  ///< bounds of links that touch: from map and obstacles

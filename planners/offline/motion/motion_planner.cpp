@@ -19,6 +19,10 @@ constexpr int kMostSlower = 6;
 constexpr std::size_t kRefusedForMore = 5;
 /// Of random trees, for the same reason.
 constexpr int kFewStates = 4000;
+/// Balls that slip by less from one configuration to another roll there.
+constexpr double kSlipBetween_m = 1e-6;
+/// Of the centre of mass, where both ends of a segment have none to the sides of its polygon.
+constexpr double kRoomAtEnds_m = 2e-3;
 
 /// What one segment came to be, to be looked up when the stance planner comes back to it.
 struct TriedSegment {
@@ -45,7 +49,8 @@ class MotionSearch {
         space_(space),
         mover_(task_, options),
         all_planners_(!options.segment_planners.empty()),
-        judge_(task_.robot->robot, task_.world) {}
+        judge_(task_.robot->robot, task_.world),
+        state_(*task_.robot->robot) {}
 
   /// Moves along a way through stances. 0: it does, maybe between other configurations than the
   /// way came with, from change number `first` + 1 on; else the number of a change that will not
@@ -53,10 +58,10 @@ class MotionSearch {
   std::size_t move_along(StancePath& way, std::size_t first) {
     const std::size_t count = way.changes();
     ways_.resize(count, nullptr);
-    for (std::size_t j = first; j < count; ++j) {
-      if (!found_at(way, j) && !move_postures(way, first, j)) return refuse(j);
-    }
     for (bool whole = false;; whole = true) {
+      for (std::size_t j = first; j < count; ++j) {
+        if (!found_at(way, j) && !move_postures(way, first, j)) return refuse(j);
+      }
       assemble(way);
       std::vector<StanceWrenches> wrenches(plan_.motion.configurations.size());
       plan_.report = judged(plan_.motion, &wrenches);
@@ -71,6 +76,7 @@ class MotionSearch {
       for (std::size_t j = first; j < count; ++j) {
         if (ways_[j]->judged || !named[j]) continue;
         if (!mend(j, mended)) return refuse(j);
+        way.configurations[j + 1] = ways_[j]->motion.to;
       }
       if (mended || slow_down(first)) continue;
       if (!whole) continue;
@@ -144,44 +150,82 @@ class MotionSearch {
       std::vector<Eigen::VectorXd> as_they_were = path.configurations;
       path.configurations[i] = other.configuration;
       hold_wheels(space_, path, i);
-      const bool found = found_at(path, j) && (i > j || found_at(path, j - 1));
+      const bool found = (i > j || found_at(path, j - 1)) && found_at(path, j);
       if (!found) path.configurations = std::move(as_they_were);
       return found;
     };
     const Eigen::VectorXd begin = path.configurations[j], end = path.configurations[j + 1];
+    const auto nearby = [&](std::size_t i, const Eigen::VectorXd& q) {
+      return space_.try_nearby(footings[i - 1], footings[i], q, &path.configurations[i - 1]);
+    };
     const bool moved =
-        found_with(j + 1, space_.try_nearby(footings[j], footings[j + 1], begin)) ||
-        (j > first && (found_with(j, space_.try_nearby(footings[j - 1], footings[j], end)) ||
-                       found_with(j, space_.try_again(footings[j - 1], footings[j], end))));
+        found_with(j + 1, nearby(j + 1, begin)) ||
+        (j > first && (found_with(j, nearby(j, end)) ||
+                       found_with(j, space_.try_again(footings[j - 1], footings[j], end,
+                                                      &path.configurations[j - 1]))));
     if (!moved) {
-      found_at(path, j);
       if (j > first) found_at(path, j - 1);
+      found_at(path, j);
     }
     return moved;
   }
 
-  bool found_at(const StancePath& path, std::size_t j) {
-    ways_[j] = &tried(path, j);
-    return ways_[j]->motion.success();
+  /// Moves through stance j, whose end becomes where the motion gets to.
+  bool found_at(StancePath& path, std::size_t j) {
+    TriedSegment* known = known_at(path, j);
+    if (known == nullptr && !rolls_to(path, j + 1)) {
+      known = &add_tried(path, j);
+      known->motion.reason = "a ball does not roll to where it is held";
+    }
+    if (known == nullptr) known = known_at(path, j);
+    if (known == nullptr) {
+      known = &add_tried(path, j);
+      move(*known);
+    }
+    ways_[j] = known;
+    if (!known->motion.success()) return false;
+    path.configurations[j + 1] = known->motion.to;
+    return true;
   }
 
-  TriedSegment& tried(const StancePath& path, std::size_t j) {
-    const Footing before = j == 0 ? Footing() : path.footings[j - 1];
+  /// Finds the configuration of a change again where balls slip since the one before.
+  bool rolls_to(StancePath& path, std::size_t change) {
+    const Footing &from = path.footings[change - 1], &to = path.footings[change];
+    const Eigen::VectorXd& before = path.configurations[change - 1];
+    Eigen::VectorXd& q = path.configurations[change];
+    if (space_.slip_m(from, before, q) <= kSlipBetween_m) return true;
+    StanceSpace::Attempt again = space_.try_nearby(from, to, q, &before);
+    if (!again.found) return false;
+    q = std::move(again.configuration);
+    hold_wheels(space_, path, change);
+    return true;
+  }
+
+  TriedSegment* known_at(const StancePath& path, std::size_t j) const {
+    const Eigen::VectorXd &from = path.configurations[j], &to = path.configurations[j + 1];
+    const Footing before = before_of(path, j);
     for (const auto& known : known_) {
-      if (known->from == path.configurations[j] && known->to == path.configurations[j + 1] &&
-          known->held == path.footings[j] && known->after == path.footings[j + 1] &&
-          known->before == before) {
-        return *known;
+      const bool ends_there = known->to == to || known->motion.to == to;
+      if (known->from == from && ends_there && known->held == path.footings[j] &&
+          known->after == path.footings[j + 1] && known->before == before) {
+        return known.get();
       }
     }
+    return nullptr;
+  }
+
+  TriedSegment& add_tried(const StancePath& path, std::size_t j) {
     auto fresh = std::make_unique<TriedSegment>();
-    fresh->before = before;
+    fresh->before = before_of(path, j);
     fresh->held = path.footings[j];
     fresh->after = path.footings[j + 1];
     fresh->from = path.configurations[j];
     fresh->to = path.configurations[j + 1];
-    move(*fresh);
     return *known_.emplace_back(std::move(fresh));
+  }
+
+  static Footing before_of(const StancePath& path, std::size_t j) {
+    return j == 0 ? Footing() : path.footings[j - 1];
   }
 
   void move(TriedSegment& tried) {
@@ -214,8 +258,7 @@ class MotionSearch {
   template <class F>
   void on_segment(TriedSegment& tried, const F& f) {
     const std::vector<BearingContact> bearing = space_.bearing_contacts(tried.held);
-    const double mass_kg = task_.robot->robot->total_mass();
-    const BalanceRegion region = balance_region(mass_kg, bearing, kRegionMargin);
+    const BalanceRegion region = region_of(tried, bearing);
     std::optional<TorqueProgramme> torques;
     if (task_.check.enforce_torque_limits) {
       torques.emplace(*task_.robot->robot, bearing, task_.check.effort_scale, kRegionMargin);
@@ -225,6 +268,8 @@ class MotionSearch {
     segment.balance = &region;
     segment.torques = torques ? &*torques : nullptr;
     segment.left = besides(tried.before, tried.held);
+    state_.update(tried.from.data());
+    for (Contact& contact : segment.left) contact = rolled_to(state_, contact);
     segment.reached = besides(tried.after, tried.held);
     segment.from = tried.from;
     segment.to = tried.to;
@@ -233,6 +278,33 @@ class MotionSearch {
     f(segment, bearing);
     plan_.statistics.path_s += tried.motion.statistics.path_s;
     plan_.statistics.timing_s += tried.motion.statistics.timing_s;
+  }
+
+  /// Where balls roll, about places half-way, and wide enough for both ends: these balance where
+  /// balls are then, and the judge looks at all in between.
+  BalanceRegion region_of(const TriedSegment& tried, std::vector<BearingContact> bearing) {
+    const double mass_kg = task_.robot->robot->total_mass();
+    const bool rolls =
+        std::ranges::any_of(bearing, [](const auto& one) { return is_ball(one.contact.effector); });
+    if (!rolls) return balance_region(mass_kg, bearing, kRegionMargin);
+    state_.update(tried.from.data());
+    const std::vector<BearingContact> from = rolled_to(state_, bearing);
+    std::vector<Eigen::Vector2d> centres = {state_.center_of_mass().head<2>()};
+    state_.update(tried.to.data());
+    const std::vector<BearingContact> to = rolled_to(state_, bearing);
+    centres.emplace_back(state_.center_of_mass().head<2>());
+    for (std::size_t i = 0; i < bearing.size(); ++i) {
+      if (!is_ball(bearing[i].contact.effector)) continue;
+      bearing[i].contact.position = 0.5 * (from[i].contact.position + to[i].contact.position);
+      bearing[i].contact.normal = from[i].contact.normal + to[i].contact.normal;
+    }
+    BalanceRegion region = balance_region(mass_kg, bearing, kRegionMargin);
+    for (BalanceRegion::Side& side : region.sides) {
+      for (const Eigen::Vector2d& centre : centres) {
+        side.offset_m = std::max(side.offset_m, side.normal.dot(centre) + kRoomAtEnds_m);
+      }
+    }
+    return region;
   }
 
   /// Planners of segments that are tried: another way through other stances is cheaper than the
@@ -298,7 +370,8 @@ class MotionSearch {
     for (;;) {
       const SegmentMotion& way = tried.motion;
       Motion alone = as_motion(way);
-      alone.stances = {space_.stance(tried.held), space_.stance(tried.after)};
+      alone.stances = {space_.rolled_stance(tried.held, tried.held, tried.from),
+                       space_.rolled_stance(tried.after, tried.held, tried.from)};
       alone.stance_from.assign(way.configurations.size(), 0);
       alone.stance_from.back() = 1;
       const CheckReport report = judged(alone);
@@ -334,6 +407,7 @@ class MotionSearch {
   SegmentMover mover_;
   bool all_planners_;  ///< from the first segment on
   Judge judge_;
+  RobotState state_;
   std::vector<std::unique_ptr<TriedSegment>> known_;
   std::vector<TriedSegment*> ways_;
   std::string refused_reason_;

@@ -143,7 +143,10 @@ class SegmentGraph {
       : robot_(space.rows_at(way.front(), true).state().robot) {
     graph_.parameters().set(number_++, robot_);
     std::vector<int> held;
-    for (const Contact& contact : space.segment().held) held.push_back(add_contact(contact));
+    const HeldBalls balls = space.balls_at(space.segment().from);
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+      held.push_back(add_contact(space.segment().held[i], balls[i]));
+    }
     const Eigen::Index size = space.robot().tangent_size();
     const int last = static_cast<int>(way.size()) - 1;
     const EdgeVelocityTracking together(Eigen::VectorXd::Zero(size),
@@ -182,8 +185,11 @@ class SegmentGraph {
   }
 
  private:
-  int add_contact(const Contact& contact) {
-    graph_.parameters().set(number_, std::make_shared<ContactParameter>(robot_, 0, contact));
+  /// ball: from where it rolls, if it does.
+  int add_contact(const Contact& contact, const std::optional<BallPose>& ball = {}) {
+    const auto parameter = std::make_shared<ContactParameter>(robot_, 0, contact);
+    if (ball) parameter->closure = ContactClosure(*robot_->robot, contact, *ball);
+    graph_.parameters().set(number_, parameter);
     return number_++;
   }
 

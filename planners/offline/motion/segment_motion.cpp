@@ -17,6 +17,11 @@ namespace {
 /// Of the spline, half-way between waypoints; the judge allows 1e-4 m at vertices.
 constexpr double kClosedAlong = 3e-5;
 constexpr int kMostRounds = 8;
+/// Balls are followed in so many steps between two waypoints of a spline, a multiple of 4; until
+/// they slip by less at waypoints, by moving these so often.
+constexpr std::size_t kRollParts = 4;
+constexpr double kRolledTo_m = 2e-6;
+constexpr int kMostRollPasses = 8;
 /// Between the first waypoints of a spline, and where no more are added [as
 /// SegmentSpace::distance].
 constexpr double kSparse = 0.35, kDense = 0.02;
@@ -100,6 +105,7 @@ SegmentMotion SegmentMover::move(const Segment& segment, std::span<const Bearing
   if (motion.straight <= kNoWay) {
     motion.status = PlannerStatus::kSolved;
     motion.planner = planners_.front()->name();
+    motion.to = segment.to;
     motion.waypoints = motion.configurations = {segment.from, segment.to};
     motion.slopes.assign(2, Eigen::VectorXd::Zero(space_.robot().tangent_size()));
     motion.duration_s = options_.step_s;
@@ -121,9 +127,11 @@ SegmentMotion SegmentMover::move(const Segment& segment, std::span<const Bearing
     motion.status = path.status;
     if (path.success()) {
       motion.waypoints = std::move(path.waypoints);
+      motion.to.resize(0);
       shape(bearing, {}, motion);
       if (motion.success()) break;
-      path.reason = "no timing keeps it in balance";
+      path.reason = motion.to.size() > 0 ? "no timing keeps it in balance"
+                                         : "contacts do not close where balls roll to";
     }
     add_reason(motion.planner + ": " + path.reason, motion);
   }
@@ -140,10 +148,10 @@ void SegmentMover::retime(const Segment& segment, std::span<const BearingContact
 void SegmentMover::shape(std::span<const BearingContact> bearing, const SegmentPace& pace,
                          SegmentMotion& motion) {
   const Stopwatch closing;
-  const PathSpline closed = close(motion.waypoints, pace.finer);
+  const std::optional<PathSpline> closed = close(motion.waypoints, pace.finer, motion.to);
   motion.statistics.path_s += closing.seconds();
   const Stopwatch timing;
-  const bool timed = time(closed, bearing, pace.slower, motion);
+  const bool timed = closed && time(*closed, bearing, pace.slower, motion);
   motion.status = timed ? PlannerStatus::kSolved : PlannerStatus::kNotFound;
   motion.statistics.timing_s += timing.seconds();
   motion.clear_m = clear_of(motion);
@@ -174,7 +182,12 @@ std::size_t SegmentMover::number_of(const std::string& planner) const {
   return i;
 }
 
-PathSpline SegmentMover::close(const std::vector<Eigen::VectorXd>& waypoints, bool finer) {
+std::optional<PathSpline> SegmentMover::close(const std::vector<Eigen::VectorXd>& waypoints,
+                                              bool finer, Eigen::VectorXd& to) {
+  tracks_.clear();
+  for (const Contact& contact : space_.segment().held) {
+    if (is_ball(contact.effector)) tracks_.emplace_back(contact);
+  }
   std::vector<Node> way = {{0.0, waypoints.front()}};
   for (std::size_t i = 1; i < waypoints.size(); ++i) {
     const double apart = space_.distance(way.back().q, waypoints[i]);
@@ -198,19 +211,104 @@ PathSpline SegmentMover::close(const std::vector<Eigen::VectorXd>& waypoints, bo
         on_way(way, length - length * i / (kOffGround + 1.0) / static_cast<double>(parts)));
   }
   nodes.push_back(on_way(way, length));
+  const bool rolls = !tracks_.empty(), end_is_fixed = rolls && to.size() > 0;
+  if (rolls) nodes.back().q = end_is_fixed ? to : segment.to;
   for (int round = 0;; ++round) {
-    std::vector<Eigen::VectorXd> sparse;
-    for (const Node& node : nodes) sparse.push_back(node.q);
-    PathSpline path = timing_path(space_.robot(), sparse, limits_);
+    Slips slips;
+    std::optional<PathSpline> path = roll(nodes, end_is_fixed, slips);
+    if (!path) return path;
     std::vector<Node> more = {nodes.front()};
     for (std::size_t i = 1; i < nodes.size(); ++i) {
-      if (std::optional<Node> between = missing(path, i, way, nodes)) {
+      if (std::optional<Node> between = missing(*path, i, way, nodes, slips)) {
         more.push_back(std::move(*between));
       }
       more.push_back(nodes[i]);
     }
-    if (more.size() == nodes.size() || round == kMostRounds) return path;
+    if (more.size() == nodes.size() || round == kMostRounds) {
+      to = rolls ? nodes.back().q : segment.to;
+      return path;
+    }
     nodes = std::move(more);
+  }
+}
+
+PathSpline SegmentMover::spline_through(const std::vector<Node>& nodes) const {
+  std::vector<Eigen::VectorXd> sparse;
+  for (const Node& node : nodes) sparse.push_back(node.q);
+  return timing_path(space_.robot(), sparse, limits_);
+}
+
+SegmentMover::Slips SegmentMover::slips_along(const PathSpline& path) {
+  Slips slips;
+  if (tracks_.empty()) return slips;
+  slips.emplace_back(tracks_.size(), Eigen::Vector2d::Zero());
+  HeldBalls before = space_.balls_at(space_.segment().from);
+  PathPoint point;
+  for (std::size_t i = 1; i < path.knots().size(); ++i) {
+    const double from = path.knots()[i - 1], to = path.knots()[i];
+    for (std::size_t part = 1; part <= kRollParts; ++part) {
+      const double share = static_cast<double>(part) / static_cast<double>(kRollParts);
+      path.at(from + share * (to - from), point);
+      HeldBalls here = space_.balls_at(point.configuration);
+      std::vector<Eigen::Vector2d> slipped = slips.back();
+      std::size_t ball = 0;
+      for (std::size_t c = 0; c < here.size(); ++c) {
+        if (!here[c]) continue;
+        const BallStep step(tracks_[ball], *before[c], *here[c]);
+        slipped[ball++] += step.error.head<2>();
+      }
+      slips.push_back(std::move(slipped));
+      before = std::move(here);
+    }
+  }
+  return slips;
+}
+
+void SegmentMover::roll_from(const Eigen::VectorXd& q, const std::vector<Eigen::Vector2d>& slips) {
+  HeldBalls balls = space_.balls_at(q);
+  std::size_t ball = 0;
+  for (std::optional<BallPose>& pose : balls) {
+    if (!pose) continue;
+    pose = tracks_[ball].moved(*pose, -slips[ball]);
+    ++ball;
+  }
+  space_.roll_from(std::move(balls));
+}
+
+std::optional<PathSpline> SegmentMover::roll(std::vector<Node>& nodes, bool end_is_fixed,
+                                             Slips& slips) {
+  const auto longest = [](const std::vector<Eigen::Vector2d>& of_balls) {
+    double most = 0.0;
+    for (const Eigen::Vector2d& slip : of_balls) most = std::max(most, slip.norm());
+    return most;
+  };
+  const std::size_t last = nodes.size() - 1;
+  for (int pass = 0;; ++pass) {
+    PathSpline path = spline_through(nodes);
+    slips = slips_along(path);
+    double most = 0.0;
+    for (std::size_t i = 1; i < (end_is_fixed ? last : nodes.size()) && !slips.empty(); ++i) {
+      most = std::max(most, longest(slips[i * kRollParts]));
+    }
+    if (most <= kRolledTo_m || pass == kMostRollPasses) return path;
+    // What touches down at the end comes to it as before: all moves as the end does, in proportion.
+    Eigen::VectorXd moved = Eigen::VectorXd::Zero(space_.robot().tangent_size());
+    if (!end_is_fixed) {
+      const Eigen::VectorXd before = nodes.back().q;
+      roll_from(before, slips.back());
+      if (!space_.project_end(nodes.back().q)) return std::nullopt;
+      space_.robot().difference(before.data(), nodes.back().q.data(), moved.data());
+    }
+    const double at_end = longest(slips.back());
+    for (std::size_t i = 1; i < last; ++i) {
+      Eigen::VectorXd& q = nodes[i].q;
+      const std::vector<Eigen::Vector2d>& here = slips[i * kRollParts];
+      roll_from(q, here);
+      const double share = at_end > 0.0 ? std::min(1.0, longest(here) / at_end) : 0.0;
+      const Eigen::VectorXd step = share * moved;
+      space_.robot().integrate(q.data(), step.data(), q.data());
+      if (!space_.project(q)) return std::nullopt;
+    }
   }
 }
 
@@ -218,6 +316,7 @@ SegmentMover::Node SegmentMover::on_way(const std::vector<Node>& way, double at)
   std::size_t i = 1;
   while (i + 1 < way.size() && way[i].at < at) ++i;
   const double share = (at - way[i - 1].at) / (way[i].at - way[i - 1].at);
+  if (!tracks_.empty()) space_.roll_from(space_.balls_at(space_.segment().from));
   Node node{at, way[share < 0.5 ? i - 1 : i].q};
   if (share > kNoWay && share < 1.0 - kNoWay) {
     Eigen::VectorXd between = space_.half_way(way[i - 1].q, way[i].q, share);
@@ -228,7 +327,8 @@ SegmentMover::Node SegmentMover::on_way(const std::vector<Node>& way, double at)
 
 std::optional<SegmentMover::Node> SegmentMover::missing(const PathSpline& path, std::size_t i,
                                                         const std::vector<Node>& way,
-                                                        const std::vector<Node>& nodes) {
+                                                        const std::vector<Node>& nodes,
+                                                        const Slips& slips) {
   const double before = path.knots()[i - 1], after = path.knots()[i];
   const double at = 0.5 * (nodes[i - 1].at + nodes[i].at);
   PathPoint point;
@@ -236,6 +336,10 @@ std::optional<SegmentMover::Node> SegmentMover::missing(const PathSpline& path, 
   bool open = false;
   for (const double share : {0.25, 0.75, 0.5}) {
     path.at(before + share * (after - before), point);
+    if (!slips.empty()) {
+      const auto part = static_cast<std::size_t>(share * static_cast<double>(kRollParts));
+      roll_from(point.configuration, slips[(i - 1) * kRollParts + part]);
+    }
     space_.closure(point.configuration, error);
     open = open || (error.size() > 0 && error.cwiseAbs().maxCoeff() > kClosedAlong);
     if (nodes[i].at - nodes[i - 1].at > kDense && !space_.valid(point.configuration, true)) {
@@ -293,13 +397,14 @@ void SegmentMover::sample(const PathTiming& timing, double slower, int steps,
                                      motion.configurations.back());
   }
   motion.configurations.front() = space_.segment().from;
-  motion.configurations.back() = space_.segment().to;
+  motion.configurations.back() = motion.to;
   motion.slopes.front().setZero();
   motion.slopes.back().setZero();
   hold_wheels(motion.configurations);
   std::vector<bool> moved;
   for (Eigen::VectorXd& q : motion.configurations) {
     bool within = true;
+    if (!tracks_.empty()) space_.roll_from(space_.balls_at(q));
     for (int i = 0; i < kMostBroughtBack && bring_within_limits(space_.robot(), q); ++i) {
       space_.project(q);
       within = false;

@@ -9,6 +9,10 @@
 /// does not hold, more are added. It is timed from rest to rest (timing/path_timing.h), sampled
 /// evenly, and slowed down by what the curve through the samples (check/motion_curve.h) is faster
 /// than limits allow. The outcome depends on the arguments alone. One for each thread.
+///
+/// The path closes balls by the shortest turn since its beginning. The spline is followed instead:
+/// along it the balls roll, and its configurations are moved to where they get. So its end is
+/// another one than the segment's, by the difference.
 
 #include <locograph/check/motion.h>
 #include <locograph/planners/offline/motion/motion_options.h>
@@ -39,6 +43,7 @@ struct SegmentMotion : PlannerAnswer {
   std::string planner;                          ///< that found the path
   bool no_arc = false;                          ///< see SegmentPath
   std::vector<Eigen::VectorXd> waypoints;       ///< of the path
+  Eigen::VectorXd to;                           ///< where the motion ends
   std::vector<Eigen::VectorXd> configurations;  ///< equispaced in time, both ends included
   std::vector<Eigen::VectorXd> slopes;          ///< of each, as Motion::slopes; zero at both ends
   double duration_s = 0.0;
@@ -75,12 +80,24 @@ class SegmentMover {
     Eigen::VectorXd q;
   };
 
-  /// A spline through as few configurations of a way as keep it closed and valid.
-  PathSpline close(const std::vector<Eigen::VectorXd>& waypoints, bool finer);
+  /// How far each ball has slipped from the beginning of a spline, at kRollParts places of each of
+  /// its pieces and at its end.
+  using Slips = std::vector<std::vector<Eigen::Vector2d>>;
+
+  /// A spline through as few configurations of a way as keep it closed and valid; nothing: they do
+  /// not close where balls get. Ends at `to`; where that is empty it is found.
+  std::optional<PathSpline> close(const std::vector<Eigen::VectorXd>& waypoints, bool finer,
+                                  Eigen::VectorXd& to);
+  Slips slips_along(const PathSpline& path);
+  /// Closure from where balls are in q once they had not slipped.
+  void roll_from(const Eigen::VectorXd& q, const std::vector<Eigen::Vector2d>& slips);
+  /// Moves nodes to where balls get along the spline through them, which it returns.
+  std::optional<PathSpline> roll(std::vector<Node>& nodes, bool end_is_fixed, Slips& slips);
+  PathSpline spline_through(const std::vector<Node>& nodes) const;
   Node on_way(const std::vector<Node>& way, double at);
   /// What the spline has to go through as well between nodes i - 1 and i; nothing: it holds.
   std::optional<Node> missing(const PathSpline& path, std::size_t i, const std::vector<Node>& way,
-                              const std::vector<Node>& nodes);
+                              const std::vector<Node>& nodes, const Slips& slips);
   /// Gives a motion with waypoints all the rest.
   void shape(std::span<const BearingContact> bearing, const SegmentPace& pace,
              SegmentMotion& motion);
@@ -95,6 +112,7 @@ class SegmentMover {
   const Task& task_;
   const MotionOptions& options_;
   SegmentSpace space_;
+  std::vector<BallTrack> tracks_;  ///< of the balls that are held
   TimingLimits limits_;
   std::vector<std::unique_ptr<SegmentPlanner>> planners_;
 };

@@ -73,19 +73,35 @@ SegmentSpace::SegmentSpace(std::shared_ptr<const RobotParameter> robot, World wo
 
 void SegmentSpace::set_segment(const Segment& segment) {
   segment_ = &segment;
-  closures_.clear();
-  Eigen::Index rows = 0;
-  for (const Contact& contact : segment.held) {
-    closures_.emplace_back(robot(), contact);
-    rows += closures_.back().rows();
-  }
-  error_.resize(rows);
+  roll_from(balls_at(segment.from));
   near_ = segment.left;
   near_.insert(near_.end(), segment.reached.begin(), segment.reached.end());
   rows_for_.reset();
   why_not_.clear();
   lifted_ = {segment.from};
   landing_ = {segment.to};
+}
+
+void SegmentSpace::roll_from(HeldBalls balls) {
+  balls_ = std::move(balls);
+  closures_.clear();
+  Eigen::Index rows = 0;
+  for (std::size_t i = 0; i < balls_.size(); ++i) {
+    const Contact& contact = segment_->held[i];
+    closures_.push_back(balls_[i] ? ContactClosure(robot(), contact, *balls_[i])
+                                  : ContactClosure(robot(), contact));
+    rows += closures_.back().rows();
+  }
+  error_.resize(rows);
+}
+
+HeldBalls SegmentSpace::balls_at(const Eigen::VectorXd& q) {
+  state_.update(q.data());
+  return held_balls(state_, segment_->held, [](const Contact&) { return true; });
+}
+
+bool SegmentSpace::has_balls() const {
+  return std::ranges::any_of(balls_, [](const auto& ball) { return ball.has_value(); });
 }
 
 void SegmentSpace::closure(const Eigen::VectorXd& q, Eigen::VectorXd& error) {
@@ -127,6 +143,18 @@ bool SegmentSpace::project(Eigen::VectorXd& q) {
   return false;
 }
 
+bool SegmentSpace::project_end(Eigen::VectorXd& q) {
+  Eigen::Index rows = error_.size();
+  for (const Contact& contact : segment_->reached) {
+    closures_.emplace_back(robot(), contact);
+    rows += closures_.back().rows();
+  }
+  error_.resize(rows);
+  const bool closed = project(q);
+  roll_from(std::move(balls_));
+  return closed;
+}
+
 std::vector<bool> SegmentSpace::what_is_near(const Eigen::VectorXd& q,
                                              std::span<const Contact> also) {
   std::vector<bool> result;
@@ -157,6 +185,7 @@ void SegmentSpace::set_rows(bool swinging, const std::vector<bool>& which) {
   const std::vector<Contact> near = chosen(which);
   TransitionProblem problem;
   problem.closed = segment_->held;
+  problem.rolled_from = balls_;
   problem.balance = segment_->balance;
   problem.torques = segment_->torques;
   problem.near = near;
@@ -243,6 +272,7 @@ bool SegmentSpace::solve(const Eigen::VectorXd& start, std::span<const Contact> 
   closed.insert(closed.end(), also.begin(), also.end());
   TransitionProblem problem;
   problem.closed = closed;
+  problem.rolled_from = balls_;
   problem.held = segment_->held;
   problem.balance = segment_->balance;
   problem.torques = segment_->torques;

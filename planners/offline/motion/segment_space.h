@@ -9,6 +9,10 @@
 /// Where an end effector leaves its contact or comes to one, the segment begins and ends with a
 /// move along the contact's normal; from() and to() are what lies between, so that planners that
 /// draw at random need not find their way out of a surface that is touched.
+///
+/// Balls that are held roll: closure lets them by the shortest turn since `from`, whatever the way
+/// there, so that they have a manifold. Where balls really get to depends on the way:
+/// roll_from() and project_end() are for who follows one (segment_motion.h).
 
 #include <locograph/planners/balance/balance_region.h>
 #include <locograph/planners/balance/torque_programme.h>
@@ -25,12 +29,12 @@
 namespace locograph {
 
 struct Segment {
-  std::vector<Contact> held;               ///< closed and bearing all along
+  std::vector<Contact> held;               ///< closed and bearing all along, as they touched down
   const BalanceRegion* balance = nullptr;  ///< of those; null: not asked for
   TorqueProgramme* torques = nullptr;      ///< of those; null: not limited
-  std::vector<Contact> left;               ///< of the stance before, closed at `from`, not held
-  std::vector<Contact> reached;            ///< of the stance after, closed at `to`, not held
-  Eigen::VectorXd from, to;                ///< feasible for `held`
+  std::vector<Contact> left;     ///< of the stance before, closed at `from`, where they are then
+  std::vector<Contact> reached;  ///< of the stance after, closed at `to`, not held
+  Eigen::VectorXd from, to;      ///< feasible for `held`
 };
 
 class SegmentSpace {
@@ -65,8 +69,17 @@ class SegmentSpace {
   /// Poses of links, of the last closure().
   const RobotState& state() const { return state_; }
 
+  /// From here on balls roll from there; of the contacts that are held. In the beginning: from
+  /// `from`.
+  void roll_from(HeldBalls balls);
+  /// Where they are in a configuration.
+  HeldBalls balls_at(const Eigen::VectorXd& q);
+  bool has_balls() const;
+
   /// Moves q the shortest way to where the contacts are closed to 1e-9; false: not found.
   bool project(Eigen::VectorXd& q);
+  /// Likewise with the contacts that are reached.
+  bool project_end(Eigen::VectorXd& q);
   /// All that has to be positive is: distances to what is not touched, joints within limits, the
   /// centre of mass within what the contacts balance, torques. Contacts are not looked at.
   /// swinging: links of what is left or reached may be near it, without reaching into it.
@@ -109,7 +122,8 @@ class SegmentSpace {
   double lift_off_m_;
   const Segment* segment_ = nullptr;
   std::vector<ContactClosure> closures_;
-  std::vector<Contact> near_;                                   ///< left and reached
+  HeldBalls balls_;            ///< of the contacts that are held: from where they roll
+  std::vector<Contact> near_;  ///< left and reached
   std::optional<std::pair<bool, std::vector<bool>>> rows_for_;  ///< what rows_ are set for
   Eigen::VectorXd error_;
   Eigen::MatrixXd jacobian_;

@@ -376,12 +376,13 @@ class GuidedSearch final : public StanceSearch {
     return -1;
   }
 
-  /// The path goes from the start to the goal, whichever way the tree grows.
+  /// The path goes from the start to the goal, whichever way the tree grows. From the goal, balls
+  /// are taken to be where they touch down: from where they roll, roll_on() finds.
   StanceSpace::Attempt try_transition(const Footing& from, const Footing& to,
                                       const Eigen::VectorXd& q, int restarts, const Move& move) {
     look_ahead(move);
     return own_->backwards ? space_.try_transition(to, from, q, restarts)
-                           : space_.try_transition(from, to, q, restarts);
+                           : space_.try_transition(from, to, q, restarts, &q);
   }
 
   /// While a transition of this move is worked out, other threads begin with those of the moves
@@ -437,15 +438,20 @@ class GuidedSearch final : public StanceSearch {
     if (own_->to_be_lifted(move)) {
       const signed char tried = node.lift_tried[effector];
       if (tried > move.restarts) return {};
-      chain.push_back({node.footing, between, node.configuration, lift_restarts(move, tried)});
+      chain.push_back({node.footing, between, node.configuration, lift_restarts(move, tried),
+                       &node.configuration});
     }
     if (move.place != kFree) {
       const bool in_contact = node.footing[effector] != kFree;
       const Eigen::VectorXd& start = in_contact ? node.lifted[effector] : node.configuration;
-      chain.push_back({between, after, start, move.restarts});
+      chain.push_back(
+          {between, after, start, move.restarts, start.size() > 0 ? &start : &node.configuration});
     }
     if (own_->backwards) {
-      for (Transition& one : chain) std::swap(one.from, one.to);
+      for (Transition& one : chain) {
+        std::swap(one.from, one.to);
+        one.before = nullptr;
+      }
     }
     return chain;
   }

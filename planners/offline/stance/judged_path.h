@@ -9,7 +9,9 @@
 
 namespace locograph {
 
-/// Judges the whole path; transitions that the judge refuses are solved again with wider margins.
+/// Judges the whole path, or from where balls have slipped since as seen from transition to
+/// transition: a motion led there. Transitions that the judge refuses are solved again with wider
+/// margins.
 /// Without success, `refused` is the first change that cannot be mended, and is forbidden.
 struct JudgedPath {
   CheckReport report;

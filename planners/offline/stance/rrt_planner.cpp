@@ -166,8 +166,8 @@ class RrtSearch final : public StanceSearch {
     const Footing from = vertex(number).footing;
     std::size_t& tries = tries_[joined(from, to)];
     if (tries >= std::size(kRestarts)) return -1;
-    StanceSpace::Attempt attempt =
-        space_.try_transition(from, to, vertex(number).configuration, kRestarts[tries++]);
+    const Eigen::VectorXd& q = vertex(number).configuration;
+    StanceSpace::Attempt attempt = space_.try_transition(from, to, q, kRestarts[tries++], &q);
     if (!attempt.found) {
       tree_.add_failed(to, number);
       return -1;

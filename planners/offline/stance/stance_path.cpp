@@ -9,6 +9,9 @@ using Transition = StanceSpace::Expected;
 
 /// Transitions ahead of those that are tried, of all that may be left out further on.
 constexpr std::size_t kMostAhead = 16;
+/// What balls slip or are off what they touch where transitions closed them.
+constexpr double kRolled_m = 1e-7;
+constexpr int kRollRestarts = 4;
 
 /// How far the end effector of change `from` can be held where it is before: up to and with the
 /// change that is returned; 0: it cannot.
@@ -37,7 +40,7 @@ std::vector<Transition> changes_held(const StancePath& path, std::size_t from, s
   for (std::size_t i = from; i <= to; ++i) {
     Footing next = i < to ? with(path.footings[i], effector, held) : path.footings[i];
     if (next == before) continue;
-    changes.push_back({before, next, path.configurations[i]});
+    changes.push_back({before, next, path.configurations[i], 0, &path.configurations[i - 1]});
     before = std::move(next);
   }
   return changes;
@@ -64,15 +67,17 @@ bool without_changes(StanceSpace& space, const StancePath& path, std::size_t fro
   shorter.footings.assign(path.footings.begin(), path.footings.begin() + kept);
   shorter.configurations.assign(path.configurations.begin(), path.configurations.begin() + kept);
   for (Transition& change : changes_held(path, from, to)) {
-    StanceSpace::Attempt attempt = space.try_transition(change.from, change.to, change.start, 0);
+    StanceSpace::Attempt attempt = space.try_transition(change.from, change.to, change.start, 0,
+                                                        &shorter.configurations.back());
     if (!attempt.found) return false;
     shorter.append(std::move(change.to), std::move(attempt.configuration));
   }
-  // What comes after depends on its own stances only.
+  // What comes after depends on its own stances, and on where balls have rolled to.
+  const std::size_t next = shorter.footings.size();
   for (std::size_t i = to + 1; i < path.footings.size(); ++i) {
     shorter.append(path.footings[i], path.configurations[i]);
   }
-  return true;
+  return roll_on(space, shorter, next) == 0;
 }
 
 }  // namespace
@@ -94,10 +99,34 @@ int shorten(StanceSpace& space, StancePath& path, std::size_t first) {
   return fewer;
 }
 
-Motion path_motion(const StanceSpace& space, const StancePath& path) {
+std::size_t roll_on(StanceSpace& space, StancePath& path, std::size_t first) {
+  for (std::size_t i = first; i < path.footings.size(); ++i) {
+    const Footing &from = path.footings[i - 1], &to = path.footings[i];
+    const Eigen::VectorXd& before = path.configurations[i - 1];
+    Eigen::VectorXd& q = path.configurations[i];
+    if (space.slip_m(from, before, q) <= kRolled_m) continue;
+    StanceSpace::Attempt attempt = space.try_nearby(from, to, q, &before);
+    if (!attempt.found) attempt = space.try_transition(from, to, q, kRollRestarts, &before);
+    if (!attempt.found) return i;
+    q = std::move(attempt.configuration);
+  }
+  return 0;
+}
+
+Motion path_motion(StanceSpace& space, const StancePath& path, std::size_t first) {
   std::vector<Stance> stances;
-  for (const Footing& footing : path.footings) stances.push_back(space.stance(footing));
-  return stances_motion(std::move(stances), path.configurations);
+  Footing held = path.footings[first];
+  for (std::size_t i = first; i < path.footings.size(); ++i) {
+    for (std::size_t e = 0; e < held.size(); ++e) {
+      if (path.footings[i][e] != held[e]) held[e] = kFree;
+    }
+    stances.push_back(
+        first == 0 ? space.stance(path.footings[i])
+                   : space.rolled_stance(path.footings[i], held, path.configurations[first]));
+  }
+  return stances_motion(std::move(stances),
+                        {path.configurations.begin() + static_cast<std::ptrdiff_t>(first),
+                         path.configurations.end()});
 }
 
 }  // namespace locograph

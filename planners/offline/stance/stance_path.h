@@ -28,7 +28,11 @@ struct StancePath {
 /// stay, and so does the last one. Returns how many stances fewer.
 int shorten(StanceSpace& space, StancePath& path, std::size_t first);
 
-/// See stances_motion.
-Motion path_motion(const StanceSpace& space, const StancePath& path);
+/// Finds the transitions from number `first` on again where balls that are held would slip since
+/// the one before. Returns the number of one that is not found; 0: none.
+std::size_t roll_on(StanceSpace& space, StancePath& path, std::size_t first);
+
+/// See stances_motion. From number `first` on, with balls touching down where they are there.
+Motion path_motion(StanceSpace& space, const StancePath& path, std::size_t first = 0);
 
 }  // namespace locograph

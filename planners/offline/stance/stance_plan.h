@@ -24,8 +24,9 @@ namespace locograph {
 /// One change of stance that a planner asked for, and what came of it.
 struct TransitionAttempt {
   Stance from, to;
-  Eigen::VectorXd start;  ///< the configuration it was looked for from
-  int restarts = 0;       ///< at most
+  Eigen::VectorXd start;        ///< the configuration it was looked for from
+  Eigen::VectorXd before = {};  ///< that balls rolled from; empty: they were at their places
+  int restarts = 0;             ///< at most
   bool found = false;
   double waited_s = 0.0;  ///< by the search; of little meaning with several threads
 };

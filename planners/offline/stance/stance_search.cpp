@@ -43,6 +43,10 @@ bool StanceSearch::next() {
     candidate_.configurations.resize(first + 1);
     over_ = !reach(next_goal_, candidate_);
     if (over_) break;
+    if (const std::size_t slips = roll_on(space_, candidate_, first + 1); slips > 0) {
+      refuse(slips, "a ball does not roll to where it is held");
+      continue;
+    }
     shorten(space_, candidate_, first);
     const Stopwatch judging;
     const JudgedPath judged = judge_path(space_, judge_, candidate_);

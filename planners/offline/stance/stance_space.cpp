@@ -2,6 +2,7 @@
 #include <locograph/planners/offline/stance/stance_space.h>
 #include <locograph/planners/scenario/bar_place.h>
 #include <locograph/robots/contact_kinds.h>
+#include <locograph/robots/rolling_ball.h>
 
 #include <algorithm>
 #include <cmath>
@@ -94,6 +95,7 @@ StanceSpace::StanceSpace(const Task& task, const StancePlannerOptions& options)
       regions_(task.robot->robot->total_mass()),
       solver_(task, regions_),
       state_(*task.robot->robot),
+      after_(*task.robot->robot),
       surfaces_(bounds_of(task.world->world().surfaces)) {
   for (const EndEffector& effector : task.end_effectors()) {
     require_sound_effector(*task.robot->robot, effector);
@@ -112,6 +114,7 @@ int StanceSpace::intern(int effector, const Contact& contact) {
   const auto [found, added] = numbers_.emplace(std::move(key), static_cast<int>(places_.size()));
   if (!added) return found->second;
   Place place{effector, {contact, area_on_surfaces(contact)}};
+  place.bearing.contact.bar = bar_at(contact);
   place.bearing.contact.effector.friction = friction_at(contact);
   place.bearing.contact.locked = contact_kind_entry(contact.effector.kind).rolls;
   places_.push_back(std::move(place));
@@ -141,6 +144,49 @@ double StanceSpace::friction_at(const Contact& contact) const {
     }
   }
   return friction;
+}
+
+std::optional<RoundBar> StanceSpace::bar_at(const Contact& contact) const {
+  if (!is_ball(contact.effector)) return std::nullopt;
+  for (const Bar& bar : task_.world->world().bars) {
+    if (gap_to_bar_m(bar, contact) > limits::kClosed_m) continue;
+    return RoundBar{bar.to - bar.from, bar.radius_m};
+  }
+  return std::nullopt;
+}
+
+bool StanceSpace::has_balls(const Footing& footing) const {
+  return std::ranges::any_of(footing, [this](int number) {
+    return number != kFree && is_ball(place(number).bearing.contact.effector);
+  });
+}
+
+double StanceSpace::slip_m(const Footing& from, const Eigen::VectorXd& before,
+                           const Eigen::VectorXd& after) {
+  if (!has_balls(from)) return 0.0;
+  state_.update(before.data());
+  after_.update(after.data());
+  double most = 0.0;
+  for (const int number : from) {
+    if (number == kFree) continue;
+    const Contact& contact = place(number).bearing.contact;
+    if (!is_ball(contact.effector)) continue;
+    const BallStep step(BallTrack(contact), BallPose(state_, contact.effector),
+                        BallPose(after_, contact.effector));
+    most = std::max(most, step.error.norm());
+  }
+  return most;
+}
+
+Stance StanceSpace::rolled_stance(const Footing& footing, const Footing& held,
+                                  const Eigen::VectorXd& q) {
+  Stance there = stance(footing);
+  state_.update(q.data());
+  for (Contact& contact : there.contacts) {
+    const std::size_t e = static_cast<std::size_t>(effector_of(contact));
+    if (held[e] == footing[e]) contact = rolled_to(state_, contact);
+  }
+  return there;
 }
 
 std::vector<Eigen::Vector2d> StanceSpace::area_on_surfaces(const Contact& contact) const {
@@ -178,16 +224,18 @@ std::vector<Eigen::Vector2d> StanceSpace::area_on_surfaces(const Contact& contac
 Footing StanceSpace::footing(const Stance& stance) {
   Footing footing(task_.end_effectors().size(), kFree);
   for (const Contact& contact : stance.contacts) {
-    const auto found =
-        std::find_if(task_.end_effectors().begin(), task_.end_effectors().end(),
-                     [&](const EndEffector& effector) { return effector.name == contact.name(); });
-    if (found == task_.end_effectors().end()) {
-      throw Error("a contact of the unknown end effector " + contact.name(), "a known one");
-    }
-    const int effector = static_cast<int>(found - task_.end_effectors().begin());
+    const int effector = effector_of(contact);
     footing[static_cast<std::size_t>(effector)] = intern(effector, contact);
   }
   return footing;
+}
+
+int StanceSpace::effector_of(const Contact& contact) const {
+  const auto found = std::ranges::find(task_.end_effectors(), contact.name(), &EndEffector::name);
+  if (found == task_.end_effectors().end()) {
+    throw Error("a contact of the unknown end effector " + contact.name(), "a known one");
+  }
+  return static_cast<int>(found - task_.end_effectors().begin());
 }
 
 Stance StanceSpace::stance(const Footing& footing) const {
@@ -322,7 +370,8 @@ std::vector<BearingContact> StanceSpace::bearing_contacts(const Footing& footing
 
 TransitionTask StanceSpace::task_of(const Footing& from, const Footing& to,
                                     const Eigen::VectorXd& start, std::uint64_t seed,
-                                    const TransitionOptions& options) const {
+                                    const TransitionOptions& options,
+                                    const Eigen::VectorXd* before) const {
   const bool adds = contacts_of(to) > contacts_of(from);
   TransitionTask task{.larger = adds ? to : from, .smaller = adds ? from : to};
   task.closed = stance(task.larger).contacts;
@@ -331,6 +380,8 @@ TransitionTask StanceSpace::task_of(const Footing& from, const Footing& to,
   task.start = start;
   task.seed = seed;
   task.options = options;
+  task.opens = !adds;
+  if (before != nullptr && has_balls(from)) task.before = *before;
   return task;
 }
 
@@ -349,11 +400,11 @@ StanceSpace::Attempt StanceSpace::change(const TransitionTask& task) {
   return attempt;
 }
 
-void StanceSpace::tell(const Footing& from, const Footing& to, const Eigen::VectorXd& start,
-                       int restarts, bool found, double seconds) const {
-  if (options_.observe) {
-    options_.observe({stance(from), stance(to), start, restarts, found, seconds});
-  }
+void StanceSpace::tell(const TransitionTask& task, const Footing& from, const Footing& to,
+                       bool found, double seconds) const {
+  if (!options_.observe) return;
+  options_.observe(
+      {stance(from), stance(to), task.start, task.before, task.options.restarts, found, seconds});
 }
 
 StanceSpace::Attempt StanceSpace::stand(const Stance& stance, const Eigen::VectorXd& start,
@@ -363,15 +414,18 @@ StanceSpace::Attempt StanceSpace::stand(const Stance& stance, const Eigen::Vecto
   options.restarts = 10 * attempt;
   const Footing standing = footing(stance);
   return attempt_of(solver_.solve(
-      task_of(standing, standing, start, static_cast<std::uint64_t>(attempt), options)));
+      task_of(standing, standing, start, static_cast<std::uint64_t>(attempt), options, nullptr)));
 }
 
 StanceSpace::Attempt StanceSpace::try_transition(const Footing& from, const Footing& to,
-                                                 const Eigen::VectorXd& start, int restarts) {
+                                                 const Eigen::VectorXd& start, int restarts,
+                                                 const Eigen::VectorXd* before) {
   if (refused_.contains(joined(from, to))) return {};
   const Stopwatch watch;
-  Attempt attempt = change(task_of(from, to, start, options_.seed, {.restarts = restarts}));
-  tell(from, to, start, restarts, attempt.found, watch.seconds());
+  const TransitionTask task =
+      task_of(from, to, start, options_.seed, {.restarts = restarts}, before);
+  Attempt attempt = change(task);
+  tell(task, from, to, attempt.found, watch.seconds());
   if (!attempt.found) {
     count_failure(changed_effector(from, to), transition_failure_name(attempt.failure));
   }
@@ -379,24 +433,28 @@ StanceSpace::Attempt StanceSpace::try_transition(const Footing& from, const Foot
 }
 
 StanceSpace::Attempt StanceSpace::try_harder(const Footing& from, const Footing& to,
-                                             const Eigen::VectorXd& start) {
+                                             const Eigen::VectorXd& start,
+                                             const Eigen::VectorXd* before) {
   TransitionOptions options = wide_margins();
   options.restarts = 10;
-  return change(task_of(from, to, start, options_.seed, options));
+  return change(task_of(from, to, start, options_.seed, options, before));
 }
 
 StanceSpace::Attempt StanceSpace::try_nearby(const Footing& from, const Footing& to,
-                                             const Eigen::VectorXd& start) {
-  TransitionTask task = task_of(from, to, start, options_.seed, {});
+                                             const Eigen::VectorXd& start,
+                                             const Eigen::VectorXd* before) {
+  TransitionTask task = task_of(from, to, start, options_.seed, {}, before);
   task.preferred = start;
   return solve(task);
 }
 
 StanceSpace::Attempt StanceSpace::try_again(const Footing& from, const Footing& to,
-                                            const Eigen::VectorXd& start) {
+                                            const Eigen::VectorXd& start,
+                                            const Eigen::VectorXd* before) {
   const Stopwatch watch;
-  Attempt attempt = solve(task_of(from, to, start, options_.seed, {}));
-  tell(from, to, start, 0, attempt.found, watch.seconds());
+  const TransitionTask task = task_of(from, to, start, options_.seed, {}, before);
+  Attempt attempt = solve(task);
+  tell(task, from, to, attempt.found, watch.seconds());
   return attempt;
 }
 
@@ -406,7 +464,8 @@ void StanceSpace::expect(const std::vector<std::vector<Expected>>& chains) {
   for (const std::vector<Expected>& chain : chains) {
     if (refused_.contains(joined(chain[0].from, chain[0].to))) continue;
     const auto task = [&](const Expected& one) {
-      return task_of(one.from, one.to, one.start, options_.seed, {.restarts = one.restarts});
+      return task_of(one.from, one.to, one.start, options_.seed, {.restarts = one.restarts},
+                     one.before);
     };
     tasks.push_back({task(chain[0])});
     if (chain.size() > 1) tasks.back().then = task(chain[1]);

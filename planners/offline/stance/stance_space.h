@@ -8,6 +8,9 @@
 ///     const StanceSpace::Attempt attempt = space.try_transition(start, lifted, q, 0);
 ///
 /// A place is an end effector's contact at one point of the world; places that are equal are one.
+/// Balls that are held roll: where transitions are asked for, `before` is the configuration that
+/// closes the contacts of `from`, whose balls roll from there by the shortest turn; null: all balls
+/// are at their places.
 
 #include <locograph/planners/offline/stance/footing.h>
 #include <locograph/planners/offline/stance/stance_plan.h>
@@ -41,6 +44,8 @@ class StanceSpace {
     Footing from, to;
     Eigen::VectorXd start = {};
     int restarts = 0;
+    /// Of a chain's second one any configuration: what is found for the first takes its place.
+    const Eigen::VectorXd* before = nullptr;
   };
 
   StanceSpace(const Task& task, const StancePlannerOptions& options);
@@ -65,14 +70,21 @@ class StanceSpace {
   /// From one footing to the next, which has one contact more or less: what is closed are the
   /// contacts of the larger one, what balances is the smaller one. Counts.
   Attempt try_transition(const Footing& from, const Footing& to, const Eigen::VectorXd& start,
-                         int restarts);
+                         int restarts, const Eigen::VectorXd* before = nullptr);
   /// The same again, and nothing of it kept: with wider margins.
-  Attempt try_harder(const Footing& from, const Footing& to, const Eigen::VectorXd& start);
+  Attempt try_harder(const Footing& from, const Footing& to, const Eigen::VectorXd& start,
+                     const Eigen::VectorXd* before = nullptr);
   /// Another posture for a transition that was found before: as near `start` as can be; nothing of
   /// it is kept, and it does not count.
-  Attempt try_nearby(const Footing& from, const Footing& to, const Eigen::VectorXd& start);
+  Attempt try_nearby(const Footing& from, const Footing& to, const Eigen::VectorXd& start,
+                     const Eigen::VectorXd* before = nullptr);
   /// Likewise as try_transition() finds it, and observed as that is.
-  Attempt try_again(const Footing& from, const Footing& to, const Eigen::VectorXd& start);
+  Attempt try_again(const Footing& from, const Footing& to, const Eigen::VectorXd& start,
+                    const Eigen::VectorXd* before = nullptr);
+  /// How far the balls of `from` slip between two configurations, or are off what they touch [m].
+  double slip_m(const Footing& from, const Eigen::VectorXd& before, const Eigen::VectorXd& after);
+  /// Its contacts, with the balls that `held` has as well where they are in a configuration.
+  Stance rolled_stance(const Footing& footing, const Footing& held, const Eigen::VectorXd& q);
   /// A posture in one stance, near `start`; further attempts have other seeds and wider margins.
   Attempt stand(const Stance& stance, const Eigen::VectorXd& start, int attempt);
   /// The transition is not to be found again: the judge refused it.
@@ -106,6 +118,7 @@ class StanceSpace {
 
  private:
   int intern(int effector, const Contact& contact);
+  int effector_of(const Contact& contact) const;
   /// What touches a place comes to it along its normal without meeting a surface.
   bool has_room(int number);
   /// Of World::surfaces, those that the end effector may lie on there, and a few more.
@@ -116,14 +129,17 @@ class StanceSpace {
                  std::vector<int>& places);
   std::vector<Eigen::Vector2d> area_on_surfaces(const Contact& contact) const;
   double friction_at(const Contact& contact) const;
+  std::optional<RoundBar> bar_at(const Contact& contact) const;
+  bool has_balls(const Footing& footing) const;
   TransitionTask task_of(const Footing& from, const Footing& to, const Eigen::VectorXd& start,
-                         std::uint64_t seed, const TransitionOptions& options) const;
+                         std::uint64_t seed, const TransitionOptions& options,
+                         const Eigen::VectorXd* before) const;
   Attempt solve(const TransitionTask& task);
   /// Counts.
   Attempt change(const TransitionTask& task);
   /// See StancePlannerOptions::observe.
-  void tell(const Footing& from, const Footing& to, const Eigen::VectorXd& start, int restarts,
-            bool found, double seconds) const;
+  void tell(const TransitionTask& task, const Footing& from, const Footing& to, bool found,
+            double seconds) const;
 
   /// What is expected further ahead is hardly ever asked for.
   static constexpr int kMostThreads = 8;
@@ -133,7 +149,7 @@ class StanceSpace {
   BalanceRegions regions_;
   TaskSolver solver_;
   std::unique_ptr<TransitionAhead> ahead_;  ///< once there is something to work out ahead
-  RobotState state_;
+  RobotState state_, after_;
   std::vector<double> reach_m_;
   BoxTree surfaces_;
   std::vector<Place> places_;

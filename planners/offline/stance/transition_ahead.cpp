@@ -76,6 +76,7 @@ void TransitionAhead::follow_up(const Entry& done) {
   if (!done.expected.then || !done.result.success() || done.round != round_) return;
   Expected next{*done.expected.then};
   next.task.start = done.result.configuration;
+  if (next.task.before.size() > 0) next.task.before = done.result.configuration;
   add(std::move(next), done.state == Entry::kRunning);
 }
 

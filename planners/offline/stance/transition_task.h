@@ -25,6 +25,10 @@ struct TransitionTask {
   std::vector<BearingContact> bearing = {};  ///< of the smaller one
   Eigen::VectorXd start = {};
   Eigen::VectorXd preferred = {};  ///< empty: where the task starts
+  /// The configuration before, from which the balls roll that are held from there on: those of the
+  /// smaller one, and of the contact that opens. Empty: balls are at their places.
+  Eigen::VectorXd before = {};
+  bool opens = false;  ///< the larger one comes first
   std::uint64_t seed = 0;
   TransitionOptions options = {};
 };
@@ -54,6 +58,8 @@ class TaskSolver {
   TransitionResult solve(const TransitionTask& task);
 
  private:
+  void balance_where_rolled(const TransitionTask& task, TransitionProblem& problem,
+                            TransitionResult& result);
   void ease_torques(const TransitionTask& task, TransitionProblem& problem,
                     TransitionResult& result);
 
@@ -61,6 +67,7 @@ class TaskSolver {
   BalanceRegions& regions_;
   TransitionSolver solver_;
   RobotState state_;
+  BalanceRegion rolled_region_;
 };
 
 }  // namespace locograph

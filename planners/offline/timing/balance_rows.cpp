@@ -4,6 +4,7 @@
 #include <locograph/planners/offline/timing/balance_rows.h>
 #include <locograph/planners/offline/timing/speed_polygon.h>
 #include <locograph/robots/dynamics.h>
+#include <locograph/robots/rolling_ball.h>
 
 #include <algorithm>
 #include <cmath>
@@ -91,7 +92,9 @@ struct Rays {
 struct Asked {
   double s = 0.0;
   Eigen::VectorXd g, a, b;
-  Eigen::MatrixXd torques;  ///< of each ray, where they are limited
+  Eigen::MatrixXd torques;                   ///< of each ray, where they are limited
+  std::vector<BearingContact> bearing = {};  ///< where balls are, if any roll
+  std::shared_ptr<const Rays> rays = {};
 };
 
 }  // namespace
@@ -105,7 +108,9 @@ class BalanceRows::Work {
         bearing_(those_that_bear(contacts)),
         weight_N_(robot.total_mass() * standard_gravity().norm()),
         origin_(middle_of(bearing_)),
-        rays_(bearing_, origin_, weight_N_),
+        rays_(std::make_shared<const Rays>(bearing_, origin_, weight_N_)),
+        rolls_(std::ranges::any_of(bearing_,
+                                   [](const auto& one) { return is_ball(one.contact.effector); })),
         state_(robot),
         dynamics_(robot) {
     for (int i = 0; options.effort_scale > 0.0 && i < robot.active_joint_count(); ++i) {
@@ -171,6 +176,11 @@ class BalanceRows::Work {
     state_.update(point.configuration.data());
     Asked result;
     result.s = point.s;
+    result.rays = rays_;
+    if (rolls_) {
+      result.bearing = rolled_to(state_, bearing_);
+      result.rays = std::make_shared<const Rays>(result.bearing, origin_, weight_N_);
+    }
     result.g = needed(point, still, still);
     result.a = needed(point, still, point.first) - result.g;
     result.b = needed(point, point.first, point.second) - result.g;
@@ -198,11 +208,13 @@ class BalanceRows::Work {
 
   void add_torques(Asked& asked) const {
     const auto joints = static_cast<Eigen::Index>(joints_.size());
-    asked.torques.resize(joints, rays_.wrenches.cols());
+    const Rays& rays = *asked.rays;
+    const std::vector<BearingContact>& bearing = rolls_ ? asked.bearing : bearing_;
+    asked.torques.resize(joints, rays.wrenches.cols());
     Eigen::VectorXd torques(robot_.tangent_size());
     Eigen::MatrixXd of_contact(joints, 6);
-    for (std::size_t c = 0; c < bearing_.size(); ++c) {
-      const Contact& contact = bearing_[c].contact;
+    for (std::size_t c = 0; c < bearing.size(); ++c) {
+      const Contact& contact = bearing[c].contact;
       PointWrench wrench;
       wrench.link = robot_.link_index(contact.effector.link);
       wrench.point = state_.world_from_link(wrench.link).inverse() * contact.position;
@@ -218,10 +230,10 @@ class BalanceRows::Work {
               torques[robot_.base_tangent_size() + joints_[j]] / efforts_[j];
         }
       }
-      for (std::size_t i = 0; i < rays_.contact.size(); ++i) {
-        if (rays_.contact[i] != static_cast<int>(c)) continue;
+      for (std::size_t i = 0; i < rays.contact.size(); ++i) {
+        if (rays.contact[i] != static_cast<int>(c)) continue;
         const auto k = static_cast<Eigen::Index>(i);
-        asked.torques.col(k) = of_contact * rays_.at_contact.col(k);
+        asked.torques.col(k) = of_contact * rays.at_contact.col(k);
       }
     }
   }
@@ -248,9 +260,9 @@ class BalanceRows::Work {
 
   Row row(const Asked& asked, const Eigen::VectorXd& y) const {
     const auto joints = static_cast<Eigen::Index>(joints_.size());
-    Eigen::VectorXd pull = rays_.wrenches.transpose() * y.head<6>();
+    Eigen::VectorXd pull = asked.rays->wrenches.transpose() * y.head<6>();
     if (joints > 0) pull += asked.torques.transpose() * y.tail(joints);
-    const double all = rays_.most_along(pull) + y.tail(joints).lpNorm<1>() - y.dot(asked.g);
+    const double all = asked.rays->most_along(pull) + y.tail(joints).lpNorm<1>() - y.dot(asked.g);
     const double c = all < kOutside ? all : std::max((1.0 - options_.margin) * all, kLeastRoom);
     return {y.dot(asked.a), y.dot(asked.b), c};
   }
@@ -261,7 +273,7 @@ class BalanceRows::Work {
       const Row known = row(asked, y);
       polygon.clip(known.a, known.b, known.c);
     }
-    if (!programme_ || !joints_.empty()) load(asked);
+    if (!programme_ || !joints_.empty() || rolls_) load(asked);
     std::vector<SpeedPolygon::Corner> reached;
     const auto is_reached = [&](const SpeedPolygon::Corner& corner) {
       return std::ranges::any_of(reached, [&](const SpeedPolygon::Corner& other) {
@@ -283,14 +295,15 @@ class BalanceRows::Work {
 
   void load(const Asked& asked) {
     const auto joints = static_cast<Eigen::Index>(joints_.size());
-    Eigen::MatrixXd columns(6 + joints, rays_.wrenches.cols());
-    columns.topRows<6>() = rays_.wrenches;
+    const Rays& rays = *asked.rays;
+    Eigen::MatrixXd columns(6 + joints, rays.wrenches.cols());
+    columns.topRows<6>() = rays.wrenches;
     if (joints > 0) columns.bottomRows(joints) = asked.torques;
     Eigen::VectorXd within = Eigen::VectorXd::Zero(6 + joints);
     within.tail(joints).setOnes();
     programme_ = std::make_unique<ReachProgramme>(
-        columns, within, rays_.gentle(),
-        ReachProgramme::Bounds{rays_.contact, rays_.lower, rays_.upper, rays_.most});
+        columns, within, rays.gentle(),
+        ReachProgramme::Bounds{rays.contact, rays.lower, rays.upper, rays.most});
   }
 
   TimingRowsAt interpolated(const std::vector<Asked>& asked) const {
@@ -331,8 +344,9 @@ class BalanceRows::Work {
   std::vector<BearingContact> bearing_;
   double weight_N_;
   Eigen::Vector3d origin_;
-  Rays rays_;
-  std::vector<int> joints_;  // whose torques are limited
+  std::shared_ptr<const Rays> rays_;  ///< with balls as they touched down
+  bool rolls_;                        ///< there are some
+  std::vector<int> joints_;           // whose torques are limited
   std::vector<double> efforts_;
   RobotState state_;
   RobotDynamics dynamics_;

@@ -15,6 +15,8 @@
 /// rows so far leave, and the dual variables of one that cannot be reached are a half-space
 /// between. They are kept for the next path in the stance.
 ///
+/// Balls roll along the path, and r is worked out anew at each point for where they are.
+///
 /// With torque limits, torques join the wrench. What forces do to them changes along the path, so
 /// that r is worked out anew at each point: true, but tight at the point of the half-space only.
 ///
