@@ -55,6 +55,12 @@ std::string holding_text(const CheckReport& report, const VertexIds& ids, bool a
   return counted(count, "constraint holds", "constraints hold") + " (--all lists each)\n";
 }
 
+/// How far a ball rolled, or slipped, at most; nothing without balls.
+std::optional<double> most_of_balls(const CheckReport& report, double BallRolling::*figure) {
+  if (report.ball_rolling.empty()) return std::nullopt;
+  return std::ranges::max(report.ball_rolling, {}, figure).*figure;
+}
+
 /// How close to the limits: one line.
 std::string extremes_text(const CheckReport& report) {
   std::string text;
@@ -69,6 +75,15 @@ std::string extremes_text(const CheckReport& report) {
   told("contacts within ", report.max_contact_error_m, " m");
   told("balanced with a margin of ", report.min_balance_margin, "");
   told("torques up to ", report.max_torque_ratio, " % of their limits", 100.0);
+  return text.empty() ? "" : text + '\n';
+}
+
+/// How far each ball rolled: a line.
+std::string balls_text(const CheckReport& report) {
+  std::string text;
+  for (const BallRolling& ball : report.ball_rolling)
+    text += (text.empty() ? "balls rolled: " : ", ") + ball.end_effector + ' ' +
+            short_number(ball.way_m) + " m, slipping by " + short_number(ball.slip_m) + " m";
   return text.empty() ? "" : text + '\n';
 }
 
@@ -104,6 +119,19 @@ Json violations_json(const CheckReport& report, const VertexIds& ids) {
   return all;
 }
 
+namespace {
+
+Json balls_json(const CheckReport& report) {
+  Json balls = Json::array();
+  for (const BallRolling& ball : report.ball_rolling)
+    balls.push_back({{"end_effector", ball.end_effector},
+                     {"rolling_m", number_json(ball.way_m)},
+                     {"slip_m", number_json(ball.slip_m)}});
+  return balls;
+}
+
+}  // namespace
+
 Json check_json(const CheckReport& report, const VertexIds& ids) {
   const auto& ends = report.ends;
   return {{"feasible", report.feasible},
@@ -115,6 +143,9 @@ Json check_json(const CheckReport& report, const VertexIds& ids) {
           {"max_torque_ratio", number_json(report.max_torque_ratio)},
           {"max_velocity_ratio", number_json(report.max_velocity_ratio)},
           {"max_contact_error_m", number_json(report.max_contact_error_m)},
+          {"max_ball_rolling_m", number_json(most_of_balls(report, &BallRolling::way_m))},
+          {"max_ball_slip_m", number_json(most_of_balls(report, &BallRolling::slip_m))},
+          {"balls", balls_json(report)},
           {"start", ends ? Json(ends->starts()) : Json(nullptr)},
           {"goals_reached", ends ? Json(ends->goals_reached) : Json(nullptr)},
           {"goals", ends ? Json(ends->goals) : Json(nullptr)},
@@ -127,7 +158,8 @@ std::string check_text(const CheckReport& report, const VertexIds& ids, bool all
     text += "violated: " + judged_text(*v, ids) + ", " + counted(v->count, "vertex", "vertices") +
             (v->what.empty() ? "" : ": " + v->what) + '\n';
   }
-  text += not_judged_text(report) + holding_text(report, ids, all) + extremes_text(report);
+  text += not_judged_text(report) + holding_text(report, ids, all) + extremes_text(report) +
+          balls_text(report);
   if (!report.trusted.empty()) text += "on trust: " + list(report.trusted) + '\n';
   return text;
 }

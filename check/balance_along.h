@@ -14,10 +14,10 @@
 /// rest, too, where it begins and where it ends.
 ///
 /// How far a margin can fall is estimated, not bounded: by 10 for each metre that contacts move as
-/// seen from the centre of mass, or that gravity turns at 1 m; on an area of half size h below
-/// 0.1 m, by 1 / h. Where the ends of an interval and its path leave room for a margin below the
-/// limit, the interval is halved, down to CheckOptions::balance_resolution_m of path. h is the
-/// least of all vertices and of the step.
+/// seen from the centre of mass, or that gravity, or the normal of a ball on a bar, turns at 1 m;
+/// on an area of half size h below 0.1 m, by 1 / h. Where the ends of an interval and its path
+/// leave room for a margin below the limit, the interval is halved, down to
+/// CheckOptions::balance_resolution_m of path. h is the least of all vertices and of the step.
 ///
 /// Most linear programmes are not needed. The report tells the least margin and the largest of the
 /// least torques of the whole motion; where wrenches found nearby prove (nearby_balance.h) that a

@@ -120,7 +120,7 @@ BalanceOptions BalanceWorker::options_for(const Spot& spot) {
   options.effort_scale = context_.options.effort_scale;
   contacts_.clear();
   for (const JudgedContact& judged : spot.stance->contacts) {
-    Contact contact = judged.contact;
+    Contact contact = contact_at(judged, poses_);
     Support support = support_of(judged, context_.world, poses_);
     if (support.known) {
       contact.effector.friction = support.friction;
@@ -225,6 +225,8 @@ std::vector<Eigen::Vector3d> BalanceWorker::arms(const Spot& spot) {
   const Eigen::Matrix3d base_from_world = poses_[0].linear().transpose();
   for (const JudgedContact& contact : spot.stance->contacts)
     arms.push_back(base_from_world * (touching_point(contact, poses_) - com));
+  for (const JudgedContact& contact : spot.stance->contacts)
+    if (contact.rolls_round) arms.push_back(base_from_world * contact_at(contact, poses_).normal);
   arms.push_back(base_from_world.col(2));
   return arms;
 }
@@ -249,7 +251,12 @@ void BalanceWorker::judge_step(const Spot& begin, double margin_from, double mar
   sampler_.link_poses(begin.vertex, 1.0, to);
   const double tilt = (from[0].linear().row(2) - to[0].linear().row(2)).norm() +
                       0.1 * bounds.base_angle_rad + 0.25 * bounds.base_bend_rad;
-  const double path = shapes_->step_length_bound_in_base() + tilt;
+  double rolled = 0.0;
+  for (const JudgedContact& contact : begin.stance->contacts)
+    if (contact.rolls_round)
+      rolled = std::max(rolled,
+                        (contact_at(contact, from).normal - contact_at(contact, to).normal).norm());
+  const double path = shapes_->step_length_bound_in_base() + tilt + rolled;
   const double enough = context_.options.min_balance_margin + path * steepest_fall();
   if (pieces == 1 && std::min(margin_from, margin_to) >= enough) return;
   Sample here{0.0, margin_from, arms(begin)};

@@ -113,6 +113,13 @@ inline constexpr char kBeyondMeasure[] = "beyond all measure";
 /// "contact_position (l_sole) is 0.31 m, limit 0.0001 m", or "… is not judged: …".
 std::string violation_text(const Violation& violation);
 
+/// How far a ball rolled while it was held, the most of all times.
+struct BallRolling {
+  std::string end_effector;
+  double way_m = 0.0;   ///< of the place that touches, over what it rolls on
+  double slip_m = 0.0;  ///< of its skin there, the most since it touched down
+};
+
 /// Where a whole plan begins and what it gets to, by the word of its task; see plan_ends.h.
 struct PlanEnds {
   std::string off_start;  ///< what is elsewhere where it begins; empty: nothing
@@ -135,6 +142,7 @@ struct CheckReport {
   std::optional<double> min_balance_margin;
   std::optional<double> max_torque_ratio;  ///< where it balances
   std::optional<double> max_velocity_ratio, max_contact_error_m;
+  std::vector<BallRolling> ball_rolling;  ///< by name
   /// Of the vertex with the least margin; one wrench for each contact of its stance.
   std::optional<BalanceCertificate> balance;
 

@@ -154,8 +154,10 @@ bool ClearanceSearch::is_near(const JudgedStance* other, int vertex) {
   LinkPoses poses;
   sampler_.link_poses(vertex, 0.0, poses);
   return std::ranges::any_of(other->contacts, [&](const JudgedContact& contact) {
+    if (holds(stance, contact.links)) return false;
+    if (contact.is_ball()) return closure_error(contact, poses).position_m <= limits::kClosed_m;
     const Eigen::Vector3d off = touching_point(contact, poses) - contact.contact.position;
-    return !holds(stance, contact.links) && std::abs(contact.normal.dot(off)) <= limits::kClosed_m;
+    return std::abs(contact.normal.dot(off)) <= limits::kClosed_m;
   });
 }
 

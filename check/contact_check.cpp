@@ -97,6 +97,7 @@ ViolationTally at_most(const char* name, const char* unit, double limit, std::si
 
 ContactCheck::ContactCheck(CheckContext& context)
     : context_(context),
+      between_samples_(context.curve),
       position_(at_most("contact_position", "m", limits::kClosed_m, context.vertices())),
       orientation_(at_most("contact_orientation", "rad", limits::kClosed_rad, context.vertices())),
       between_(at_most("contact_between", "m", limits::kHeld_m, context.vertices())),
@@ -110,7 +111,7 @@ ContactCheck::ContactCheck(CheckContext& context)
 void ContactCheck::run() {
   const Motion& motion = context_.motion;
   MotionSampler sampler(context_.curve);
-  LinkPoses poses, before;
+  LinkPoses poses, before, older;
   for (std::size_t i = 0; i < context_.vertices(); ++i) {
     const int vertex = int(i);
     context_.begin_work("judging contacts", vertex);
@@ -126,17 +127,22 @@ void ContactCheck::run() {
     begin(context_.stance_from(vertex), at);
     if (i + 1 == context_.vertices()) break;
     if (motion.stances_only && context_.usable.vertices[i + 1]) {
+      std::swap(before, poses);
       sampler.link_poses(vertex, 1.0, poses);
-      keep({vertex, motion.time_s[i + 1], poses, motion.configurations[i + 1]}, nullptr);
+      keep({vertex, motion.time_s[i + 1], poses, motion.configurations[i + 1]}, before);
       continue;
     }
     if (!context_.usable.steps[i]) {
       begin(nullptr, at);
       continue;
     }
-    const int samples = stance_ == nullptr ? 0 : context_.samples_per_step[i];
+    int samples = stance_ == nullptr ? 0 : context_.samples_per_step[i];
+    const bool rolls =
+        std::ranges::any_of(tracks_, [](const Track& track) { return track.contact->is_ball(); });
+    if (rolls) samples += samples % 2;
     for (int k = 1; k <= samples; ++k) {
       const double fraction = double(k) / samples;
+      std::swap(older, before);
       std::swap(before, poses);
       sampler.link_poses(vertex, fraction, poses);
       const Sample now{vertex, context_.curve.time_s(vertex, fraction), poses,
@@ -145,7 +151,8 @@ void ContactCheck::run() {
         ++context_.samples;
         check_between(now);
       }
-      keep(now, &before);
+      keep(now, before);
+      if (rolls && k % 2 == 0) roll_in_step(now, double(k - 2) / samples, fraction, older, before);
     }
   }
 }
@@ -153,9 +160,11 @@ void ContactCheck::run() {
 void ContactCheck::check_vertex(const Sample& sample) {
   for (const JudgedStance* stance : context_.stances_at(sample.vertex)) {
     for (const JudgedContact& contact : stance->contacts) {
-      const ContactError error = closure_error(contact, sample.poses);
+      ContactError error = closure_error(contact, sample.poses);
       const Eigen::Vector3d at = touching_point(contact, sample.poses);
       const auto name = [&] { return contact.name(); };
+      if (contact.is_ball() && touches_down(contact, sample.vertex))
+        error.position_m = (at - contact.contact.position).norm();
       position_.add(error.position_m, sample.vertex, sample.time_s, at, name);
       if (error.holds_direction)
         orientation_.add(error.angle_rad, sample.vertex, sample.time_s, at, name);
@@ -189,7 +198,7 @@ void ContactCheck::check_between(const Sample& sample) {
     between_.add(std::max(error.position_m, as_length), sample.vertex, sample.time_s,
                  touching_point(contact, sample.poses),
                  [&] { return contact.name() + (as_length > error.position_m ? " turned" : ""); });
-    if (contact.is_wheel()) check_surface(contact, sample);
+    if (contact.is_wheel() || contact.is_ball()) check_surface(contact, sample);
   }
 }
 
@@ -241,6 +250,7 @@ void ContactCheck::begin(const JudgedStance* stance, const Sample& sample) {
       // Also from a wheel to a held contact and back: calling it the other is no way to slide.
       track.slip = nearest->slip;
       track.place = nearest->place;
+      track.path = nearest->path;
       track.last = nearest->last;
       track.offset = track.last - at;
       if (contact.contact.effector.kind == nearest->contact->contact.effector.kind &&
@@ -260,12 +270,17 @@ void ContactCheck::keep_place(Track& track, const Sample& sample) {
   const Eigen::Vector3d at = touching_point(contact, sample.poses);
   const Eigen::Matrix3d& now =
       sample.poses[std::size_t(held_link(context_.robot, contact))].linear();
-  track.last = at + track.offset;
+  if (contact.is_ball()) {
+    // What it slips is added as it rolls.
+    track.offset = track.last - at;
+  } else {
+    track.last = at + track.offset;
+  }
   track.place.add(track.last);
   track.turn.add(held_turn(contact, track.first, now, sample.configuration, context_.robot));
 }
 
-void ContactCheck::keep(const Sample& sample, const LinkPoses* before) {
+void ContactCheck::keep(const Sample& sample, const LinkPoses& before) {
   for (Track& track : tracks_) {
     const JudgedContact& contact = *track.contact;
     const Eigen::Vector3d at = touching_point(contact, sample.poses);
@@ -274,6 +289,14 @@ void ContactCheck::keep(const Sample& sample, const LinkPoses* before) {
       if (is > was * (1.0 + 1e-9) || tally.empty())
         tally.add(is, sample.vertex, sample.time_s, at, [&] { return contact.name(); });
     };
+    if (contact.is_ball()) {
+      if (context_.motion.stances_only)
+        roll(track, sample, [&] {
+          track.path.add(skin_step(contact, before[std::size_t(contact.link)],
+                                   sample.poses[std::size_t(contact.link)]));
+        });
+      continue;
+    }
     if (contact.is_held()) {
       const double moved = track.place.size(), turned = track.turn.size();
       keep_place(track, sample);
@@ -281,14 +304,70 @@ void ContactCheck::keep(const Sample& sample, const LinkPoses* before) {
       if (contact.contact.effector.kind != ContactKind::kPoint)
         add(turn_, turned, track.turn.size());
     }
-    if (!contact.is_wheel() || before == nullptr) continue;
+    if (!contact.is_wheel() || context_.motion.stances_only) continue;
     if (!track.slip) track.slip.emplace();
     WheelSlip& slip = *track.slip;
     const double across = slip.lateral_m(), along = slip.longitudinal_m();
-    slip.add(wheel_step(contact, *before, sample.poses));
+    slip.add(wheel_step(contact, before, sample.poses));
     add(lateral_, across, slip.lateral_m());
     add(longitudinal_, along, slip.longitudinal_m());
   }
+}
+
+void ContactCheck::roll_in_step(const Sample& sample, double from, double to,
+                                const LinkPoses& older, const LinkPoses& before) {
+  LinkPoses poses;
+  for (Track& track : tracks_) {
+    const JudgedContact& contact = *track.contact;
+    if (!contact.is_ball()) continue;
+    const std::size_t link = std::size_t(contact.link);
+    roll(track, sample, [&] {
+      track.path.add(
+          contact, {{from, 0.5 * (from + to), to}, {older[link], before[link], sample.poses[link]}},
+          [&](double fraction) {
+            between_samples_.link_poses(sample.vertex, fraction, poses);
+            return poses[link];
+          });
+    });
+  }
+}
+
+void ContactCheck::roll(Track& track, const Sample& sample, const auto& along) {
+  const JudgedContact& contact = *track.contact;
+  const double slipped = track.path.slip_m();
+  const Eigen::Vector3d before = track.path.slip();
+  along();
+  // Called something else it has slid all the same.
+  track.last += track.path.slip() - before;
+  keep_place(track, sample);
+  if (track.path.slip_m() > slipped * (1.0 + 1e-9) || motion_.empty())
+    motion_.add(track.path.slip_m(), sample.vertex, sample.time_s,
+                touching_point(contact, sample.poses),
+                [&] { return contact.name() + ", its skin"; });
+  BallRolling& rolling = rolling_[contact.name()];
+  rolling.way_m = std::max(rolling.way_m, track.path.way_m());
+  rolling.slip_m = std::max(rolling.slip_m, track.path.slip_m());
+}
+
+bool ContactCheck::touches_down(const JudgedContact& contact, int vertex) const {
+  const JudgedStance* after = context_.stance_from(vertex);
+  const auto is_held_in = [&](const JudgedStance& stance) {
+    return std::ranges::any_of(
+        stance.contacts, [&](const JudgedContact& other) { return same_effector(contact, other); });
+  };
+  if (after == nullptr || !is_held_in(*after)) return false;
+  if (vertex == 0) return context_.options.starts_at_rest;
+  const JudgedStance* before = context_.stance_from(vertex - 1);
+  return before == nullptr || !is_held_in(*before);
+}
+
+std::vector<BallRolling> ContactCheck::ball_rolling() const {
+  std::vector<BallRolling> all;
+  for (const auto& [name, rolling] : rolling_) {
+    all.push_back(rolling);
+    all.back().end_effector = name;
+  }
+  return all;
 }
 
 void ContactCheck::report(std::vector<Violation>& violations) const {

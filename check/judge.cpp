@@ -96,6 +96,7 @@ class Check {
     report.max_torque_ratio = balance.max_torque_ratio();
     report.max_velocity_ratio = numbers.max_velocity_ratio();
     report.max_contact_error_m = contacts.max_contact_error_m();
+    report.ball_rolling = contacts.ball_rolling();
     report.balance = balance.worst();
     return report;
   }

@@ -24,11 +24,13 @@
 ///   base_velocity        * of the base, linear or angular, over its limit (ratio)
 ///   acceleration_limits  * joint acceleration over its limit (ratio)
 ///   end_at_rest          * how fast a whole motion begins and ends (rad/s, m/s)
-///   contact_position     + of a contact to its place, at vertices (m)
+///   contact_position     + of a contact to its place, at vertices (m); of a ball that has touched
+///                          down before, to what it rolls on
 ///   contact_orientation  + of the directions that its kind holds, at vertices (rad)
 ///   contact_between     *+ the worst of both between vertices; an angle counts as the length that
 ///                          is the same share of its limit (m)
-///   contact_motion      *+ how far a held contact gets while it lasts, in total (m)
+///   contact_motion      *+ how far a held contact gets while it lasts, in total; how far the skin
+///                          of a ball slips, see ball_rolling.h (m)
 ///   contact_turn        *+ how far it turns; a locked wheel, about its axle on the ground (rad)
 ///   contact_relabelled  *+ contacts whose place differs in stances that follow each other, and
 ///                          stances of a plan of stances that follow their like (count)

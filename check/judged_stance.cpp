@@ -172,6 +172,52 @@ void place(const World& world, JudgedContact& judged) {
   }
 }
 
+/// The bar that a ball rolls round: none where it touched down on a surface.
+std::optional<Bar> bar_to_roll_round(const World& world, const JudgedContact& ball) {
+  const Eigen::Vector3d& place = ball.contact.position;
+  if (std::ranges::any_of(ball.surfaces, [&](int s) {
+        return outside_border(world.surfaces[std::size_t(s)], place) <= limits::kClosed_m;
+      }))
+    return std::nullopt;
+  const Bar* nearest = nullptr;
+  for (const int b : ball.bars) {
+    const Bar& bar = world.bars[std::size_t(b)];
+    if (nearest == nullptr || beyond_ends_m(bar, place) < beyond_ends_m(*nearest, place))
+      nearest = &bar;
+  }
+  if (nearest == nullptr) return std::nullopt;
+  return *nearest;
+}
+
+Eigen::Vector3d centre_of(const JudgedContact& contact,
+                          std::span<const Eigen::Isometry3d> world_from_link) {
+  return world_from_link[std::size_t(contact.link)] * contact.contact.effector.point;
+}
+
+/// From the axis of a bar to a point, across it.
+Eigen::Vector3d from_axis(const Bar& bar, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d axis = (bar.to - bar.from).normalized();
+  const Eigen::Vector3d off = point - bar.from;
+  return off - axis * axis.dot(off);
+}
+
+/// Of what a ball is on, where it is; of all others, of the contact.
+Eigen::Vector3d normal_at(const JudgedContact& contact,
+                          std::span<const Eigen::Isometry3d> world_from_link) {
+  if (!contact.rolls_round) return contact.normal;
+  const Eigen::Vector3d out = from_axis(*contact.rolls_round, centre_of(contact, world_from_link));
+  return out.norm() < 1e-9 ? contact.normal : out.normalized();
+}
+
+/// Of a ball to what it rolls on; negative: it is in it.
+double height_of_ball(const JudgedContact& ball,
+                      std::span<const Eigen::Isometry3d> world_from_link) {
+  const Eigen::Vector3d centre = centre_of(ball, world_from_link);
+  const double radius = ball.contact.effector.radius_m;
+  if (!ball.rolls_round) return ball.normal.dot(centre - ball.contact.position) - radius;
+  return from_axis(*ball.rolls_round, centre).norm() - ball.rolls_round->radius_m - radius;
+}
+
 }  // namespace
 
 JudgedStance::JudgedStance(const Robot& robot, const World& world, const Stance& stance,
@@ -232,6 +278,7 @@ JudgedStance::JudgedStance(const Robot& robot, const World& world, const Stance&
       judged.wheel_joint = joint.index;
     }
     place(world, judged);
+    if (judged.is_ball()) judged.rolls_round = bar_to_roll_round(world, judged);
     contacts.push_back(std::move(judged));
   }
 }
@@ -241,8 +288,9 @@ std::vector<CollisionWorld::Touch> JudgedStance::touches(
   std::vector<CollisionWorld::Touch> touches;
   for (const JudgedContact& contact : contacts) {
     CollisionWorld::Touch touch;
-    touch.position = contact.is_wheel() ? touching_point(contact, poses) : contact.contact.position;
-    touch.normal = contact.normal;
+    const Contact now = contact_at(contact, poses);
+    touch.position = contact.is_wheel() ? touching_point(contact, poses) : now.position;
+    touch.normal = now.normal.stableNormalized();
     touch.bars = contact.bars;
     touch.links = contact.links;
     std::vector<int> beside;
@@ -266,12 +314,30 @@ std::vector<CollisionWorld::Touch> JudgedStance::touches(
   return touches;
 }
 
+Contact contact_at(const JudgedContact& judged,
+                   std::span<const Eigen::Isometry3d> world_from_link) {
+  Contact contact = judged.contact;
+  if (!judged.is_ball()) return contact;
+  const Eigen::Vector3d down = touching_point(judged, world_from_link);
+  const double height = height_of_ball(judged, world_from_link);
+  const Eigen::Vector3d normal = normal_at(judged, world_from_link);
+  contact.position = down - height * normal;
+  if (!judged.rolls_round) return contact;
+  const Bar& bar = *judged.rolls_round;
+  const Eigen::Vector3d axis = (bar.to - bar.from).normalized();
+  const double angle = std::atan2(axis.dot(judged.normal.cross(normal)), judged.normal.dot(normal));
+  contact.forward = Eigen::AngleAxisd(angle, axis) * Eigen::Vector3d(axes_in_world(contact).col(0));
+  contact.normal = normal;
+  return contact;
+}
+
 Eigen::Vector3d touching_point(const JudgedContact& contact,
                                std::span<const Eigen::Isometry3d> world_from_link) {
   const Eigen::Isometry3d& pose = world_from_link[std::size_t(contact.link)];
   const EndEffector& effector = contact.contact.effector;
   const Eigen::Vector3d point = pose * effector.point;
-  if (effector.kind == ContactKind::kPoint) return point - effector.radius_m * contact.normal;
+  if (effector.kind == ContactKind::kPoint)
+    return point - effector.radius_m * normal_at(contact, world_from_link);
   if (!contact.is_wheel()) return point;
   const Eigen::Vector3d axle = pose.linear() * contact.axle;
   const Eigen::Vector3d up = contact.normal - axle * axle.dot(contact.normal);
@@ -292,6 +358,7 @@ ContactError closure_error(const JudgedContact& judged,
     return {contact.locked ? off.norm() : std::abs(off.dot(judged.normal)),
             std::asin(std::min(1.0, std::abs(along)))};
   }
+  if (judged.is_ball()) return {std::abs(height_of_ball(judged, world_from_link)), 0.0, false};
   ContactError error{(touching - contact.position).norm(), 0.0};
   const Eigen::Vector3d normal = pose.linear() * effector.normal;
   const Eigen::Vector3d forward = pose.linear() * effector.forward;
@@ -330,6 +397,7 @@ Support support_of(const JudgedContact& judged, const World& world,
     friction = std::min(friction, own_friction > 0.0 ? own_friction : effector.friction);
   };
   for (const int s : judged.surfaces) {
+    if (judged.rolls_round) break;
     const Surface& surface = world.surfaces[std::size_t(s)];
     double outside = outside_border(surface, point);
     Polygon area;
@@ -343,6 +411,10 @@ Support support_of(const JudgedContact& judged, const World& world,
   }
   for (const int b : judged.bars) {
     const Bar& bar = world.bars[std::size_t(b)];
+    // It rolls off those that cross the one that it rolls round.
+    if (judged.is_ball() && (!judged.rolls_round || std::abs(from_axis(bar, point).norm() -
+                                                             bar.radius_m) > limits::kHeld_m))
+      continue;
     if (effector.kind == ContactKind::kSurface) {
       const SoleOnBar sole = sole_on_bar(bar, judged.contact, pose);
       lies_on(sole.outside_m, bar.friction, sole.line);

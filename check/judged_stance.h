@@ -9,6 +9,10 @@
 /// Surface contacts, points and wheels lie on surfaces; surface contacts, points and grasps on
 /// bars, see bar_contact.h.
 ///
+/// A point with a radius is a ball: its contact's position is where it touched down, and from there
+/// it rolls (ball_rolling.h) on the plane of that place or, where that is on no surface but on a
+/// bar, round the bar. Where it bears is where it has got to, with the normal there.
+///
 /// Closure (robots/contact.h) is worked out here anew, from the poses of links: nothing is shared
 /// with the rows that solvers close contacts with.
 
@@ -18,6 +22,7 @@
 #include <locograph/world/world.h>
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,12 +42,17 @@ struct JudgedContact {
   double off_surface_m = 0.0;
   Eigen::Vector3d axle = Eigen::Vector3d::Zero();  ///< wheel: of its joint, link frame
   int wheel_joint = -1;                            ///< active joint that turns it; -1: none
+  std::optional<Bar> rolls_round = std::nullopt;   ///< a ball on a bar
 
+  /// Rolls while it is held.
+  bool is_ball() const {
+    return contact.effector.kind == ContactKind::kPoint && contact.effector.radius_m > 0.0;
+  }
   bool is_wheel() const { return contact.effector.kind == ContactKind::kWheel; }
   bool is_grasp() const { return contact.effector.kind == ContactKind::kGrasp; }
   /// On something that the world has.
   bool is_placed() const { return !surfaces.empty() || !bars.empty(); }
-  /// Stays where it is: no wheel, or a locked one.
+  /// Stays where it is, or rolls by turning only: no wheel, or a locked one.
   bool is_held() const { return !is_wheel() || contact.locked; }
   const std::string& name() const { return contact.name(); }
 };
@@ -75,11 +85,18 @@ struct ContactError {
   bool holds_direction = true;
 };
 
+/// Of a ball: how far it is above or in what it rolls on, wherever it has got to.
 ContactError closure_error(const JudgedContact& contact,
                            std::span<const Eigen::Isometry3d> world_from_link);
 
+/// The contact where it is: a ball's position, normal and forward are those of the place that it
+/// has rolled to, on a bar turned about its axis with it. All others as they are.
+Contact contact_at(const JudgedContact& contact,
+                   std::span<const Eigen::Isometry3d> world_from_link);
+
 /// The lowest point of a wheel's disc along its contact's normal, the centre of a disc that lies
-/// flat; of other kinds, the point that is to be at the contact's position.
+/// flat; of a ball, the one towards what it rolls on; of other kinds, the point that is to be at
+/// the contact's position.
 Eigen::Vector3d touching_point(const JudgedContact& contact,
                                std::span<const Eigen::Isometry3d> world_from_link);
 

@@ -103,6 +103,21 @@ struct Context : Standing {
                    .radius_m = 0.02};
 };
 }  // namespace bar_contact_h
+namespace ball_rolling_h {
+/// A ball that slides over the floor.
+struct Context : Standing {
+  const Contact touching = {.effector = {.name = "ball",
+                                         .link = "l_sole",
+                                         .kind = ContactKind::kPoint,
+                                         .radius_m = 0.03,
+                                         .friction = 0.5,
+                                         .max_force_N = 100.0}};
+  const JudgedContact contact = JudgedStance(robot, World(), {{touching}}, {}).contacts[0];
+  const SkinPath::PoseAt pose_at = [](double s) {
+    return Eigen::Isometry3d(Eigen::Translation3d(0.1 * s, 0.0, 0.03));
+  };
+};
+}  // namespace ball_rolling_h
 namespace check_report_h {
 struct Context : in_check::Context {
   const Judge judge{standing.robot, world};

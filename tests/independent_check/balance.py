@@ -118,7 +118,7 @@ class Holder:
         link = self.robot.link_index[effector.link]
         moment_of = _Moment(links, t, link, effector)
         point = touching(contact, effector, moment_of)
-        axes = bearing_axes(contact, effector, moment_of.rotation)
+        axes = bearing_axes(contact, effector, moment_of)
         support = support_of(contact, effector, self.scenario, axes, point)
         if not contact.bears_load or not support.bears:
             return support

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks a plan against its scenario with nothing but the files: contacts, limits, rest, balance.
 
-    python3 check_plan.py PLAN.g2o [--json] [--every 10] [--balls centre|roll]
+    python3 check_plan.py PLAN.g2o [--json] [--every 10]
                                    [--torque-limits enforce|report] [--data FOLDER]
 
 Prints each constraint, its worst value, the limit and where it is. Exit code 1: something is
@@ -28,6 +28,7 @@ from motion_limits import check_configurations, check_motion, check_times
 from plan_file import Plan
 from report import Report
 from scenario_file import Data, Scenario, find_scenario
+from support import bar_under_ball
 from task_ends import check_ends
 from urdf import Robot
 
@@ -37,9 +38,9 @@ SOURCES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 class Checker:
     """A plan, its scenario and robot, and the report on them."""
 
-    def __init__(self, file, data=None, balls="centre", torque_limits=None):
+    def __init__(self, file, data=None, torque_limits=None):
         data = Data(data or os.environ.get("LOCOGRAPH_DATA") or SOURCES)
-        self.plan, self.report, self.balls = Plan(file), Report(), balls
+        self.plan, self.report = Plan(file), Report()
         plan = self.plan
         if plan.scenario is None:
             raise ValueError(f"{file}: the plan names no scenario")
@@ -65,7 +66,9 @@ class Checker:
         self._claims()
         check_configurations(report, plan, self.robot)
         traces = Traces(self.robot, self.curve, effectors, moves=self.moves)
-        check_contacts(report, plan, self.curve if self.moves else None, traces, effectors, self.balls)
+        for contact in (c for stance in plan.stances.values() for c in stance if c.name in effectors):
+            contact.round = bar_under_ball(contact, effectors[contact.name], self.scenario)
+        check_contacts(report, plan, self.curve if self.moves else None, traces, self.scenario, effectors)
         check_relabelled(report, plan)
         if not plan.stances_only:
             check_times(report, plan)
@@ -162,12 +165,11 @@ def main():
     parser.add_argument("plan")
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--every", type=int, default=10, help="balance at each so-many-th vertex")
-    parser.add_argument("--balls", choices=("centre", "roll"), default="centre")
     parser.add_argument("--torque-limits", choices=("enforce", "report"))
     parser.add_argument("--data", help="where robots and scenarios that come along are")
     asked = parser.parse_args()
     try:
-        checker = Checker(asked.plan, asked.data, asked.balls, asked.torque_limits)
+        checker = Checker(asked.plan, asked.data, asked.torque_limits)
     except (ValueError, OSError) as problem:
         print(f"check_plan: {problem}", file=sys.stderr)
         return 2

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Holds the program's own check against the independent one, a row for each scenario.
 
-    python3 compare.py LOCOGRAPH FOLDER [SCENARIO…] [--seed 3] [--every 10] [--balls centre|roll]
+    python3 compare.py LOCOGRAPH FOLDER [SCENARIO…] [--seed 3] [--every 10]
 
 Plans each scenario into FOLDER/SCENARIO.g2o, judges it with `check --json`, checks it here, and
 prints where they disagree. Not every seed finds a plan through parallel walls: the next ones are
@@ -144,7 +144,7 @@ def compare(binary, name, asked):
         return row, planned, None, None
     judged = json.loads(done.stdout)
     begin = time.time()
-    checker = Checker(file, asked.data, asked.balls)
+    checker = Checker(file, asked.data)
     also = [v["time"] for v in judged["violations"]
             if v["constraint"] in ("static_balance", "torque_limits") and v["judged"]]
     checker.run(asked.every, also)
@@ -165,7 +165,6 @@ def main():
     parser.add_argument("scenarios", nargs="*")
     parser.add_argument("--seed", type=int, default=3)
     parser.add_argument("--every", type=int, default=10)
-    parser.add_argument("--balls", choices=("centre", "roll"), default="centre")
     parser.add_argument("--data", help="where robots and scenarios that come along are")
     asked = parser.parse_args()
     os.makedirs(asked.folder, exist_ok=True)

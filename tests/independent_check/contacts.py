@@ -10,7 +10,7 @@ link, angular velocity, velocity of the point, and of wheels the axle.
 import numpy as np
 
 from kinematics import Links
-from rotations import angle_between
+from rotations import angle_between, exp
 from scenario_file import axes_of
 
 PARTS = 8
@@ -61,23 +61,45 @@ def unit(v):
     return v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-300)
 
 
+def across_bar(bar, point):
+    """From the axis of a bar to points."""
+    off = point - bar.start
+    return off - (off @ bar.axis)[..., None] * bar.axis
+
+
+def normal_at(contact, point):
+    """Out of what touches, into the robot; that of a ball on a bar goes along with its centre."""
+    return contact.normal if contact.round is None else unit(across_bar(contact.round, point))
+
+
 def touching(contact, effector, trace):
     """The point that touches: a ball's lowest along the normal, a wheel's lowest of its disc."""
     if contact.kind == "point":
-        return trace.point - effector.radius * contact.normal
+        return trace.point - effector.radius * normal_at(contact, trace.point)
     if contact.kind == "wheel":
         along = np.sum(trace.axle * contact.normal, axis=-1, keepdims=True)
         return trace.point - effector.radius * unit(contact.normal - along * trace.axle)
     return trace.point
 
 
+def height_of_ball(contact, effector, trace):
+    """How far a ball is off what it rolls on."""
+    if contact.round is None:
+        return np.abs((trace.point - contact.position) @ contact.normal - effector.radius)
+    out = np.linalg.norm(across_bar(contact.round, trace.point), axis=-1)
+    return np.abs(out - contact.round.radius - effector.radius)
+
+
 def closure(contact, effector, trace):
-    """How far each sample is off the contact's place [m] and off the directions it holds [rad]."""
+    """How far each sample is off the contact's place [m] and off the directions it holds [rad]; a ball,
+    off what it rolls on."""
     off = touching(contact, effector, trace) - contact.position
     if contact.kind == "wheel":
         tilt = np.abs(np.arcsin(np.clip(np.sum(trace.axle * contact.normal, axis=-1), -1, 1)))
         return np.linalg.norm(off, axis=-1) if contact.locked else np.abs(off @ contact.normal), tilt
     distance = np.linalg.norm(off, axis=-1)
+    if contact.is_ball(effector):
+        return height_of_ball(contact, effector, trace), None
     if contact.kind == "point":
         return distance, None
     own = axes_of(effector.normal_in_link, effector.forward_in_link)
@@ -91,15 +113,20 @@ def closure(contact, effector, trace):
     return distance, angle
 
 
-def bearing_axes(contact, effector, rotation):
-    """Columns x y z in which forces act: of soles and grasps their own, else the contact's."""
+def bearing_axes(contact, effector, moment):
+    """Columns x y z in which forces act: of soles and grasps their own, else the contact's; those of a
+    ball on a bar turn about the bar with it."""
     if contact.kind in ("surface", "rung"):
-        return rotation @ axes_of(effector.normal_in_link, effector.forward_in_link)
+        return moment.rotation @ axes_of(effector.normal_in_link, effector.forward_in_link)
     n = contact.normal
     forward = contact.forward
     if forward is None:
         forward = np.array([1.0, 0, 0]) if abs(n[0]) < 0.9 else np.array([0, 1.0, 0])
-    return axes_of(n, forward)
+    axes = axes_of(n, forward)
+    if contact.round is None:
+        return axes
+    now, bar = normal_at(contact, moment.point), contact.round.axis
+    return axes_of(now, exp(bar * np.arctan2(bar @ np.cross(n, now), n @ now)) @ axes[:, 0])
 
 
 def false_claims(contact, effector):

@@ -1,16 +1,17 @@
 """How contacts are kept: between vertices, in total while they last, and wheels and balls that roll.
 
-    check_contacts(report, plan, curve, traces, effectors, balls="centre")     # curve: None, no motion
+    check_contacts(report, plan, curve, traces, scenario, effectors)     # curve: None, no motion
 
-balls="centre": a ball's centre stays where it touched. balls="roll": it moves as its turning asks,
-c' = w x r n, and its skin slips by no more than a held contact may move.
+A held ball moves as its turning asks, c' = w x r n, from the place where it touched down; its skin
+slips by no more than a held contact may move.
 """
 
 import numpy as np
 
 from contacts import PARTS, closure, touching, unit
-from rolling import WheelSlip, integrate, skin_velocity
+from rolling import WheelSlip, integrate, shortest_turns, skin_velocity, touch_velocity
 from rotations import angle_between, log
+from support import ball_outside
 
 CLOSED_M, CLOSED_RAD = 1e-4, 1e-3
 HELD_M, HELD_RAD = 1e-3, np.radians(0.5)
@@ -58,33 +59,61 @@ def spans(plan, name):
     return runs
 
 
-def check_contacts(report, plan, curve, traces, effectors, balls="centre"):
-    _at_vertices(report, plan, traces, effectors, balls)
+def check_contacts(report, plan, curve, traces, scenario, effectors):
+    _at_vertices(report, plan, traces, effectors)
     if curve is None or curve.steps == 0:
+        if plan.stances_only:
+            _rolled_between_stances(report, plan, traces, effectors)
         return
-    slips = {}
     for name, effector in effectors.items():
         trace = traces.on_steps[name]
         for first, last, contact in spans(plan, name):
             part = trace.pick(slice(first, last + 1))
-            _between(report, plan, curve, contact, effector, part, first, balls)
-            if contact.held:
-                _kept(report, plan, curve, contact, effector, part, first, last, balls, slips)
+            durations = curve.duration[first:last + 1]
+            _between(report, plan, curve, contact, effector, part, first)
+            if contact.is_ball(effector):
+                _rolled(report, plan, contact, effector, part, durations, first)
+                outside = ball_outside(contact, effector, scenario, touching(contact, effector, part))
+                if outside is not None:
+                    report.add("contact_on_surface", outside.max(axis=1), CLOSED_M, "m",
+                               np.array(plan.ids)[first:last + 1], curve.time[first:last + 1], name)
+            elif contact.held:
+                _kept(report, plan, curve, contact, effector, part, first, last)
             else:
-                slip = WheelSlip(contact, effector, part, curve.duration[first:last + 1])
+                slip = WheelSlip(contact, effector, part, durations)
                 for which, worst, step in slip.worst():
                     report.add(which, worst, SLIP_M, "m", plan.ids[first + step],
                                curve.time[first + step], name)
-    if slips:
-        name = max(slips, key=slips.get)
-        report.tell("skin slip of balls, if they were to roll", f"up to {slips[name]:.6f} m, {name}")
 
 
-def _rolls(contact, effector, balls):
-    return balls == "roll" and contact.kind == "point" and effector.radius > 0.0
+def _rolled_between_stances(report, plan, traces, effectors):
+    for name, effector in effectors.items():
+        for first, last, contact in spans(plan, name):
+            if contact.is_ball(effector):
+                part = shortest_turns(contact, traces.at_vertices[name].pick(slice(first, last + 2)))
+                _rolled(report, plan, contact, effector, part, np.ones(last + 1 - first), first)
 
 
-def _at_vertices(report, plan, traces, effectors, balls):
+def _rolled(report, plan, contact, effector, part, durations, first):
+    slip = integrate(skin_velocity(contact, effector, part), durations)
+    slid = np.linalg.norm(slip, axis=1)
+    k = int(np.argmax(slid))
+    step = first + max(0, k - 1) // ((len(slid) - 1) // len(durations))
+    report.add("contact_motion", slid[k], HELD_M, "m", plan.ids[step], plan.time[step],
+               f"skin of {contact.name}")
+    rate = np.linalg.norm(touch_velocity(contact, effector, part), axis=-1, keepdims=True)
+    way = float(integrate(rate, durations)[-1, 0])
+    report.rolled[contact.name] = max(way, report.rolled.get(contact.name, 0.0))
+    name = max(report.rolled, key=report.rolled.get)
+    report.tell("balls roll", f"up to {report.rolled[name]:.6f} m, {name}")
+
+
+def _touches_down(plan, vertex, name):
+    held = lambda v: any(c.name == name for c in plan.stances.get(plan.stance[v], []))
+    return held(vertex) and (vertex == 0 or not held(vertex - 1))
+
+
+def _at_vertices(report, plan, traces, effectors):
     by_contact = {}
     for vertex in range(len(plan.q)):
         for number in stances_at(plan, vertex):
@@ -96,34 +125,26 @@ def _at_vertices(report, plan, traces, effectors, balls):
         vertices = np.array(sorted(set(vertices)))
         effector, trace = effectors[contact.name], traces.at_vertices[contact.name].pick(vertices)
         position, angle = closure(contact, effector, trace)
-        if _rolls(contact, effector, balls):
-            off = touching(contact, effector, trace) - contact.position
-            began = [span[0] for span in spans(plan, contact.name)]
-            position = np.where(np.isin(vertices, began), position, np.abs(off @ contact.normal))
+        if contact.is_ball(effector):
+            down = [_touches_down(plan, v, contact.name) for v in vertices]
+            off = np.linalg.norm(touching(contact, effector, trace) - contact.position, axis=-1)
+            position = np.where(down, off, position)
         ids, times = np.array(plan.ids)[vertices], plan.time[vertices]
         report.add("contact_position", position, CLOSED_M, "m", ids, times, contact.name)
         if angle is not None:
             report.add("contact_orientation", angle, CLOSED_RAD, "rad", ids, times, contact.name)
 
 
-def _between(report, plan, curve, contact, effector, part, first, balls):
+def _between(report, plan, curve, contact, effector, part, first):
     steps = len(part.point)
     position, angle = closure(contact, effector, part.pick(slice(None), slice(1, PARTS)))
-    if _rolls(contact, effector, balls):
-        off = touching(contact, effector, part.pick(slice(None), slice(1, PARTS))) - contact.position
-        position = np.abs(off @ contact.normal)
     worst = position if angle is None else np.maximum(position, angle * (HELD_M / HELD_RAD))
     report.add("contact_between", worst.max(axis=1), HELD_M, "m",
                np.array(plan.ids)[first:first + steps], curve.time[first:first + steps], contact.name)
 
 
-def _kept(report, plan, curve, contact, effector, part, first, last, balls, slips):
+def _kept(report, plan, curve, contact, effector, part, first, last):
     place = touching(contact, effector, part)
-    if contact.kind == "point" and effector.radius > 0.0:
-        slip = integrate(skin_velocity(contact, effector, part), curve.duration[first:last + 1])
-        if _rolls(contact, effector, balls):
-            place = slip
-        slips[contact.name] = max(slips.get(contact.name, 0.0), spread(slip))
     report.add("contact_motion", spread(place), HELD_M, "m", plan.ids[first], curve.time[first],
                f"{contact.name}, until {curve.time[last + 1]:.4f} s")
     if contact.kind == "point":

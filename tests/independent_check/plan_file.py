@@ -44,11 +44,15 @@ class Contact:
             self.forward = np.array(take(3))
         self.bears_load = "unloaded" not in words
         self.locked = "locked" in words
+        self.round = None       # the bar that it rolls round, see support.py
 
     @property
     def held(self):
-        """Stays where it is: no wheel, or a locked one."""
+        """Stays where it is, or rolls by turning only: no wheel, or a locked one."""
         return self.kind != "wheel" or self.locked
+
+    def is_ball(self, effector):
+        return self.kind == "point" and effector.radius > 0.0
 
 
 class Plan:

@@ -2,7 +2,7 @@
 
     report.add("joint_limits", excess, 1e-6, "rad", vertices, "LKneePitch")
     report.add("balance", margins, 0.0, "1", vertices, "", least=True)
-    report.tell("skin slip of balls", "0.031 m, hand")
+    report.tell("balls roll", "up to 0.031 m, hand")
 """
 
 import numpy as np
@@ -35,7 +35,7 @@ class Constraint:
 
 class Report:
     def __init__(self):
-        self.constraints, self.told = {}, {}
+        self.constraints, self.told, self.rolled = {}, {}, {}     # rolled: ways of balls [m], by name
 
     def add(self, name, values, limit, unit, vertices, times, what="", least=False, slack=0.0):
         if name not in self.constraints:

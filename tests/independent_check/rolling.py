@@ -2,14 +2,16 @@
 
     slip = WheelSlip(contact, effector, trace, durations)
     for constraint, worst, step in slip.worst(): ...
-    way = integrate(skin_velocity(contact, effector, trace), durations)
+    slip = integrate(skin_velocity(contact, effector, trace), durations)
+    slip = integrate(skin_velocity(contact, effector, shortest_turns(contact, at_vertices)), ones)
 
 Rates are integrated by Simpson's rule over quarters of each step.
 """
 
 import numpy as np
 
-from contacts import PARTS, unit
+from contacts import FRACTIONS, PARTS, Trace, across_bar, normal_at, unit
+from rotations import exp, log
 
 SLIP_M, STRETCH_M, SHARE = 5e-3, 0.1, 0.02
 QUARTERS = PARTS // 2
@@ -28,11 +30,51 @@ def integrate(rate, durations):
 
 
 def skin_velocity(contact, effector, trace):
-    """Of the material point of a ball that touches: c' - w x r n. Zero where it rolls; that a ball
-    spins about the normal takes no part."""
-    n = contact.normal
-    slip = trace.velocity - effector.radius * np.cross(trace.omega, n)
-    return slip
+    """Of a ball's skin over what it is on, c' - w x r n without what is along n; on a bar along its
+    axis and along its arc. Zero where it rolls; that a ball spins about the normal takes no part."""
+    n, v = normal_at(contact, trace.point), trace.velocity
+    if contact.round is None:
+        slip = v - effector.radius * np.cross(trace.omega, n)
+        return slip - (slip @ n)[..., None] * n
+    dot = lambda a, b: np.sum(a * b, axis=-1)
+    axis, off = contact.round.axis, across_bar(contact.round, trace.point)
+    around = dot(v, np.cross(axis, n)) / np.linalg.norm(off, axis=-1)
+    arc = (contact.round.radius + effector.radius) * around - effector.radius * (trace.omega @ axis)
+    along = v @ axis + effector.radius * dot(trace.omega, np.cross(axis, n))
+    return np.stack([along, arc], axis=-1)
+
+
+def touch_velocity(contact, effector, trace):
+    """Of the place that touches, on a plane the centre's along it; on a bar as skin_velocity()."""
+    still = Trace(trace.point, trace.rotation, trace.axle, trace.velocity, 0.0 * trace.omega)
+    rate = skin_velocity(contact, effector, still)
+    if contact.round is not None:
+        rate[..., 1] *= contact.round.radius / (contact.round.radius + effector.radius)
+    return rate
+
+
+def shortest_turns(contact, trace):
+    """Steps, of one second, between the moments of a trace: the link turns at a constant rate the short
+    way, a ball's centre goes straight, or steadily round and along its bar."""
+    s = FRACTIONS[:, None]
+    steps = len(trace.point) - 1
+    turn = log(trace.rotation[1:] @ trace.rotation[:-1].transpose(0, 2, 1))
+    omega = np.repeat(turn[:, None], PARTS + 1, axis=1)
+    rotation = np.repeat(trace.rotation[:-1, None], PARTS + 1, axis=1)
+    here, there = trace.point[:-1, None], trace.point[1:, None]
+    if contact.round is None:
+        velocity = np.repeat(there - here, PARTS + 1, axis=1)
+        return Trace(here + s * (there - here), rotation, None, velocity, omega)
+    bar = contact.round
+    a, b = across_bar(bar, trace.point[:-1]), across_bar(bar, trace.point[1:])
+    angle = np.arctan2(np.cross(a, b) @ bar.axis, np.sum(a * b, axis=-1))
+    along = (trace.point - bar.start) @ bar.axis
+    point, velocity = np.zeros((2, steps, PARTS + 1, 3))
+    for k in range(steps):
+        out = exp(FRACTIONS[:, None] * angle[k] * bar.axis) @ a[k]
+        point[k] = bar.start + (along[k] + s * (along[k + 1] - along[k])) * bar.axis + out
+        velocity[k] = (along[k + 1] - along[k]) * bar.axis + angle[k] * np.cross(bar.axis, out)
+    return Trace(point, rotation, None, velocity, omega)
 
 
 def largest_change(way, value, stretch):

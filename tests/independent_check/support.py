@@ -99,6 +99,46 @@ def _line_in_sole(bar, contact, half, axes, touching):
     return line
 
 
+def bar_under_ball(contact, effector, scenario):
+    """The bar that a ball rolls round; None: it rolls on the plane of the place where it touched down,
+    as it does wherever that is within the border of a surface."""
+    surfaces, bars = places_of(contact, effector, scenario)
+    if not bars or not contact.is_ball(effector):
+        return None
+    if any(_beyond(s, contact.position) <= CLOSED_M for s in surfaces):
+        return None
+    return min(bars, key=lambda b: _past_ends(b, contact.position))
+
+
+def _beyond(surface, points):
+    """How far points are beyond the border of a surface."""
+    off = np.abs((points - surface.centre) @ surface.axes[:, :2])
+    return np.linalg.norm(np.maximum(0.0, off - surface.half), axis=-1)
+
+
+def _past_ends(bar, points):
+    along = (points - bar.start) @ bar.axis
+    return np.maximum(0.0, np.maximum(-along, along - bar.length))
+
+
+def places_under_ball(contact, effector, scenario, point):
+    """Of the surfaces and bars of its place those that a ball may be on at a point."""
+    surfaces, bars = places_of(contact, effector, scenario)
+    if contact.round is None:
+        return surfaces, []
+    off = lambda b: np.linalg.norm(np.cross(b.axis, point - b.start)) - b.radius
+    return [], [b for b in bars if abs(off(b)) <= HELD_M]
+
+
+def ball_outside(contact, effector, scenario, points):
+    """How far the places that a ball has rolled to are beyond the nearest border; None: nothing is
+    known of what it is on."""
+    surfaces, bars = places_of(contact, effector, scenario)
+    off = [_beyond(s, points) for s in surfaces if contact.round is None]
+    off += [_past_ends(b, points) for b in bars if contact.round is not None]
+    return np.min(off, axis=0) if off else None
+
+
 def support_of(contact, effector, scenario, axes, touching):
     """axes: of the sole in the world (columns); touching: the point that touches."""
     support = Support(effector.friction)
@@ -106,6 +146,8 @@ def support_of(contact, effector, scenario, axes, touching):
     if not surfaces and not bars:
         support.friction = scenario.scan_friction(effector)
         return support
+    if contact.is_ball(effector):
+        surfaces, bars = places_under_ball(contact, effector, scenario, touching)
     support.known, corners, friction = True, [], []
 
     def lies_on(place, outside, polygon):
@@ -119,7 +161,7 @@ def support_of(contact, effector, scenario, axes, touching):
     for surface in surfaces:
         local = surface.axes.T @ (touching - surface.centre)
         if contact.kind != "surface":
-            lies_on(surface, np.linalg.norm(np.maximum(0.0, np.abs(local[:2]) - surface.half)), None)
+            lies_on(surface, _beyond(surface, touching), None)
             continue
         polygon = rectangle(effector.half)
         for axis in (0, 1):
@@ -136,8 +178,7 @@ def support_of(contact, effector, scenario, axes, touching):
             line = _line_in_sole(bar, contact, effector.half, axes, touching)
             lies_on(bar, HELD_M if line is None else 0.0, line)
         else:
-            along = bar.axis @ (touching - bar.start)
-            lies_on(bar, max(0.0, -along, along - bar.length), None)
+            lies_on(bar, _past_ends(bar, touching), None)
     support.corners = np.array(corners) if corners else None
     if friction:
         support.friction = min(friction)

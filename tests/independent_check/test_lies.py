@@ -14,6 +14,7 @@ sys.dont_write_bytecode = True
 
 import numpy as np
 
+import rotations
 from check_plan import Checker
 
 SCENARIO = "standing_up"
@@ -214,6 +215,109 @@ class Lies(unittest.TestCase):
                              *(repr(float(x)) for x in slope)])
         self.lines.rows = [r for r in self.lines.rows if r[0] not in ("VERTEX_CONFIGURATION", "FIX")] + rows
         self.seen("contact_between", "contact_motion")
+
+
+BALL = """<robot name="ball"><link name="ball"><inertial><mass value="2"/><inertia ixx="1e-3" ixy="0"
+ixz="0" iyy="1e-3" iyz="0" izz="1e-3"/></inertial><collision><geometry><sphere radius="0.03"/></geometry>
+</collision></link><link name="arm"/><joint name="elbow" type="revolute"><parent link="ball"/>
+<child link="arm"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" velocity="1" effort="1"/></joint></robot>"""
+BALL_ROLLS = """<scenario version="1" name="ball_rolls"><robot urdf="ball.urdf"/><end_effectors>
+<end_effector name="ball" link="ball" kind="point" radius="0.03" max_force="100"/>
+<end_effector name="tip" link="arm" kind="point" max_force="100" point="0.2 0 0"/></end_effectors>
+<environment friction="0.5"><plane name="table" center="0 0 0" normal="0 0 1" size="1 1"/>
+<rung name="bar" from="3 -1 1" to="3 1 1" radius="0.02"/></environment>
+<start base="{base} 0 0 0 1"><contact end_effector="ball" position="{place}" normal="0 0 1"/></start>
+<goal><contact end_effector="ball" position="{place}" normal="0 0 1"/></goal></scenario>"""
+
+
+class Balls(unittest.TestCase):
+    """A ball that is told how to move on a table, or on a bar: both checks say the same of it."""
+
+    PLACES = {"table": ("0 0 0.03", "0 0 0"), "bar": ("3 0 1.05", "3 0 1.02")}
+
+    def slip(self, on, way, turn, stances_only=False):
+        """How far the skin slips, by both, and what both see; way: of the centre at s = 0 … 1 from
+        where it touches down, turn: the rotation vector there, of a fixed axis."""
+        base, place = self.PLACES[on]
+        os.makedirs(FOLDER, exist_ok=True)
+        files = {"ball.urdf": BALL, "ball.xml": BALL_ROLLS.format(base=base, place=place)}
+        contact = f"PARAMS_CONTACT 2 0 ball ball point 0.03 0.5 100 0 0 0 0 0 1 1 0 0 at {place} 0 0 1 free"
+        lines = ["PARAMS_ROBOT 0 ball.urdf - floating 0", "PARAMS_SCENARIO 1 ball.xml", contact,
+                 "PARAMS_STANCE 3 1 2", "PARAMS_PLAN 4 3" + " stances_only" * stances_only]
+        last = np.array(base.split(), float) + way(1.0) + rotations.exp(np.array(turn, float)) @ [0.2, 0, 0]
+        # Something else touches down as a plan of stances goes on.
+        at = " ".join(repr(float(x)) for x in last)
+        lines += [f"PARAMS_CONTACT 5 0 tip arm point 0 0.5 100 0.2 0 0 0 0 1 1 0 0 at {at} 0 0 1 free",
+                  "PARAMS_STANCE 6 2 2 5"] * stances_only
+        count = 1 if stances_only else 80
+        for k in range(count + 1):
+            s = k / count
+            centre = np.array(base.split(), float) + way(s)
+            quaternion = rotations.quaternion(rotations.exp(s * np.array(turn, float)))
+            time = k if stances_only else 0.5 * k
+            numbers = " ".join(repr(float(x)) for x in [*centre, *quaternion])
+            stance = 6 if stances_only and k == count else 3
+            lines.append(f"VERTEX_CONFIGURATION {k} 0 {time} {stance} {numbers} 0")
+        files["ball.g2o"] = "\n".join(lines) + "\n"
+        for name, text in files.items():
+            with open(os.path.join(FOLDER, name), "w", encoding="utf-8") as out:
+                out.write(text)
+        file = os.path.join(FOLDER, "ball.g2o")
+        report = Checker(file).run(every=EVERY)
+        judged = subprocess.run([BINARY, "check", file, "--json", "--quiet"], capture_output=True, text=True)
+        self.assertIn(judged.returncode, (0, 1), judged.stderr)
+        judged = json.loads(judged.stdout)
+        theirs = {v["constraint"]: v for v in judged["violations"]}
+        same = ("contact_position", "contact_motion", "contact_on_surface")[:2 if stances_only else 3]
+        for name in same:
+            own = report.constraints[name]
+            self.assertEqual(own.violated, theirs[name]["violated"], name)
+            self.assertAlmostEqual(own.worst, theirs[name]["worst"], delta=1e-5)
+        self.assertAlmostEqual(report.rolled["ball"], judged["max_ball_rolling_m"], delta=1e-5)
+        return report.worst("contact_motion"), {n for n in same if report.constraints[n].violated}
+
+    def test_rolls(self):
+        for stances_only in (False, True):
+            slip, seen = self.slip("table", lambda s: s * np.array([0.06, 0.03, 0]), [-1.0, 2.0, 0],
+                                   stances_only)
+            self.assertLess(slip, 1e-6)
+            self.assertEqual(seen, set())
+
+    def test_spins_about_the_normal(self):
+        self.assertEqual(self.slip("table", lambda s: np.zeros(3), [0, 0, 2.5])[1], set())
+
+    def test_slides(self):
+        slip, seen = self.slip("table", lambda s: s * np.array([0.06, 0, 0]), [0, 0, 2.5])
+        self.assertAlmostEqual(slip, 0.06, places=6)
+        self.assertEqual(seen, {"contact_motion"})
+
+    def test_turns_on_the_spot(self):
+        slip, seen = self.slip("table", lambda s: np.zeros(3), [0, 1.0, 0])
+        self.assertAlmostEqual(slip, 0.03, places=6)
+        self.assertEqual(seen, {"contact_motion"})
+
+    def test_rolls_off_the_edge(self):
+        self.assertEqual(self.slip("table", lambda s: s * np.array([0.55, 0, 0]), [0, 0.55 / 0.03, 0])[1],
+                         {"contact_on_surface"})
+
+    def test_is_lifted(self):
+        lifted = self.slip("table", lambda s: s * np.array([0, 0, 2e-4]), [0, 0, 0])
+        self.assertEqual(lifted[1], {"contact_position"})
+
+    def test_rolls_round_a_bar(self):
+        around = lambda s: 0.05 * np.array([np.sin(0.5 * s), 0, np.cos(0.5 * s) - 1])
+        slip, seen = self.slip("bar", around, [0, 0.5 * 5 / 3, 0])
+        self.assertLess(slip, 1e-6)
+        self.assertEqual(seen, set())
+        slip, seen = self.slip("bar", around, [0, 0.5, 0])          # as if it were flat
+        self.assertAlmostEqual(slip, 0.5 * 0.02, places=6)
+        self.assertEqual(seen, {"contact_motion"})
+        slip, seen = self.slip("bar", around, [0, 0.5 * 5 / 3, 0], stances_only=True)
+        self.assertLess(slip, 1e-6)
+        self.assertEqual(seen, set())
+
+    def test_rolls_along_a_bar(self):
+        self.assertEqual(self.slip("bar", lambda s: s * np.array([0, 0.3, 0]), [-10.0, 0, 0])[1], set())
 
 
 if __name__ == "__main__":

@@ -16,13 +16,14 @@ import numpy as np
 
 import rotations
 from balance import Holder
-from contacts import Trace, closure
+from contacts import Trace, closure, height_of_ball, normal_at
 from curve import Curve
 from dynamics import GRAVITY, effect, momentum, required
 from held import spread
 from kinematics import Links
 from plan_file import Contact
-from rolling import WheelSlip, integrate, largest_change, skin_velocity
+from rolling import (WheelSlip, integrate, largest_change, shortest_turns, skin_velocity,
+                     touch_velocity)
 from scenario_file import Data, Scenario
 from support import clip, rectangle
 from urdf import Robot
@@ -267,15 +268,43 @@ class Rolling(unittest.TestCase):
 
     def test_skin_of_balls(self):
         effector = types.SimpleNamespace(radius=0.1)
+        slid = lambda trace: np.linalg.norm(integrate(
+            skin_velocity(self.contact("point"), effector, trace), np.full(10, 0.1)), axis=1).max()
         trace = rolling_trace(0.0, 0.1)
-        slip = integrate(skin_velocity(self.contact("point"), effector, trace), np.full(10, 0.1))
-        self.assertAlmostEqual(spread(slip), 0.0)
+        self.assertAlmostEqual(slid(trace), 0.0)
         trace.omega = trace.omega + np.array([0, 0, 5.0])    # spin is free
-        slip = integrate(skin_velocity(self.contact("point"), effector, trace), np.full(10, 0.1))
-        self.assertAlmostEqual(spread(slip), 0.0)
+        self.assertAlmostEqual(slid(trace), 0.0)
         trace.omega = np.zeros_like(trace.omega)
-        slip = integrate(skin_velocity(self.contact("point"), effector, trace), np.full(10, 0.1))
-        self.assertAlmostEqual(spread(slip), 1.0)
+        self.assertAlmostEqual(slid(trace), 1.0)
+        way = integrate(touch_velocity(self.contact("point"), effector, trace), np.full(10, 0.1))
+        self.assertAlmostEqual(np.linalg.norm(way[-1]), 1.0)
+
+    def on_a_bar(self, angle, turn, along=0.0):
+        """A ball of 0.03 m on a bar of 0.02 m along y, from its top round it and along it."""
+        contact, effector = self.contact("point"), types.SimpleNamespace(radius=0.03)
+        contact.round = types.SimpleNamespace(start=np.zeros(3), axis=np.array([0, 1.0, 0]), radius=0.02)
+        phi = np.array([0.0, 0.5, 1.0]) * angle
+        point = 0.05 * np.stack([np.sin(phi), 0 * phi, np.cos(phi)], axis=-1)
+        point[:, 1] = along * np.array([0.0, 0.5, 1.0])
+        rotation = rotations.exp(np.array([0.0, 0.5, 1.0])[:, None] * turn)
+        trace = shortest_turns(contact, Trace(point, rotation, None))
+        return contact, effector, trace
+
+    def test_balls_roll_round_bars(self):
+        slid = lambda *moment: integrate(skin_velocity(*moment), np.ones(2))[-1]
+        around = np.array([0, 1.0, 0])
+        np.testing.assert_allclose(slid(*self.on_a_bar(0.9, 0.9 * 5 / 3 * around)), 0.0, atol=1e-9)
+        np.testing.assert_allclose(slid(*self.on_a_bar(0.9, 0.9 * around)), [0, 0.02 * 0.9], atol=1e-9)
+        np.testing.assert_allclose(slid(*self.on_a_bar(0.0, 0.9 * around)), [0, -0.03 * 0.9], atol=1e-9)
+        # Along the bar it rolls by turning across it; about the normal it spins.
+        np.testing.assert_allclose(slid(*self.on_a_bar(0.0, [-2.0, 0, 0], 0.06)), 0.0, atol=1e-9)
+        np.testing.assert_allclose(slid(*self.on_a_bar(0.0, [0, 0, 2.0], 0.06)), [0.06, 0], atol=1e-9)
+        contact, effector, trace = self.on_a_bar(0.9, 1.5 * around)
+        way = integrate(touch_velocity(contact, effector, trace), np.ones(2))[-1]
+        np.testing.assert_allclose(way, [0, 0.02 * 0.9], atol=1e-9)
+        self.assertLess(height_of_ball(contact, effector, trace).max(), 1e-12)
+        np.testing.assert_allclose(normal_at(contact, trace.point)[-1, -1],
+                                   [np.sin(0.9), 0, np.cos(0.9)], atol=1e-12)
 
     def test_largest_change(self):
         way, value = np.array([0, 0.05, 0.1, 0.3, 0.35]), np.array([0, 1.0, -1.0, 5.0, 4.5])

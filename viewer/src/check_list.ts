@@ -11,6 +11,7 @@ const FIGURES: [string, string, string][] = [
   ['max_torque_ratio', 'torque / limit', ''],
   ['max_velocity_ratio', 'velocity / limit', ''],
   ['max_contact_error_m', 'contact error', 'm'],
+  ['max_ball_rolling_m', 'balls roll', 'm'],
 ];
 
 export class CheckList {
