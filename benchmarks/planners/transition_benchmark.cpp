@@ -92,15 +92,20 @@ class Replayer {
     }
     const TransitionAttempt& attempt = asked.attempt;
     const Footing from = space_->footing(attempt.from), to = space_->footing(attempt.to);
+    const Eigen::VectorXd* before = attempt.before.size() > 0 ? &attempt.before : nullptr;
     const Stopwatch watch;
-    const StanceSpace::Attempt found = space_->try_transition(from, to, attempt.start, restarts);
+    const StanceSpace::Attempt found =
+        space_->try_transition(from, to, attempt.start, restarts, before);
     Replayed result{.solved = found.found, .accepted = found.found, .seconds = watch.seconds()};
     if (!found.found) {
       result.reason = transition_failure_name(found.failure);
     } else if (judge_ != nullptr) {
-      const CheckReport report = judge_->check(
-          stances_motion({attempt.from, attempt.to}, {found.configuration, found.configuration}),
-          task_.check);
+      const Eigen::VectorXd& q = found.configuration;
+      const CheckReport report =
+          judge_->check(stances_motion({space_->rolled_stance(from, from, q),
+                                        space_->rolled_stance(to, from, q)},
+                                       {q, q}),
+                        task_.check);
       result.accepted = report.feasible;
       if (!report.feasible) result.reason = "judge: " + report.worst().constraint;
     }

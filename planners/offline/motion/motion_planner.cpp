@@ -205,7 +205,8 @@ class MotionSearch {
     const Eigen::VectorXd &from = path.configurations[j], &to = path.configurations[j + 1];
     const Footing before = before_of(path, j);
     for (const auto& known : known_) {
-      const bool ends_there = known->to == to || known->motion.to == to;
+      const bool moved = known->motion.to.size() > 0;
+      const bool ends_there = known->to == to || (moved && known->motion.to == to);
       if (known->from == from && ends_there && known->held == path.footings[j] &&
           known->after == path.footings[j + 1] && known->before == before) {
         return known.get();
