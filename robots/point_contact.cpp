@@ -31,6 +31,11 @@ struct PointContact final : ContactKindEntry {
     return pressed_rays(bearing.contact, {Eigen::Vector2d::Zero()}, part);
   }
 
+  /// A radius away from where it would roll off.
+  Eigen::Vector2d inset_m(const EndEffector& effector) const override {
+    return Eigen::Vector2d::Constant(effector.radius_m);
+  }
+
   Eigen::Vector3d touching_point(const RobotState& state, const Contact& contact) const override {
     return rolled_to(state, contact).position;
   }

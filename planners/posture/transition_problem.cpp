@@ -13,6 +13,7 @@ void TransitionOptions::validate() const {
   check_option(self_margin_m >= 0.0, "self_margin_m", "0 or more");
   check_option(surface_margin_m >= 0.0, "surface_margin_m", "0 or more");
   check_option(obstacle_margin_m >= 0.0, "obstacle_margin_m", "0 or more");
+  check_option(border_margin_m >= 0.0, "border_margin_m", "0 or more");
   check_option(balance_margin_m >= 0.0, "balance_margin_m", "0 or more");
   check_option(torque_margin >= 0.0 && torque_margin < 1.0, "torque_margin", "a part in [0, 1)");
   termination.validate();

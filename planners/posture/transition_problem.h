@@ -28,6 +28,7 @@ struct TransitionOptions {
   double self_margin_m = 4e-3;
   double surface_margin_m = 8e-3;  ///< of links that do not touch, also to bars
   double obstacle_margin_m = 0.01;
+  double border_margin_m = 2e-3;   ///< of balls that roll, to the border of what they roll on
   double balance_margin_m = 4e-3;  ///< of the centre of mass to the sides of the polygon
   double torque_margin = 0.03;     ///< the part of efforts left unused
   Termination termination = {};

@@ -206,7 +206,10 @@ void TransitionRows::find_borders(const Contact& contact) {
     found = place;
   }
   if (!found) return;
-  rolling_.push_back({static_cast<int>(closures_.size()) - 1, *found, contact.effector.point});
+  // Half as far inside as it touched down, if that is less.
+  const double margin_m = std::min(options_.border_margin_m, 0.5 * std::max(0.0, most));
+  rolling_.push_back(
+      {static_cast<int>(closures_.size()) - 1, *found, contact.effector.point, margin_m});
 }
 
 void TransitionRows::closure_at(const Eigen::VectorXd& q, Eigen::VectorXd& error) {
@@ -268,9 +271,9 @@ void TransitionRows::add_borders() {
     const BorderRooms borders = border_rooms(relations_.places(), ball.place, centre);
     for (int i = 0; i < borders.count; ++i) {
       const BorderRooms::Room& room = borders.rooms[static_cast<std::size_t>(i)];
-      if (room.value >= kBand_m) continue;
-      double* row =
-          add(TransitionFailure::kBorder, ball.closure, ball.place, kBorderScale * room.value);
+      const double value = room.value - ball.margin_m;
+      if (value >= kBand_m) continue;
+      double* row = add(TransitionFailure::kBorder, ball.closure, ball.place, kBorderScale * value);
       state_.kinematics.add_point_gradient(link, centre, room.inwards, kBorderScale, row);
     }
   }

@@ -72,6 +72,7 @@ class TransitionRows {
   struct RollingOn {
     int closure, place;
     Eigen::Vector3d point_in_link;
+    double margin_m;
   };
 
   void find_coarse_pairs();

@@ -5,6 +5,7 @@
 #include <locograph/common/error.h>
 #include <locograph/planners/offline/motion/motion_planner.h>
 #include <locograph/planners/offline/motion/segment_motion.h>
+#include <locograph/planners/offline/stance/stance_path.h>
 #include <locograph/planners/offline/stance/stance_planners.h>
 #include <locograph/planners/offline/stance/stance_space.h>
 #include <locograph/robots/dynamics.h>
@@ -193,7 +194,7 @@ TEST_P(MotionPlanTest, ContactsHoldBetweenVertices) {
   const MotionCurve curve(robot, motion);
   MotionSampler sampler(curve);
   std::vector<Eigen::Isometry3d> poses;
-  double most_m = 0.0, most_rad = 0.0;
+  double most_m = 0.0, most_rad = 0.0, rolled_m = 0.0;
   for (int i = 0; i + 1 < static_cast<int>(motion.configurations.size()); ++i) {
     const int stance = motion.stance_from[static_cast<std::size_t>(i)];
     for (const double fraction : {0.0, 0.3, 0.5, 0.8}) {
@@ -202,12 +203,15 @@ TEST_P(MotionPlanTest, ContactsHoldBetweenVertices) {
         const EndEffector& effector = contact.effector;
         const Eigen::Isometry3d& link =
             poses[static_cast<std::size_t>(robot.link_index(effector.link))];
-        const bool sole = effector.kind == ContactKind::kSurface;
-        const double radius_m = sole ? 0.0 : effector.radius_m;
-        const Eigen::Vector3d place =
-            contact.position + radius_m * contact.normal.stableNormalized();
-        most_m = std::max(most_m, (link * effector.point - place).norm());
-        if (!sole) continue;
+        const Eigen::Vector3d off = link * effector.point - contact.position;
+        if (is_ball(effector)) {  // the judge has looked at how it rolls
+          const double height_m = off.dot(contact.normal.stableNormalized());
+          most_m = std::max(most_m, std::abs(height_m - effector.radius_m));
+          rolled_m = std::max(rolled_m, off.norm() - effector.radius_m);
+          continue;
+        }
+        most_m = std::max(most_m, off.norm());
+        if (effector.kind != ContactKind::kSurface) continue;
         const Eigen::Matrix3d axes = link.linear() * axes_in_link(effector);
         most_rad = std::max(most_rad, angle_between(axes.col(2), contact.normal));
       }
@@ -215,6 +219,7 @@ TEST_P(MotionPlanTest, ContactsHoldBetweenVertices) {
   }
   EXPECT_LT(most_m, 1e-3);
   EXPECT_LT(most_rad, 5e-3);
+  EXPECT_GT(rolled_m, 5e-3) << "no ball has rolled";
 }
 
 /// As the step from each vertex on begins: forces on the base, gravity and inertia included.
@@ -244,7 +249,7 @@ TEST_P(MotionPlanTest, WrenchesBalanceGravityAndInertia) {
       const Eigen::Vector3d pushes = axes * plan.motion.wrenches[i][k].head<3>();
       force += pushes;
       moment += axes * plan.motion.wrenches[i][k].tail<3>() +
-                (contacts[k].position - base.translation()).cross(pushes);
+                (rolled_to(state, contacts[k]).position - base.translation()).cross(pushes);
     }
     EXPECT_LT(force.norm(), 1e-3 * weight_N) << i;
     EXPECT_LT(moment.norm(), 1e-3 * weight_N) << i;
@@ -320,6 +325,33 @@ TEST(NearbyPosturesTest, FreeArmsStayWhereTheyAre) {
                                         {near.configuration, near.configuration}),
                          asked)
                   .feasible);
+}
+
+/// COMAN+ on all fours: its right foot comes forward, its hands roll.
+TEST(RollingBallsTest, TransitionsRollFromTheOneBefore) {
+  const Task task = test::stance_task("standing_up");
+  const StancePlannerOptions options;
+  StanceSpace space(task, options);
+  const Footing all = space.footing(task.start);
+  const Footing lifted = space.footing(test::without_contact(task.start, "right_foot"));
+  const Eigen::VectorXd& q = task.start_configuration;
+  const StanceSpace::Attempt first = space.try_transition(all, lifted, q, 4, &q);
+  ASSERT_TRUE(first.found) << first.reason;
+  EXPECT_LT(space.slip_m(all, q, first.configuration), 1e-7);
+  const Stance touched = space.stance(all),
+               rolled = space.rolled_stance(all, all, first.configuration);
+  double most_m = 0.0;
+  for (std::size_t i = 0; i < touched.contacts.size(); ++i) {
+    most_m = std::max(most_m, (rolled.contacts[i].position - touched.contacts[i].position).norm());
+  }
+  EXPECT_GT(most_m, 1e-3);
+  // Where they are taken to turn on the spot, they slip.
+  const StanceSpace::Attempt at_places = space.try_transition(all, lifted, q, 4);
+  ASSERT_TRUE(at_places.found) << at_places.reason;
+  EXPECT_GT(space.slip_m(all, q, at_places.configuration), 1e-3);
+  Eigen::VectorXd again = at_places.configuration;
+  ASSERT_TRUE(roll_to(space, all, lifted, q, again));
+  EXPECT_LT(space.slip_m(all, q, again), 1e-7);
 }
 
 /// Stones of Go2 whose sides are 6 cm apart.

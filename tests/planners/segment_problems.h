@@ -114,6 +114,7 @@ inline std::unique_ptr<SegmentProblem> segment_problem(const std::string& name) 
     }
   };
   reach(from, problem->segment.from);
+  space.set_segment(problem->segment);  // what is held rolls from there
   reach(to, problem->segment.to);
   return problem;
 }

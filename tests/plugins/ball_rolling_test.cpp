@@ -56,7 +56,7 @@ TEST_P(BallRolling, HasTheJacobianOfNumericDifferences) {
 TEST_P(BallRolling, IsTheSameAfterAFile) {
   Graph graph = two_configurations(GetParam());
   const std::string text = write_graph_text(graph);
-  Graph read = read_graph_text(text, "balls.g2o", robot_types());
+  Graph read = read_graph_text(text, "balls.g2o", {}, robot_types());
   EXPECT_EQ(write_graph_text(read), text);
   EXPECT_EQ(text.find(" bar 0.02") != std::string::npos, GetParam());
   EXPECT_LT((Evaluated(graph).error(0) - Evaluated(read).error(0)).norm(), 1e-15);

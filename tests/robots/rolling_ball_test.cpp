@@ -142,7 +142,8 @@ TEST_P(RollingBall, HasAClosureWithTheJacobianOfNumericDifferencesThatDoesNotAll
     const long before = allocation_count();
     closure.error(state, e.data());
     closure.add_jacobian(state, jacobian.data(), jacobian.cols());
-    if (allocations_are_counted()) EXPECT_EQ(allocation_count(), before);
+    const long allocated = allocation_count() - before;
+    EXPECT_TRUE(allocated == 0 || !allocations_are_counted());
     for (int k = 0; k < robot.tangent_size(); ++k) {
       Eigen::VectorXd tangent = Eigen::VectorXd::Zero(robot.tangent_size()), next(q.size());
       Eigen::Vector3d difference = Eigen::Vector3d::Zero();
@@ -180,7 +181,7 @@ INSTANTIATE_TEST_SUITE_P(OnAPlaneAndABar, RollingBall, testing::Bool(),
                          [](const auto& of) { return of.param ? "Bar" : "Plane"; });
 
 TEST(BarOfAContact, NeedsARadiusAndAnAxisAcrossTheNormal) {
-  Contact placed{.position = {0.0, 0.0, 1.0}};
+  Contact placed;
   placed.bar = RoundBar{Eigen::Vector3d::UnitX(), 0.02};
   EXPECT_NO_THROW(require_sound_place(placed));
   placed.bar->radius_m = 0.0;

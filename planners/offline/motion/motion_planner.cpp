@@ -19,8 +19,6 @@ constexpr int kMostSlower = 6;
 constexpr std::size_t kRefusedForMore = 5;
 /// Of random trees, for the same reason.
 constexpr int kFewStates = 4000;
-/// Balls that slip by less from one configuration to another roll there.
-constexpr double kSlipBetween_m = 1e-6;
 /// Of the centre of mass, where both ends of a segment have none to the sides of its polygon.
 constexpr double kRoomAtEnds_m = 2e-3;
 
@@ -190,14 +188,12 @@ class MotionSearch {
 
   /// Finds the configuration of a change again where balls slip since the one before.
   bool rolls_to(StancePath& path, std::size_t change) {
-    const Footing &from = path.footings[change - 1], &to = path.footings[change];
-    const Eigen::VectorXd& before = path.configurations[change - 1];
-    Eigen::VectorXd& q = path.configurations[change];
-    if (space_.slip_m(from, before, q) <= kSlipBetween_m) return true;
-    StanceSpace::Attempt again = space_.try_nearby(from, to, q, &before);
-    if (!again.found) return false;
-    q = std::move(again.configuration);
-    hold_wheels(space_, path, change);
+    const Eigen::VectorXd as_it_was = path.configurations[change];
+    if (!roll_to(space_, path.footings[change - 1], path.footings[change],
+                 path.configurations[change - 1], path.configurations[change])) {
+      return false;
+    }
+    if (path.configurations[change] != as_it_was) hold_wheels(space_, path, change);
     return true;
   }
 

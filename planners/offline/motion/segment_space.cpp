@@ -31,7 +31,7 @@ TransitionOptions margins_between() {
   options.joint_margin_rad = kRowsTolerance + kJointRoom_rad;
   for (double* margin :
        {&options.self_margin_m, &options.surface_margin_m, &options.obstacle_margin_m,
-        &options.balance_margin_m, &options.torque_margin}) {
+        &options.border_margin_m, &options.balance_margin_m, &options.torque_margin}) {
     *margin *= kShareOfMargins;
   }
   return options;
@@ -73,7 +73,7 @@ SegmentSpace::SegmentSpace(std::shared_ptr<const RobotParameter> robot, World wo
 
 void SegmentSpace::set_segment(const Segment& segment) {
   segment_ = &segment;
-  roll_from(balls_at(segment.from));
+  roll_from(segment.from.size() > 0 ? balls_at(segment.from) : HeldBalls(segment.held.size()));
   near_ = segment.left;
   near_.insert(near_.end(), segment.reached.begin(), segment.reached.end());
   rows_for_.reset();

@@ -34,7 +34,7 @@ struct Segment {
   TorqueProgramme* torques = nullptr;      ///< of those; null: not limited
   std::vector<Contact> left;     ///< of the stance before, closed at `from`, where they are then
   std::vector<Contact> reached;  ///< of the stance after, closed at `to`, not held
-  Eigen::VectorXd from, to;      ///< feasible for `held`
+  Eigen::VectorXd from, to;      ///< feasible for `held`; without `from` balls are at their places
 };
 
 class SegmentSpace {

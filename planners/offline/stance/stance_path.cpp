@@ -99,16 +99,21 @@ int shorten(StanceSpace& space, StancePath& path, std::size_t first) {
   return fewer;
 }
 
+bool roll_to(StanceSpace& space, const Footing& from, const Footing& to,
+             const Eigen::VectorXd& before, Eigen::VectorXd& q) {
+  if (space.slip_m(from, before, q) <= kRolled_m) return true;
+  StanceSpace::Attempt attempt = space.try_nearby(from, to, q, &before);
+  if (!attempt.found) attempt = space.try_transition(from, to, q, kRollRestarts, &before);
+  if (attempt.found) q = std::move(attempt.configuration);
+  return attempt.found;
+}
+
 std::size_t roll_on(StanceSpace& space, StancePath& path, std::size_t first) {
   for (std::size_t i = first; i < path.footings.size(); ++i) {
-    const Footing &from = path.footings[i - 1], &to = path.footings[i];
-    const Eigen::VectorXd& before = path.configurations[i - 1];
-    Eigen::VectorXd& q = path.configurations[i];
-    if (space.slip_m(from, before, q) <= kRolled_m) continue;
-    StanceSpace::Attempt attempt = space.try_nearby(from, to, q, &before);
-    if (!attempt.found) attempt = space.try_transition(from, to, q, kRollRestarts, &before);
-    if (!attempt.found) return i;
-    q = std::move(attempt.configuration);
+    if (!roll_to(space, path.footings[i - 1], path.footings[i], path.configurations[i - 1],
+                 path.configurations[i])) {
+      return i;
+    }
   }
   return 0;
 }

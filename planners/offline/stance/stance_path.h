@@ -28,8 +28,12 @@ struct StancePath {
 /// stay, and so does the last one. Returns how many stances fewer.
 int shorten(StanceSpace& space, StancePath& path, std::size_t first);
 
-/// Finds the transitions from number `first` on again where balls that are held would slip since
-/// the one before. Returns the number of one that is not found; 0: none.
+/// Finds a transition that was found before again if balls would slip to it since the configuration
+/// before: as near as can be. False: not found.
+bool roll_to(StanceSpace& space, const Footing& from, const Footing& to,
+             const Eigen::VectorXd& before, Eigen::VectorXd& q);
+/// Likewise all transitions from number `first` on. Returns the number of one that is not found; 0:
+/// none.
 std::size_t roll_on(StanceSpace& space, StancePath& path, std::size_t first);
 
 /// See stances_motion. From number `first` on, with balls touching down where they are there.

@@ -298,7 +298,8 @@ void StanceSpace::places_on(int effector, const Surface& surface, const Eigen::V
   if (off >= reach_m) return;
   const double radius = std::sqrt(reach_m * reach_m - off * off);
   // A sole stays whole on the surface where that leaves it some room, else with its middle in the
-  // inner half, as a larger one bears no less; a wheel a radius away from where it would roll off.
+  // inner half, as a larger one bears no less; wheels and balls a radius away from where they would
+  // roll off, if they can.
   const Eigen::Vector2d inset = kind.inset_m(of);
   Contact contact;
   contact.effector = of;
