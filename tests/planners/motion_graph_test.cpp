@@ -11,6 +11,7 @@
 #include <locograph/plugins/joint_limits/edge_joint_limits.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
 #include <locograph/plugins/robot_types.h>
+#include <locograph/plugins/rolling/edge_ball_rolling.h>
 #include <locograph/plugins/self_collision/edge_self_collision.h>
 #include <locograph/plugins/static_balance/edge_balance.h>
 #include <locograph/plugins/static_balance/edge_contact_wrench.h>
@@ -106,6 +107,11 @@ TEST_F(MotionGraph, BothStancesHoldWhereTheyChange) {
   std::vector<std::size_t> contacts(static_cast<std::size_t>(kCount));
   for (const EdgeContact& edge : graph.edges_of<EdgeContact>()) {
     const auto at = std::ranges::find(read.slots, edge.vertices[0]);
+    ++contacts[static_cast<std::size_t>(at - read.slots.begin())];
+  }
+  // Balls that were held before roll to where they are.
+  for (const EdgeBallRolling& edge : graph.edges_of<EdgeBallRolling>()) {
+    const auto at = std::ranges::find(read.slots, edge.vertices[1]);
     ++contacts[static_cast<std::size_t>(at - read.slots.begin())];
   }
   for (std::size_t i = 0; i < contacts.size(); ++i) {

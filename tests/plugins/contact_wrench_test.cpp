@@ -205,7 +205,7 @@ const BadLine kBadLines[] = {
      "2 sides"},
     {"PyramidOfUnknownKind",
      "PARAMS_CONTACT 9 0 \"\" arm point 0 .5 1 0 0 0 0 0 1 1 0 0 at 0 0 0 0 0 1 1 0 0 upper 4",
-     "'inner', 'outer' or the end"},
+     "'inner', 'outer', 'bar' or the end"},
     {"ContactWithTooFewFields", "PARAMS_CONTACT 9 0 \"\" arm point 0 .5", "too few fields"},
     {"WrenchesAtNoContact", "VERTEX_WRENCHES 9 0", "number of contacts 0"},
     {"WrenchesAtAnUnknownContact", "VERTEX_WRENCHES 9 1 8 0 0 0", "unknown parameter 8"},
