@@ -1,5 +1,5 @@
 #include <locograph/check/balance_certificate.h>
-#include <locograph/check/linear_programme.h>
+#include <locograph/check/dense_programme.h>
 #include <locograph/check/loaded_contact.h>
 #include <locograph/common/error.h>
 #include <locograph/robots/dynamics.h>
@@ -262,7 +262,7 @@ class Programme {
     int rows = base_rows() + torque_rows();
     for (const LoadedContact& contact : contacts_) rows += rows_of(*contact.effector);
 
-    LinearProgramme programme(rows, columns);
+    DenseProgramme programme(rows, columns);
     Eigen::MatrixXd& matrix = programme.matrix;
     Eigen::VectorXd &lower = programme.lower, &upper = programme.upper;
     upper.setOnes();
@@ -311,7 +311,7 @@ class Programme {
         least[0] = least_ratio_;
         break;
     }
-    std::optional<LinearSolution> solution = locograph::solve(programme);
+    std::optional<DenseSolution> solution = locograph::solve(programme);
     if (!solution) return false;
     solution_ = std::move(solution->x);
     prices_ = std::move(solution->prices);

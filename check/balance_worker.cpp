@@ -120,7 +120,7 @@ BalanceOptions BalanceWorker::options_for(const Spot& spot) {
   options.effort_scale = context_.options.effort_scale;
   contacts_.clear();
   for (const JudgedContact& judged : spot.stance->contacts) {
-    BearingContact bearing = bearing_at(judged, context_.world, poses_);
+    JudgedBearing bearing = bearing_at(judged, context_.world, poses_);
     const EndEffector& effector = bearing.contact.effector;
     if (effector.kind == ContactKind::kSurface && bearing.contact.bears_load) {
       const double half = bearing.area.empty() ? std::min(effector.half_x_m, effector.half_y_m)

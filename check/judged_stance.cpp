@@ -426,9 +426,9 @@ Support support_of(const JudgedContact& judged, const World& world,
   return support;
 }
 
-BearingContact bearing_at(const JudgedContact& judged, const World& world,
-                          std::span<const Eigen::Isometry3d> world_from_link) {
-  BearingContact bearing{contact_at(judged, world_from_link), {}};
+JudgedBearing bearing_at(const JudgedContact& judged, const World& world,
+                         std::span<const Eigen::Isometry3d> world_from_link) {
+  JudgedBearing bearing{contact_at(judged, world_from_link), {}};
   Support support = support_of(judged, world, world_from_link);
   bearing.area = std::move(support.area);
   if (!support.known) return bearing;

@@ -115,13 +115,13 @@ Support support_of(const JudgedContact& contact, const World& world,
 
 /// A contact as it bears: where it is, with the friction of what it lies on. What is beyond the
 /// border of its surface bears nothing.
-struct BearingContact {
+struct JudgedBearing {
   Contact contact;
   std::vector<Eigen::Vector2d> area;  ///< as in Support
 };
 
-BearingContact bearing_at(const JudgedContact& contact, const World& world,
-                          std::span<const Eigen::Isometry3d> world_from_link);
+JudgedBearing bearing_at(const JudgedContact& contact, const World& world,
+                         std::span<const Eigen::Isometry3d> world_from_link);
 
 /// The same end effector: the same point of the same body, touching in the same way.
 bool same_effector(const JudgedContact& a, const JudgedContact& b);

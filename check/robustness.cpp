@@ -144,7 +144,7 @@ class StretchWorker {
     options.motion = motion_;
     contacts_.clear();
     for (std::size_t k = 0; k < bearing_.size(); ++k) {
-      BearingContact bearing = bearing_[k];
+      JudgedBearing bearing = bearing_[k];
       if (change == kArea && bearing.contact.effector.kind == ContactKind::kSurface) {
         JudgedContact smaller = stance_->contacts[k];
         smaller.contact.effector.half_x_m *= 1.0 - amount;
@@ -193,7 +193,7 @@ class StretchWorker {
   // Of the moment.
   LinkPoses poses_;
   std::optional<BalanceMotion> motion_;
-  std::vector<BearingContact> bearing_;
+  std::vector<JudgedBearing> bearing_;
   std::vector<Contact> contacts_;
 };
 

@@ -1,5 +1,5 @@
+#include <locograph/check/dense_programme.h>
 #include <locograph/check/limits.h>
-#include <locograph/check/linear_programme.h>
 #include <locograph/check/wrench_check.h>
 
 #include <algorithm>
@@ -83,7 +83,7 @@ double outside_cones(const EndEffector& surface, const std::vector<Eigen::Vector
   const std::vector<Eigen::Vector2d> corners = corners_of(surface, area);
   const auto count = static_cast<Eigen::Index>(corners.size());
   // The first column presses all corners alike by the weight.
-  LinearProgramme programme(6, 1 + kSides * count);
+  DenseProgramme programme(6, 1 + kSides * count);
   programme.objective[0] = 1.0;
   const double step = 2.0 * std::numbers::pi / kSides;
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -101,7 +101,7 @@ double outside_cones(const EndEffector& surface, const std::vector<Eigen::Vector
     }
   }
   programme.lower = programme.upper = wrench / weight_N;
-  const std::optional<LinearSolution> solution = solve(programme);
+  const std::optional<DenseSolution> solution = solve(programme);
   return solution ? solution->x[0] : kBeyond;
 }
 
@@ -159,7 +159,7 @@ void WrenchCheck::judge_vertex(int vertex) {
   }
   sampler_.link_poses(vertex, 0.0, poses_);
   const JudgedStance* before = vertex > 0 ? context_.stance_from(vertex - 1) : nullptr;
-  std::vector<BearingContact> bearing;
+  std::vector<JudgedBearing> bearing;
   std::vector<LoadedContact> loaded;
   bearing.reserve(wrenches.size());
   std::vector<Eigen::Vector3d>& forces = forces_[static_cast<std::size_t>(vertex)];
@@ -238,7 +238,7 @@ void WrenchCheck::judge_balance(int vertex, const std::vector<LoadedContact>& co
   add(vertex, most, "torque of " + joint_name);
 }
 
-void WrenchCheck::judge_contact(int vertex, const BearingContact& bearing, const Wrench& wrench) {
+void WrenchCheck::judge_contact(int vertex, const JudgedBearing& bearing, const Wrench& wrench) {
   const Contact& contact = bearing.contact;
   const EndEffector& effector = contact.effector;
   const std::string& name = contact.name();

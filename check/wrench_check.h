@@ -68,7 +68,7 @@ class WrenchCheck {
   Demand demand_at(int vertex);
   void judge_balance(int vertex, const std::vector<LoadedContact>& contacts,
                      const StanceWrenches& wrenches);
-  void judge_contact(int vertex, const BearingContact& bearing, const Wrench& wrench);
+  void judge_contact(int vertex, const JudgedBearing& bearing, const Wrench& wrench);
   void add(int vertex, double ratio, const std::string& what);
   bool states_at(int vertex) const;
   std::string why_not() const;

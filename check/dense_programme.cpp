@@ -1,4 +1,4 @@
-#include <locograph/check/linear_programme.h>
+#include <locograph/check/dense_programme.h>
 
 #include <ClpMessage.hpp>
 #include <ClpSimplex.hpp>
@@ -27,7 +27,7 @@ void give_messages(ClpSimplex& model) {
 
 }  // namespace
 
-LinearProgramme::LinearProgramme(Eigen::Index rows, Eigen::Index columns)
+DenseProgramme::DenseProgramme(Eigen::Index rows, Eigen::Index columns)
     : matrix(Eigen::MatrixXd::Zero(rows, columns)),
       objective(Eigen::VectorXd::Zero(columns)),
       least(Eigen::VectorXd::Zero(columns)),
@@ -35,7 +35,7 @@ LinearProgramme::LinearProgramme(Eigen::Index rows, Eigen::Index columns)
       lower(Eigen::VectorXd::Constant(rows, -kNoBound)),
       upper(Eigen::VectorXd::Constant(rows, kNoBound)) {}
 
-std::optional<LinearSolution> solve(const LinearProgramme& programme) {
+std::optional<DenseSolution> solve(const DenseProgramme& programme) {
   const Eigen::MatrixXd& matrix = programme.matrix;
   const int rows = static_cast<int>(matrix.rows()), columns = static_cast<int>(matrix.cols());
   std::vector<int> starts = {0}, indices;
@@ -63,8 +63,8 @@ std::optional<LinearSolution> solve(const LinearProgramme& programme) {
   model.dual();
   if (model.status() > 1) model.primal();
   if (model.status() != 0) return std::nullopt;
-  return LinearSolution{Eigen::Map<const Eigen::VectorXd>(model.primalColumnSolution(), columns),
-                        Eigen::Map<const Eigen::VectorXd>(model.dualRowSolution(), rows)};
+  return DenseSolution{Eigen::Map<const Eigen::VectorXd>(model.primalColumnSolution(), columns),
+                       Eigen::Map<const Eigen::VectorXd>(model.dualRowSolution(), rows)};
 }
 
 }  // namespace locograph
