@@ -64,7 +64,8 @@ Json plan_scene(PlanFile file, const SceneOptions& options) {
                 {"kind", "plan"},
                 {"title", std::filesystem::path(file.name).filename().string()},
                 {"robot", robot_scene(robot)}};
-  const auto [judging, world] = known_world(file, options);
+  auto [judging, world] = known_world(file, options);
+  if (judging) judging->options.robustness = options.robustness;
   add_plan_scene(file, judging ? &*judging : nullptr, options, scene);
   if (!options.tree.empty()) {
     scene["tree"] = tree_scene(options.tree, scenario_name(file), first_stance(file));

@@ -23,6 +23,7 @@ struct SceneOptions {
   std::string map, obstacles;        ///< instead of the plan's own world
   std::string tree;                  ///< plans: what the search for stances tried; "": not shown
   bool check = true;                 ///< judge the plan and show what is wrong with it
+  bool robustness = false;           ///< and how far from falling it is
   int executed = -1;                 ///< show the plan as when the robot is here; -1: as a whole
   int window = 20;                   ///< configurations that are being refined then
   bool optimize = false;             ///< pose graphs: show them before and after

@@ -142,6 +142,8 @@ Command add_view(OptionParser& app) {
       .positive()
       .show_default();
   parser.add_flag("--no-check", o.no_check, "Do not judge the plan");
+  parser.add_flag("--robustness", o.scene.robustness,
+                  "Plans: also tell how far from falling they are, as `check --robustness`");
   parser.add_flag("--optimize", o.scene.optimize, "Pose graphs: show before and after");
   add_plugin_option(parser, o.scene.plugins);
   parser.add_flag("--lenient", o.scene.lenient,
