@@ -1,3 +1,4 @@
+#include <locograph/apps/margin_json.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_scenario.h>
 #include <locograph/apps/progress.h>
@@ -209,6 +210,7 @@ Json answer_json(const PlanOptions& options, const ContactTaskPlan& plan) {
     json["swing_clearance"] = swing_clearance_json(motion.segments);
     json["refused_segments"] = motion.statistics.refused_segments;
   }
+  json["execution_margin"] = margin_json(started.task.margin);
   if (options.improve) json["improved"] = plan.improved;
   if (options.move_contacts_m > 0.0) {
     json["moved_contacts"] = {{"up_to_m", options.move_contacts_m},
@@ -258,6 +260,7 @@ std::string answer_text(const std::string& scenario, const PlanOptions& options,
   }
   text += "in " + short_number(plan.total_s) + " s\n";
   if (!options.stances_only && plan.graph) text += segments_text(json);
+  text += margin_text(started.task.margin);
   text += shapeless_text(plan.links_without_collision());
   if (plan.graph) text += "written: " + options.output + '\n';
   if (options.improve) text += "improved " + counted(plan.improved, "time", "times") + '\n';
