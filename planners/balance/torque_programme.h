@@ -48,7 +48,8 @@ class TorqueProgramme {
   double weight_N_, effort_scale_;
   std::vector<int> links_;
   std::vector<Eigen::Vector3d> positions_;
-  std::vector<double> most_;  ///< pressing force of each contact; negative: no such limit
+  std::vector<double> most_;   ///< pressing force of each contact; negative: no such limit
+  std::vector<double> least_;  ///< of each contact; 0: none
   std::vector<Ray> rays_;
   std::vector<int> joints_;  ///< with a limit
   Eigen::MatrixXd columns_;

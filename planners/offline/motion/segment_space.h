@@ -31,6 +31,8 @@ struct Segment {
   std::vector<Contact> left;               ///< of the stance before, closed at `from`, not held
   std::vector<Contact> reached;            ///< of the stance after, closed at `to`, not held
   Eigen::VectorXd from, to;                ///< feasible for `held`
+  double joint_margin_rad = 0.0;           ///< to joint limits, where more than by default
+  double torque_share = 1.0;               ///< of efforts, that timing uses
 };
 
 class SegmentSpace {

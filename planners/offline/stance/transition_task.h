@@ -23,6 +23,9 @@ struct TransitionTask {
   std::vector<Contact> closed = {};          ///< of the larger one
   std::vector<Contact> held = {};            ///< of the smaller one
   std::vector<BearingContact> bearing = {};  ///< of the smaller one
+  /// Of the larger one, where they have to bear as well, each its least force; empty: they have
+  /// not.
+  std::vector<BearingContact> all_bearing = {};
   Eigen::VectorXd start = {};
   Eigen::VectorXd preferred = {};  ///< empty: where the task starts
   std::uint64_t seed = 0;
@@ -54,6 +57,9 @@ class TaskSolver {
   TransitionResult solve(const TransitionTask& task);
 
  private:
+  /// Where the larger stance does not balance it as well, solves for both; of_both: their region.
+  void balance_larger(const TransitionTask& task, TransitionProblem& problem,
+                      BalanceRegion& of_both, TransitionResult& result);
   void ease_torques(const TransitionTask& task, TransitionProblem& problem,
                     TransitionResult& result);
 
@@ -61,6 +67,7 @@ class TaskSolver {
   BalanceRegions& regions_;
   TransitionSolver solver_;
   RobotState state_;
+  Eigen::VectorXd preferred_;  ///< where the task starts, within the joint margin
 };
 
 }  // namespace locograph
