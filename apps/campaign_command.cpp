@@ -39,7 +39,7 @@ struct CampaignOptions {
   int runs = 0;
   unsigned seed = 0;
   bool stances_only = false;
-  double timeout_s = 0.0, move_contacts_m = 0.0;
+  double timeout_s = 0.0, move_contacts_m = 0.0, margin_factor = 1.0;
   int threads = 0;  ///< 0: an even share of the cores for each process
   int processes = 1;
   bool json = false;
@@ -53,6 +53,9 @@ struct CampaignOptions {
     }
     if (!torques.empty()) words.insert(words.end(), {"--torque-limits", torques});
     if (timeout_s > 0.0) words.insert(words.end(), {"--timeout", Json(timeout_s).dump()});
+    if (margin_factor != 1.0) {
+      words.insert(words.end(), {"--execution-margin", Json(margin_factor).dump()});
+    }
     if (move_contacts_m > 0.0) {
       words.insert(words.end(), {"--move-contacts", Json(move_contacts_m).dump()});
     }
@@ -327,6 +330,7 @@ Command add_campaign(OptionParser& app) {
       .value_name("NAME")
       .one_at_a_time();
   add_torque_limits_option(parser, o.torques, "As for plan");
+  add_execution_margin_option(parser, o.margin_factor, "As for plan");
   parser.add_option("--timeout", o.timeout_s, "Seconds that each run may take; 0: no limit")
       .not_negative();
   parser

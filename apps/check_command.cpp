@@ -25,7 +25,7 @@ struct CommandOptions {
   double clearance_m = 0.0, until_s = kNotGiven;
   std::vector<std::string> plugins;
   int threads = 1;
-  bool all = false, json = false;
+  bool robustness = false, all = false, json = false;
 };
 
 /// "scenario: standing_up; it begins at the start, and reaches 1 of 1 goal", a line
@@ -50,6 +50,7 @@ ExitCode check(const CommandOptions& options) {
     judging.options.enforce_torque_limits = options.torques == "enforce";
   }
   if (options.until_s != kNotGiven) judging.options.until_s = options.until_s;
+  judging.options.robustness = options.robustness;
   judging.options.threads = options.threads;
   const CheckReport report = check_plan(file, judging);
   progress.reset();
@@ -107,7 +108,10 @@ Command add_check(OptionParser& app) {
       .finite();
   add_threads_option(parser, o.threads);
   add_plugin_option(parser, o.plugins);
-  parser.add_flag("--all", o.all, "List every constraint, also those that hold");
+  parser.add_flag("--robustness", o.robustness,
+                  "Tell by what friction, contact areas and torques may shrink, how hard the robot "
+                  "may be pushed, and what may be loaded on it, until it holds no longer");
+  parser.add_flag("--all", o.all, "List every constraint, also those that hold, and every stance");
   parser.add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] { return check(*options); }};
 }

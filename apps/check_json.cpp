@@ -87,6 +87,32 @@ std::string balls_text(const CheckReport& report) {
   return text.empty() ? "" : text + '\n';
 }
 
+std::string shares_text(const Robustness& least) {
+  std::string text;
+  const auto told = [&text](const char* what, const std::optional<double>& value, double scale,
+                            const char* unit) {
+    if (value) text += (text.empty() ? "" : ", ") + (what + short_number(scale * *value)) + unit;
+  };
+  told("friction may shrink by ", least.friction, 100.0, " %");
+  told("contact areas by ", least.area, 100.0, " %");
+  told("torques by ", least.torque, 100.0, " %");
+  told("pushed by ", least.push_N, 1.0, " N");
+  told("loaded with ", least.mass, 100.0, " % of its mass");
+  return text;
+}
+
+/// A line, and one for each stance where all are asked for.
+std::string robustness_text(const RobustnessReport& report, const VertexIds& ids, bool all) {
+  std::string text = "holds until " + shares_text(report.least) + " (" +
+                     short_number(report.processor_s) + " s)\n";
+  for (const RobustnessReport::OfStance& one : report.by_stance) {
+    if (!all) break;
+    text += "  vertex " + std::to_string(ids(one.first_vertex)) + " to " +
+            std::to_string(ids(one.last_vertex)) + ": " + shares_text(one.least) + '\n';
+  }
+  return text;
+}
+
 }  // namespace
 
 Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -121,6 +147,29 @@ Json violations_json(const CheckReport& report, const VertexIds& ids) {
 
 namespace {
 
+Json shares_json(const Robustness& least) {
+  return {{"friction", number_json(least.friction)},
+          {"area", number_json(least.area)},
+          {"torque", number_json(least.torque)},
+          {"push_N", number_json(least.push_N)},
+          {"mass", number_json(least.mass)}};
+}
+
+Json robustness_json(const RobustnessReport& report, const VertexIds& ids) {
+  Json json = shares_json(report.least);
+  json["by_stance"] = Json::array();
+  for (const RobustnessReport::OfStance& one : report.by_stance) {
+    Json stance = shares_json(one.least);
+    stance["from_vertex"] = ids(one.first_vertex);
+    stance["to_vertex"] = ids(one.last_vertex);
+    stance["from_s"] = one.from_s;
+    stance["until_s"] = one.until_s;
+    json["by_stance"].push_back(std::move(stance));
+  }
+  json["processor_s"] = report.processor_s;
+  return json;
+}
+
 Json balls_json(const CheckReport& report) {
   Json balls = Json::array();
   for (const BallRolling& ball : report.ball_rolling)
@@ -134,22 +183,24 @@ Json balls_json(const CheckReport& report) {
 
 Json check_json(const CheckReport& report, const VertexIds& ids) {
   const auto& ends = report.ends;
-  return {{"feasible", report.feasible},
-          {"configurations", report.configurations},
-          {"violations", violations_json(report, ids)},
-          {"min_clearance_m", number_json(report.min_clearance_m)},
-          {"min_self_clearance_m", number_json(report.min_self_clearance_m)},
-          {"min_balance_margin", number_json(report.min_balance_margin)},
-          {"max_torque_ratio", number_json(report.max_torque_ratio)},
-          {"max_velocity_ratio", number_json(report.max_velocity_ratio)},
-          {"max_contact_error_m", number_json(report.max_contact_error_m)},
-          {"max_ball_rolling_m", number_json(most_of_balls(report, &BallRolling::way_m))},
-          {"max_ball_slip_m", number_json(most_of_balls(report, &BallRolling::slip_m))},
-          {"balls", balls_json(report)},
-          {"start", ends ? Json(ends->starts()) : Json(nullptr)},
-          {"goals_reached", ends ? Json(ends->goals_reached) : Json(nullptr)},
-          {"goals", ends ? Json(ends->goals) : Json(nullptr)},
-          {"trusted", report.trusted}};
+  Json json = {{"feasible", report.feasible},
+               {"configurations", report.configurations},
+               {"violations", violations_json(report, ids)},
+               {"min_clearance_m", number_json(report.min_clearance_m)},
+               {"min_self_clearance_m", number_json(report.min_self_clearance_m)},
+               {"min_balance_margin", number_json(report.min_balance_margin)},
+               {"max_torque_ratio", number_json(report.max_torque_ratio)},
+               {"max_velocity_ratio", number_json(report.max_velocity_ratio)},
+               {"max_contact_error_m", number_json(report.max_contact_error_m)},
+               {"max_ball_rolling_m", number_json(most_of_balls(report, &BallRolling::way_m))},
+               {"max_ball_slip_m", number_json(most_of_balls(report, &BallRolling::slip_m))},
+               {"balls", balls_json(report)},
+               {"start", ends ? Json(ends->starts()) : Json(nullptr)},
+               {"goals_reached", ends ? Json(ends->goals_reached) : Json(nullptr)},
+               {"goals", ends ? Json(ends->goals) : Json(nullptr)},
+               {"trusted", report.trusted}};
+  if (report.robustness) json["robustness"] = robustness_json(*report.robustness, ids);
+  return json;
 }
 
 std::string check_text(const CheckReport& report, const VertexIds& ids, bool all) {
@@ -160,6 +211,7 @@ std::string check_text(const CheckReport& report, const VertexIds& ids, bool all
   }
   text += not_judged_text(report) + holding_text(report, ids, all) + extremes_text(report) +
           balls_text(report);
+  if (report.robustness) text += robustness_text(*report.robustness, ids, all);
   if (!report.trusted.empty()) text += "on trust: " + list(report.trusted) + '\n';
   return text;
 }

@@ -3,6 +3,7 @@
 ///
 ///     add_scenario_argument(parser, o.scenario);
 ///     add_torque_limits_option(parser, o.torques, "report: only tell them");
+///     add_execution_margin_option(parser, o.margin_factor, "0: none");
 ///     add_threads_option(parser, o.threads);
 
 #include <locograph/apps/option_parser.h>
@@ -21,6 +22,15 @@ inline void add_scenario_argument(OptionParser& parser, std::string& scenario) {
 inline ParserOption add_torque_limits_option(OptionParser& parser, std::string& torques,
                                              const std::string& help) {
   return parser.add_option("--torque-limits", torques, help).one_of({"enforce", "report"});
+}
+
+/// `--execution-margin FACTOR`.
+inline ParserOption add_execution_margin_option(OptionParser& parser, double& factor,
+                                                const std::string& help) {
+  return parser.add_option("--execution-margin", factor, help)
+      .between(0.0, 1.0)
+      .value_name("FACTOR")
+      .show_default();
 }
 
 /// `--threads N`.

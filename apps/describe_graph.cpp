@@ -1,10 +1,12 @@
 #include <locograph/apps/about_file.h>
 #include <locograph/apps/describe.h>
 #include <locograph/apps/graph_types.h>
+#include <locograph/apps/margin_json.h>
 #include <locograph/apps/progress.h>
 #include <locograph/apps/violations_json.h>
 #include <locograph/core/connectivity.h>
 #include <locograph/core/graph_file.h>
+#include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/types/bundle/bal_file.h>
 
 #include <Eigen/Eigenvalues>
@@ -97,6 +99,9 @@ Json describe_graph(const std::filesystem::path& path, const TypeRegistry& types
   }
   Json json = {{"file", path.string()}, {"kind", "graph"}};
   json.update(content_json(graph));
+  if (const auto plan = graph.parameters().find<PlanParameter>()) {
+    json["execution_margin"] = margin_json(plan->margin);
+  }
   json["vertices_from_edges"] = report.vertices_from_edges;
   json["indefinite_information"] = report.indefinite_information;
   if (report.indefinite_information > 0) {

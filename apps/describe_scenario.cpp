@@ -1,5 +1,6 @@
 #include <locograph/apps/camera_json.h>
 #include <locograph/apps/describe.h>
+#include <locograph/apps/margin_json.h>
 #include <locograph/common/data_folder.h>
 #include <locograph/planners/scenario/contacts_file.h>
 #include <locograph/planners/scenario/scenario.h>
@@ -126,6 +127,7 @@ Json describe_scenario(const std::filesystem::path& path) {
                     {"base_angular_rad_s", scenario.limits.base_angular_rad_s},
                     {"joint_acceleration_rad_s2", scenario.limits.joint_acceleration_rad_s2}};
   json["torque_limits"] = scenario.enforce_torque_limits ? "enforce" : "report";
+  json["execution_margin"] = margin_json(scenario.margin);
   for (const Surface& surface : scenario.surfaces) surfaces.push_back(surface_json(surface));
   for (const Bar& bar : scenario.bars) bars.push_back(bar_json(bar));
   for (const ScannedSurface& one : scenario.scanned) {

@@ -24,7 +24,8 @@ ExitCode plan_scenario(const PlanOptions& options) {
     if (!file.empty()) check_output(file, {}, options.json);
   }
   const Stopwatch total;
-  const Scenario scenario = load_scenario(options.scenario, data_folder());
+  Scenario scenario = load_scenario(options.scenario, data_folder());
+  scenario.margin = scenario.margin.scaled(options.margin_factor);
   for (const std::string& file : {options.output, options.tree}) {
     if (!file.empty()) check_not_input(file, files_of(scenario));
   }
@@ -87,6 +88,8 @@ Command add_plan(OptionParser& app) {
   add_torque_limits_option(parser, o.torques,
                            "enforce: the plan keeps to the URDF's efforts; report: only tell them "
                            "(without it, what the scenario says)");
+  add_execution_margin_option(parser, o.margin_factor,
+                              "Of the scenario's execution margin: 1: as it is, 0: none");
   parser
       .add_option("--move-contacts", o.move_contacts_m,
                   "Another task of the kind: each contact of start and goals is moved on its "

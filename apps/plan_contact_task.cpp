@@ -1,3 +1,4 @@
+#include <locograph/apps/margin_json.h>
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_scenario.h>
 #include <locograph/apps/progress.h>
@@ -10,6 +11,7 @@
 #include <locograph/planners/offline/motion/motion_graph.h>
 #include <locograph/planners/offline/motion/motion_planner.h>
 #include <locograph/planners/offline/motion/segment_planners.h>
+#include <locograph/planners/offline/stance/given_margins.h>
 #include <locograph/planners/offline/stance/improve_stances.h>
 #include <locograph/planners/offline/stance/stance_graph.h>
 #include <locograph/planners/offline/stance/stance_planners.h>
@@ -119,6 +121,19 @@ Json failures_json(const StancePlan& plan) {
   return all;
 }
 
+/// What start and goals have of the margin.
+Json given_json(const Task& task, const StancePlan& plan) {
+  Json all = Json::array();
+  for (const GivenMargin& given : given_margins(task, plan)) {
+    all.push_back({{"at", given.where},
+                   {"share", given.share},
+                   {"friction", given.margin.friction},
+                   {"area", given.margin.area},
+                   {"least_force", given.margin.least_force}});
+  }
+  return all;
+}
+
 /// Of each segment planner how many it solved, and the seconds that these took.
 Json by_planner_json(const std::vector<SegmentRecord>& segments) {
   Json all = Json::object();
@@ -209,6 +224,8 @@ Json answer_json(const PlanOptions& options, const ContactTaskPlan& plan) {
     json["swing_clearance"] = swing_clearance_json(motion.segments);
     json["refused_segments"] = motion.statistics.refused_segments;
   }
+  json["execution_margin"] = margin_json(started.task.margin);
+  json["execution_margin"]["given"] = given_json(started.task, stances);
   if (options.improve) json["improved"] = plan.improved;
   if (options.move_contacts_m > 0.0) {
     json["moved_contacts"] = {{"up_to_m", options.move_contacts_m},
@@ -258,6 +275,13 @@ std::string answer_text(const std::string& scenario, const PlanOptions& options,
   }
   text += "in " + short_number(plan.total_s) + " s\n";
   if (!options.stances_only && plan.graph) text += segments_text(json);
+  text += margin_text(started.task.margin);
+  for (const Json& given : json["execution_margin"]["given"]) {
+    if (given["share"] == 1.0) continue;
+    text += "at the " + given["at"].get<std::string>() + " only: friction " +
+            short_number(given["friction"]) + ", areas " + short_number(given["area"]) +
+            ", each contact pressed by " + short_number(given["least_force"]) + " of the weight\n";
+  }
   text += shapeless_text(plan.links_without_collision());
   if (plan.graph) text += "written: " + options.output + '\n';
   if (options.improve) text += "improved " + counted(plan.improved, "time", "times") + '\n';

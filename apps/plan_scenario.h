@@ -25,6 +25,7 @@ struct PlanOptions {
   double timeout_s = 0.0;  ///< 0: no limit
   int max_transitions = StancePlannerOptions().max_transitions;
   double move_contacts_m = 0.0;
+  double margin_factor = 1.0;  ///< of the scenario's execution margin
   int threads = processor_count();
   bool json = false;
 };

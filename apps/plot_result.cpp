@@ -171,6 +171,44 @@ void add_panel(PlotScript& plot, const std::string& unit, const std::vector<Bar>
   for (int i = 0; i < count; ++i) plot.line("unset label " + std::to_string(i + 1));
 }
 
+/// By what share each may change, and the push, by stance.
+void add_robustness(PlotScript& plot, const Json& robustness) {
+  const std::pair<const char*, const char*> lines[] = {{"friction", "'#c8372d'"},
+                                                       {"area", "'#2f6fb5'"},
+                                                       {"torque", "'#3a9a5b'"},
+                                                       {"mass", "'#7a4fa3'"},
+                                                       {"push_N", "'#202428'"}};
+  std::string command;
+  for (const auto& [name, color] : lines) {
+    std::string rows;
+    for (const Json& stance : robustness["by_stance"]) {
+      const Json value = stance.value(name, Json());
+      if (!value.is_number()) continue;
+      for (const char* end : {"from_s", "until_s"})
+        rows += short_number(stance.at(end).get<double>()) + ' ' +
+                short_number(value.get<double>()) + '\n';
+    }
+    if (rows.empty()) continue;
+    const bool push = std::string(name) == "push_N";
+    plot.data(name, rows);
+    command += std::string(command.empty() ? "plot $" : ", $") + name + " with lines linewidth 2" +
+               (push ? " dashtype 2 axes x1y2" : "") + " linecolor " + color + " title " +
+               PlotScript::label(push ? "push [N]" : name);
+  }
+  if (command.empty()) return;
+  plot.line("set ytics auto");
+  plot.line("set y2tics auto");
+  plot.line("set yrange [0:1]");
+  plot.line("set y2range [0:*]");
+  plot.line("set xrange [*:*]");
+  plot.line("set key outside right top font ',11'");
+  plot.line("set rmargin screen 0.80");
+  plot.line("set lmargin screen 0.10");
+  plot.line("set xlabel 'time [s]'");
+  plot.line("set title 'how far from falling (share by which each may change; higher is better)'");
+  plot.line(command);
+}
+
 /// The worst value of every constraint against its limit, one panel for each unit.
 PlotScript constraints(const Json& result) {
   std::vector<std::pair<std::string, std::vector<Bar>>> panels;
@@ -186,9 +224,11 @@ PlotScript constraints(const Json& result) {
     ++rows;
   }
   if (panels.empty()) throw Error("no constraints with numbers", "the JSON of locograph check");
-  const int bar_px = 30, panel_px = 62, head_px = 64;
-  const int height =
-      head_px + static_cast<int>(panels.size()) * panel_px + static_cast<int>(rows) * bar_px;
+  const Json robustness = result.value("robustness", Json());
+  const bool has_robustness = robustness.is_object() && robustness.contains("by_stance");
+  const int bar_px = 30, panel_px = 62, head_px = 64, robustness_px = has_robustness ? 260 : 0;
+  const int height = head_px + static_cast<int>(panels.size()) * panel_px +
+                     static_cast<int>(rows) * bar_px + robustness_px;
   PlotScript plot(900, height);
   const bool feasible = result.value("feasible", false);
   plot.line("set multiplot title " +
@@ -205,6 +245,11 @@ PlotScript constraints(const Json& result) {
     plot.line("set bmargin screen " + short_number(bottom / height));
     add_panel(plot, unit, bars, ++number);
     top = bottom - panel_px;
+  }
+  if (has_robustness) {
+    plot.line("set tmargin screen " + short_number(top / height));
+    plot.line("set bmargin screen " + short_number(60.0 / height));
+    add_robustness(plot, robustness);
   }
   plot.line("unset multiplot");
   return plot;

@@ -1,13 +1,11 @@
 #include <locograph/check/balance_certificate.h>
+#include <locograph/check/dense_programme.h>
 #include <locograph/check/loaded_contact.h>
 #include <locograph/common/error.h>
 #include <locograph/robots/dynamics.h>
 #include <locograph/robots/robot_state.h>
 #include <locograph/robots/statics.h>
 
-#include <ClpMessage.hpp>
-#include <ClpSimplex.hpp>
-#include <CoinMessage.hpp>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -21,15 +19,6 @@ constexpr double kMomentLength = 1.0;  // m: a moment of weight times this count
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using Wrench = Eigen::Matrix<double, 6, 1>;
-
-/// The texts of messages, which Clp reads even where it prints none: copying them takes a fraction
-/// of the time in which it makes them.
-void give_messages(ClpSimplex& model) {
-  static const ClpMessage of_clp;
-  static const CoinMessage of_coin;
-  *model.messagesPointer() = of_clp;
-  *model.coinMessagesPointer() = of_coin;
-}
 
 /// An unknown: what one unit of it does.
 struct Unknown {
@@ -61,6 +50,7 @@ class Programme {
     place_robot(configuration);
     gravity_.resize(robot.tangent_size());
     take_motion();
+    for (const PointWrench& load : options.loads) add_wrench_torques(state_, load, -1.0, gravity_);
     weight_ = robot.total_mass() * standard_gravity().norm();
     moving_joint_.assign(std::size_t(robot.active_joint_count()), false);
     if (!options.areas.empty() && options.areas.size() != contacts.size()) {
@@ -75,7 +65,7 @@ class Programme {
   }
 
   BalanceCertificate solve() {
-    if (solve(Mode::kMargin) || solve(Mode::kViolation)) {
+    if (solve(Mode::kMargin) || (options_.least_violation && solve(Mode::kViolation))) {
       BalanceCertificate result = certificate();
       if (result.margin >= 0.0) result.at_places = at_places(result.margin);
       if (options_.least_torques && solve(Mode::kTorques)) {
@@ -88,7 +78,9 @@ class Programme {
     failed.margin = -kInfinity;
     failed.max_torque_ratio = kInfinity;
     failed.wrenches.assign(contacts_.size(), Wrench::Zero());
-    failed.limiting = "the linear programme was not solved (a numerical failure)";
+    failed.limiting = options_.least_violation
+                          ? "the linear programme was not solved (a numerical failure)"
+                          : "nothing balances it";
     return failed;
   }
 
@@ -270,10 +262,11 @@ class Programme {
     int rows = base_rows() + torque_rows();
     for (const LoadedContact& contact : contacts_) rows += rows_of(*contact.effector);
 
-    Eigen::MatrixXd matrix(rows, columns);
+    DenseProgramme programme(rows, columns);
+    Eigen::MatrixXd& matrix = programme.matrix;
+    Eigen::VectorXd &lower = programme.lower, &upper = programme.upper;
+    upper.setOnes();
     for (int c = 1; c < columns; ++c) fill(unknowns_[std::size_t(c - 1)], matrix.col(c));
-    Eigen::VectorXd lower = Eigen::VectorXd::Constant(rows, -COIN_DBL_MAX);
-    Eigen::VectorXd upper = Eigen::VectorXd::Ones(rows);
     if (mode == Mode::kTorques) {
       // Column 0: the ratio.
       matrix.col(0).setZero();
@@ -302,60 +295,31 @@ class Programme {
       upper[row] -= ratio;
       upper[row + 1] += ratio;
     }
-    Eigen::VectorXd least = Eigen::VectorXd::Zero(columns);
-    Eigen::VectorXd most = Eigen::VectorXd::Constant(columns, COIN_DBL_MAX);
-    for (int c = 1; c < columns; ++c) {
-      if (unknowns_[std::size_t(c - 1)].lower < 0.0) least[c] = -COIN_DBL_MAX;
-    }
+    Eigen::VectorXd &least = programme.least, &most = programme.most;
+    for (int c = 1; c < columns; ++c) least[c] = unknowns_[std::size_t(c - 1)].lower;
+    programme.objective[0] = mode == Mode::kTorques ? 1.0 : -1.0;
     switch (mode) {
       case Mode::kMargin:
         most[0] = largest_margin();
         if (most[0] < 0.0) return false;
         break;
       case Mode::kViolation:
-        least[0] = -COIN_DBL_MAX;
+        least[0] = -kInfinity;
         most[0] = std::min(0.0, largest_margin());
         break;
       case Mode::kTorques:
         least[0] = least_ratio_;
         break;
     }
-    return run(matrix, least, most, lower, upper);
+    std::optional<DenseSolution> solution = locograph::solve(programme);
+    if (!solution) return false;
+    solution_ = std::move(solution->x);
+    prices_ = std::move(solution->prices);
+    return true;
   }
 
   double largest_margin() const {
     return options_.enforce_torque_limits ? 1.0 - least_ratio_ : 1.0;
-  }
-
-  bool run(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& least, const Eigen::VectorXd& most,
-           const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
-    const int rows = static_cast<int>(matrix.rows()), columns = static_cast<int>(matrix.cols());
-    std::vector<int> starts = {0}, indices;
-    std::vector<double> values;
-    for (int c = 0; c < columns; ++c) {
-      for (int r = 0; r < rows; ++r) {
-        if (matrix(r, c) == 0.0) continue;
-        indices.push_back(r);
-        values.push_back(matrix(r, c));
-      }
-      starts.push_back(static_cast<int>(indices.size()));
-    }
-    Eigen::VectorXd objective = Eigen::VectorXd::Zero(columns);
-    objective[0] = mode_ == Mode::kTorques ? 1.0 : -1.0;
-    ClpSimplex model(true);
-    give_messages(model);
-    model.setLogLevel(0);
-    model.scaling(0);  // all rows and columns are dimensionless and of the order of one
-    model.setPrimalTolerance(1e-9);
-    model.setDualTolerance(1e-9);
-    model.loadProblem(columns, rows, starts.data(), indices.data(), values.data(), least.data(),
-                      most.data(), objective.data(), lower.data(), upper.data());
-    model.dual();
-    if (model.status() > 1) model.primal();
-    if (model.status() != 0) return false;
-    solution_ = Eigen::Map<const Eigen::VectorXd>(model.primalColumnSolution(), columns);
-    prices_ = Eigen::Map<const Eigen::VectorXd>(model.dualRowSolution(), rows);
-    return true;
   }
 
   /// The wrenches of the last solution, at each place on its own.

@@ -37,7 +37,8 @@
 /// Where contacts are in the world is not compared with the configuration: they are taken to be
 /// closed. Contacts that bear no load have no unknowns.
 ///
-/// In motion, what equilibrium and torques have to hold is inverse dynamics M a + h instead of g.
+/// In motion, what equilibrium and torques have to hold is inverse dynamics M a + h instead of g;
+/// loads are taken from it.
 ///
 /// Deterministic; const arguments may be shared between threads. A joint without an effort in the
 /// URDF (infinite) has no row; one whose effort is zero or less is an Error while torque limits are
@@ -48,6 +49,7 @@
 
 #include <locograph/robots/contact.h>
 #include <locograph/robots/robot.h>
+#include <locograph/robots/statics.h>
 
 #include <Eigen/Core>
 #include <optional>
@@ -73,6 +75,9 @@ struct BalanceOptions {
   /// its point [m]; two are a line; none: its rectangle. No list at all: rectangles.
   std::vector<std::vector<Eigen::Vector2d>> areas = {};
   std::optional<BalanceMotion> motion = std::nullopt;  ///< none: at rest
+  std::vector<PointWrench> loads = {};                 ///< that act on it besides gravity
+  /// False: where nothing balances, the margin is minus infinity, and no violation is sought.
+  bool least_violation = true;
 };
 
 struct BalanceCertificate {

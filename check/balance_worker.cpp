@@ -120,21 +120,15 @@ BalanceOptions BalanceWorker::options_for(const Spot& spot) {
   options.effort_scale = context_.options.effort_scale;
   contacts_.clear();
   for (const JudgedContact& judged : spot.stance->contacts) {
-    Contact contact = contact_at(judged, poses_);
-    Support support = support_of(judged, context_.world, poses_);
-    if (support.known) {
-      contact.effector.friction = support.friction;
-      // What is beyond the border of its surface bears nothing.
-      if (support.outside_m > limits::kClosed_m) contact.bears_load = false;
-    }
-    if (contact.effector.kind == ContactKind::kSurface && contact.bears_load) {
-      const double half = support.area.empty()
-                              ? std::min(contact.effector.half_x_m, contact.effector.half_y_m)
-                              : half_size(support.area);
+    JudgedBearing bearing = bearing_at(judged, context_.world, poses_);
+    const EndEffector& effector = bearing.contact.effector;
+    if (effector.kind == ContactKind::kSurface && bearing.contact.bears_load) {
+      const double half = bearing.area.empty() ? std::min(effector.half_x_m, effector.half_y_m)
+                                               : half_size(bearing.area);
       smallest_half_m_ = std::min(smallest_half_m_, half);
     }
-    options.areas.push_back(std::move(support.area));
-    contacts_.push_back(std::move(contact));
+    options.areas.push_back(std::move(bearing.area));
+    contacts_.push_back(std::move(bearing.contact));
   }
   if (!spot.at_rest) {
     context_.curve.step(spot.vertex).at(spot.fraction, point_);

@@ -72,6 +72,9 @@ struct CheckOptions {
   /// centre of mass, see balance_along.h.
   double balance_resolution_m = 0.005;
 
+  /// Whether CheckReport::robustness is told.
+  bool robustness = false;
+
   int threads = 1;  ///< of a motion; any number gives the same report
   /// False: a linear programme wherever balance is looked at. The same report, later: to test that.
   bool prove_nearby = true;
@@ -120,6 +123,26 @@ struct BallRolling {
   double slip_m = 0.0;  ///< of its skin there, the most since it touched down
 };
 
+/// How far from falling, see robustness.h; nothing where there is nothing that may shrink, or no
+/// limit that is enforced.
+struct Robustness {
+  std::optional<double> friction, area, torque;  ///< shares by which they may shrink
+  std::optional<double> push_N;                  ///< at the centre of mass
+  std::optional<double> mass;                    ///< at the root link, as a share of the robot's
+};
+
+struct RobustnessReport {
+  struct OfStance {
+    int stance = 0;                         ///< into Motion::stances
+    int first_vertex = 0, last_vertex = 0;  ///< from the one to the other it is held
+    double from_s = 0.0, until_s = 0.0;
+    Robustness least;
+  };
+  Robustness least;
+  std::vector<OfStance> by_stance;  ///< in the order of the motion
+  double processor_s = 0.0;
+};
+
 /// Where a whole plan begins and what it gets to, by the word of its task; see plan_ends.h.
 struct PlanEnds {
   std::string off_start;  ///< what is elsewhere where it begins; empty: nothing
@@ -145,6 +168,8 @@ struct CheckReport {
   std::vector<BallRolling> ball_rolling;  ///< by name
   /// Of the vertex with the least margin; one wrench for each contact of its stance.
   std::optional<BalanceCertificate> balance;
+
+  std::optional<RobustnessReport> robustness;  ///< where it was asked for
 
   /// Nothing where no task is known; windows and postures have none.
   std::optional<PlanEnds> ends;

@@ -66,13 +66,6 @@ bool same_place(const Contact& a, const Contact& b) {
   return angle_between(across, b.normal.cross(*b.forward)) <= limits::kClosed_rad;
 }
 
-/// The same end effector: the same point of the same body, touching in the same way.
-bool same_effector(const JudgedContact& a, const JudgedContact& b) {
-  const EndEffector &first = a.contact.effector, &second = b.contact.effector;
-  return a.link == b.link && first.kind == second.kind &&
-         (first.point - second.point).norm() <= 1e-9;
-}
-
 bool same_contacts(const JudgedStance& a, const JudgedStance& b) {
   if (a.contacts.size() != b.contacts.size()) return false;
   for (const JudgedContact& contact : a.contacts) {

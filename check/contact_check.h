@@ -70,7 +70,6 @@ class ContactCheck {
   std::map<std::string, BallRolling> rolling_;
   const JudgedStance* stance_ = nullptr;  // that is followed
   std::vector<Track> tracks_;
-  bool on_surfaces_ = false;
   ViolationTally position_, orientation_, between_, motion_, turn_, relabelled_, surface_, lateral_,
       longitudinal_;
 };

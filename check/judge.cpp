@@ -4,6 +4,8 @@
 #include <locograph/check/judge.h>
 #include <locograph/check/limits.h>
 #include <locograph/check/numbers_check.h>
+#include <locograph/check/robustness.h>
+#include <locograph/check/wrench_check.h>
 #include <locograph/common/deadline.h>
 #include <locograph/common/error.h>
 #include <locograph/common/thread_pool.h>
@@ -28,6 +30,10 @@ void require_whole(const Motion& motion) {
     throw Error(std::to_string(motion.stance_from.size()) + " stances of steps for " +
                     std::to_string(vertices) + " configurations",
                 "one each, or none");
+  if (!motion.wrenches.empty() && motion.wrenches.size() != vertices)
+    throw Error("wrenches of " + std::to_string(motion.wrenches.size()) + " of " +
+                    std::to_string(vertices) + " configurations",
+                "of each, or none");
   for (const int stance : motion.stance_from) {
     if (stance < -1 || stance >= int(motion.stances.size()))
       throw Error("a step with stance " + std::to_string(stance),
@@ -75,11 +81,14 @@ class Check {
     const bool rest_holds = holds(report.violations);
     const Stopwatch balance_watch;
     if (rest_holds || !context_.options.certify_only_if_rest_holds) balance.run(threads);
+    WrenchCheck wrenches(context_);
+    wrenches.run();
     report.balance_s = balance_watch.seconds();
     balance.report(report.violations);
     if (!rest_holds && context_.options.certify_only_if_rest_holds)
       for (Violation* v : {&report.violations.end()[-2], &report.violations.back()})
         v->why_not = "something else is violated";
+    wrenches.report(report.violations);
 
     // Whatever else is not judged cannot be, of such a motion, or something is violated.
     const bool balance_required = context_.robot.floating_base();
@@ -98,6 +107,7 @@ class Check {
     report.max_contact_error_m = contacts.max_contact_error_m();
     report.ball_rolling = contacts.ball_rolling();
     report.balance = balance.worst();
+    if (context_.options.robustness) report.robustness = robustness_of(context_, threads);
     return report;
   }
 
@@ -239,8 +249,9 @@ std::optional<CheckReport> Judge::check(const Motion& motion, const CheckOptions
 }
 
 CheckReport Judge::check(const Eigen::VectorXd& configuration, const Stance& stance,
-                         const CheckOptions& options) const {
+                         const CheckOptions& options, const StanceWrenches& wrenches) const {
   Motion motion;
+  motion.wrenches = {wrenches};
   motion.time_s = {0.0};
   motion.configurations = {configuration};
   motion.stances = {stance};

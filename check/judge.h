@@ -46,6 +46,8 @@
 ///   static_balance       + margin of balance_certificate.h, with the torque limits if they are
 ///                          enforced, and with inertial forces where the motion has times (1)
 ///   torque_limits        + largest |torque| / limit; of a motion: the least that balances (ratio)
+///   plan_wrenches        + of wrenches that the motion states, see wrench_check.h: the largest
+///                          share of what is allowed (ratio)
 ///
 /// Distances, the four from obstacle_distance on, are required: of a robot without any collision
 /// shape they are not judged. Links that have something to see and no shape are told as trusted.
@@ -88,9 +90,9 @@ class Judge {
   /// before the check does.
   std::optional<CheckReport> check(const Motion& motion, const CheckOptions& options,
                                    const JobControl& job) const;
-  /// Distances are looked for up to 0.05 m only.
+  /// Distances are looked for up to 0.05 m only. wrenches: that are stated; none: as in Motion.
   CheckReport check(const Eigen::VectorXd& configuration, const Stance& stance,
-                    const CheckOptions& options = {}) const;
+                    const CheckOptions& options = {}, const StanceWrenches& wrenches = {}) const;
 
   /// Smallest distance of the robot's links to each other, exact up to 0.05 m.
   double self_distance_m(const RobotState& state) const;

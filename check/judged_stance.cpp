@@ -426,4 +426,27 @@ Support support_of(const JudgedContact& judged, const World& world,
   return support;
 }
 
+JudgedBearing bearing_at(const JudgedContact& judged, const World& world,
+                         std::span<const Eigen::Isometry3d> world_from_link) {
+  JudgedBearing bearing{contact_at(judged, world_from_link), {}};
+  Support support = support_of(judged, world, world_from_link);
+  bearing.area = std::move(support.area);
+  if (!support.known) return bearing;
+  bearing.contact.effector.friction = support.friction;
+  if (support.outside_m > limits::kClosed_m) bearing.contact.bears_load = false;
+  return bearing;
+}
+
+bool same_effector(const JudgedContact& a, const JudgedContact& b) {
+  const EndEffector &first = a.contact.effector, &second = b.contact.effector;
+  return a.link == b.link && first.kind == second.kind &&
+         (first.point - second.point).norm() <= 1e-9;
+}
+
+const JudgedContact* contact_of(const JudgedStance& stance, const JudgedContact& contact) {
+  const auto found = std::ranges::find_if(
+      stance.contacts, [&](const JudgedContact& other) { return same_effector(contact, other); });
+  return found == stance.contacts.end() ? nullptr : &*found;
+}
+
 }  // namespace locograph

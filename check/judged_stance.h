@@ -113,4 +113,19 @@ struct Support {
 Support support_of(const JudgedContact& contact, const World& world,
                    std::span<const Eigen::Isometry3d> world_from_link);
 
+/// A contact as it bears: where it is, with the friction of what it lies on. What is beyond the
+/// border of its surface bears nothing.
+struct JudgedBearing {
+  Contact contact;
+  std::vector<Eigen::Vector2d> area;  ///< as in Support
+};
+
+JudgedBearing bearing_at(const JudgedContact& contact, const World& world,
+                         std::span<const Eigen::Isometry3d> world_from_link);
+
+/// The same end effector: the same point of the same body, touching in the same way.
+bool same_effector(const JudgedContact& a, const JudgedContact& b);
+/// Of a stance, the contact with the same end effector; null: none.
+const JudgedContact* contact_of(const JudgedStance& stance, const JudgedContact& contact);
+
 }  // namespace locograph

@@ -18,6 +18,9 @@ inline constexpr double kTouchingDepth_m = 0.012;
 inline constexpr double kGoal_m = 0.25, kGoal_rad = 0.25;
 // What a whole plan begins and ends with may move no faster [m/s, rad/s]: for rounding.
 inline constexpr double kAtRest = 1e-6;
+// Wrenches that are stated: what is left over of the weight, and how fast the force of a contact
+// changes [weights per second].
+inline constexpr double kWrenchLeftOver = 1e-3, kForceRate = 2.5;
 // For rounding: of a depth, and of what linear programmes balance.
 inline constexpr double kDepthRounding_m = 1e-6, kBalanceRounding = 1e-6;
 

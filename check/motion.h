@@ -31,7 +31,9 @@ struct Motion {
   /// angular velocity along its own axes [rad/s], rates of the joints.
   std::vector<Eigen::VectorXd> slopes = {};
   /// What bears the robot, one per configuration, at the contacts of the stance that it is left in;
-  /// an empty one: not known; or none at all. The judge finds its own.
+  /// an empty one: not known; or none at all. Between configurations forces go over linearly; a
+  /// contact that closes carries nothing yet, one that opens nothing more. Balance is judged
+  /// without them.
   std::vector<StanceWrenches> wrenches = {};
 };
 

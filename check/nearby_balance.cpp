@@ -31,6 +31,7 @@ BalanceBounds NearbyBalance::prove(const RobotState& state, std::span<const Cont
   } else {
     gravity_torques(state, standard_gravity(), load_);
   }
+  for (const PointWrench& load : options.loads) add_wrench_torques(state, load, -1.0, load_);
   find_rows(state);
   Left widest = correct(state, options, found.at_places);
   if (!widest.balanced) return bounds;

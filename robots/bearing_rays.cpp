@@ -13,4 +13,9 @@ double most_of_rays(const Contact& contact, double margin, double weight_N) {
   return (1.0 - margin) * contact.effector.max_force_N / weight_N;
 }
 
+double least_of_rays(const BearingContact& bearing, double weight_N) {
+  if (!contact_kind_entry(bearing.contact.effector.kind).pressed) return 0.0;
+  return bearing.least_N / weight_N;
+}
+
 }  // namespace locograph

@@ -17,6 +17,7 @@ struct BearingContact {
   /// Corners of what of a surface contact lies on something, along the contact's axes [m]; none:
   /// its rectangle, or, where its yaw is free, what of it bears whatever the yaw.
   std::vector<Eigen::Vector2d> area = {};
+  double least_N = 0.0;  ///< that it has to be pressed with, of a kind that is pressed
 };
 
 /// What a contact can do to the robot: a force on an edge of its friction pyramid at a corner of
@@ -34,5 +35,8 @@ std::vector<BearingRay> bearing_rays(const BearingContact& bearing, double margi
 /// The most that all rays of a contact add up to, in parts of the robot's weight; negative where
 /// each has its own bounds only.
 double most_of_rays(const Contact& contact, double margin, double weight_N);
+
+/// The least that they have to add up to, likewise; 0 where nothing is asked for.
+double least_of_rays(const BearingContact& bearing, double weight_N);
 
 }  // namespace locograph

@@ -54,15 +54,20 @@ bool has_wheels(const Honest& honest) {
   return false;
 }
 
-/// A contact that is no wheel, at a vertex; null: there is none.
+bool is_ball(const EndEffector& effector) {
+  return effector.kind == ContactKind::kPoint && effector.radius_m > 0.0;
+}
+
+/// A contact that does not roll, at a vertex; null: there is none.
 const Contact* held_contact(const Motion& motion, std::size_t vertex, Random& random) {
   std::vector<const Contact*> held;
   for (const Contact& contact : stance_at(motion, vertex).contacts)
-    if (contact.effector.kind != ContactKind::kWheel) held.push_back(&contact);
+    if (contact.effector.kind != ContactKind::kWheel && !is_ball(contact.effector))
+      held.push_back(&contact);
   return held.empty() ? nullptr : held[any_below(random, held.size())];
 }
 
-/// How far a contact is from its place at a vertex; of a wheel, along its normal.
+/// How far a contact is from its place at a vertex; of what rolls, along its normal.
 Vector3d open_by(const Honest& honest, std::size_t vertex, const Contact& contact) {
   RobotState state(*honest.robot);
   Eigen::VectorXd q = honest.motion.configurations[vertex];
@@ -73,6 +78,7 @@ Vector3d open_by(const Honest& honest, std::size_t vertex, const Contact& contac
   const Vector3d normal = contact.normal.normalized();
   Vector3d at = state.world_from_link(link) * effector.point;
   if (effector.kind == ContactKind::kPoint) at -= effector.radius_m * normal;
+  if (is_ball(effector)) return normal * normal.dot(at - contact.position);
   if (effector.kind != ContactKind::kWheel) return at - contact.position;
   const Vector3d axle = state.world_from_link(link).linear() *
                         honest.robot
@@ -355,6 +361,35 @@ std::optional<Lie> block_a_wheel(const Honest& honest, Random& random) {
   const int joint = joints[any_below(random, joints.size())];
   for (Eigen::VectorXd& q : lie.motion.configurations)
     q[joint] = honest.motion.configurations.front()[joint];
+  return lie;
+}
+
+/// From some vertex on, the joint that carries a ball's link is turned: as little as its skin slips
+/// by too much.
+std::optional<Lie> slide_a_ball(const Honest& honest, Random& random) {
+  if (vertices(honest) < 2) return std::nullopt;
+  const std::size_t from = 1 + any_below(random, vertices(honest) - 1);
+  const Stance& before = stance_at(honest.motion, from - 1);
+  const auto ball = std::ranges::find_if(
+      before.contacts, [](const Contact& contact) { return is_ball(contact.effector); });
+  if (ball == before.contacts.end()) return std::nullopt;
+  const int link = honest.robot->link_index(ball->effector.link);
+  const std::vector<int> support(honest.robot->support(link).begin(),
+                                 honest.robot->support(link).end());
+  if (support.empty()) return std::nullopt;
+  RobotState state(*honest.robot);
+  state.update(honest.motion.configurations[from].data());
+  const Vector3d normal = ball->normal.normalized();
+  const Vector3d touching =
+      state.world_from_link(link) * ball->effector.point - ball->effector.radius_m * normal;
+  const Vector3d moves =
+      state.joint_axis(support.back()).cross(touching - state.joint_origin(support.back()));
+  const double slides = (moves - normal * normal.dot(moves)).norm();
+  if (slides < 0.02) return std::nullopt;
+  Lie lie = lie_about(honest, {"contact_motion"});
+  const int joint = honest.robot->axes()[static_cast<std::size_t>(support.back())].active;
+  for (std::size_t i = from; i < vertices(honest); ++i)
+    lie.motion.configurations[i][7 + joint] += 2.0 * kBeyond * limits::kHeld_m / slides;
   return lie;
 }
 
@@ -641,6 +676,7 @@ const std::vector<Corruption>& corruptions() {
       {"slip_sideways", slip_sideways},
       {"slip_forward", slip_forward},
       {"block_a_wheel", block_a_wheel},
+      {"slide_a_ball", slide_a_ball},
       {"call_a_wheel_locked", call_a_wheel_locked},
       {"compress_time", compress_time},
       {"hurry_the_base", hurry_the_base},

@@ -57,6 +57,8 @@ class CentreOfMassProgramme {
     if (const double most = most_of_rays(bearing.contact, margin_, weight_N_); most >= 0.0) {
       limit = limits_++;
       most_.push_back(most);
+      const double least = least_of_rays(bearing, weight_N_);
+      least_.push_back(least > 0.0 ? least : -kNoBound);
     }
     for (const BearingRay& ray : bearing_rays(bearing, margin_, weight_N_)) {
       Column column{{}, limit, ray.lower, ray.upper};
@@ -66,7 +68,6 @@ class CentreOfMassProgramme {
   }
 
   void build(const std::optional<Eigen::Vector2d>& centre_of_mass) {
-    const int rows = 6 + limits_;
     LinearColumns columns;
     for (const Column& column : columns_) {
       for (int i = 0; i < 6; ++i) columns.put(i, column.wrench[i]);
@@ -80,14 +81,13 @@ class CentreOfMassProgramme {
       columns.put(3, -1.0);
       columns.end(-kNoBound, kNoBound);
     }
-    std::vector<double> row_lower(static_cast<std::size_t>(rows), -kNoBound), row_upper;
-    std::fill_n(row_lower.begin(), 6, 0.0);
-    row_upper.assign(6, 0.0);
+    std::vector<double> row_lower(6, 0.0), row_upper(6, 0.0);
     row_lower[2] = row_upper[2] = 1.0;
     if (centre_of_mass) {
       row_lower[3] = row_upper[3] = centre_of_mass->y() - origin_.y();
       row_lower[4] = row_upper[4] = origin_.x() - centre_of_mass->x();
     }
+    row_lower.insert(row_lower.end(), least_.begin(), least_.end());
     row_upper.insert(row_upper.end(), most_.begin(), most_.end());
     programme_.load(columns, row_lower, row_upper);
   }
@@ -95,7 +95,7 @@ class CentreOfMassProgramme {
   double weight_N_, margin_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   std::vector<Column> columns_;
-  std::vector<double> most_;
+  std::vector<double> least_, most_;
   int limits_ = 0;
   /// So small a programme does not stall without perturbation.
   LinearProgramme programme_{LinearProgramme::Perturbation::kNone};

@@ -31,8 +31,9 @@ ReachProgramme::ReachProgramme(const Eigen::MatrixXd& columns, const Eigen::Vect
     row_lower.push_back(middle_[r] - within[r]);
     row_upper.push_back(middle_[r] + within[r]);
   }
-  for (const double most : bounds.most) {
-    row_lower.push_back(-kNoBound);
+  for (std::size_t group = 0; group < bounds.most.size(); ++group) {
+    const double least = bounds.least[group], most = bounds.most[group];
+    row_lower.push_back(least > 0.0 ? least : -kNoBound);
     row_upper.push_back(most >= 0.0 ? most : kNoBound);
   }
   programme_.load(unknowns, row_lower, row_upper);

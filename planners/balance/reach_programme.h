@@ -21,6 +21,7 @@ class ReachProgramme {
   struct Bounds {
     std::vector<int> group;            ///< of each force
     std::vector<double> lower, upper;  ///< of each force
+    std::vector<double> least;         ///< of the sum of each group; 0: none
     std::vector<double> most;          ///< of the sum of each group; negative: none
   };
 

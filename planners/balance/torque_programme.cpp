@@ -29,6 +29,7 @@ void TorqueProgramme::add(const BearingContact& bearing, double margin) {
     balls_.push_back({positions_.size() - 1, contact.effector, BallTrack(contact)});
   }
   most_.push_back(most_of_rays(contact, margin, weight_N_));
+  least_.push_back(least_of_rays(bearing, weight_N_));
   for (const BearingRay& ray : bearing_rays(bearing, margin, weight_N_)) {
     rays_.push_back(
         {number, ray.at - contact.position, ray.force, ray.moment, ray.lower, ray.upper});
@@ -88,10 +89,11 @@ double TorqueProgramme::solve(const RobotState& state, Eigen::VectorXd& gradient
     row_upper[k + 1] = share;
   }
   for (int c = 0; c < limits; ++c) {
-    if (most_[static_cast<std::size_t>(c)] >= 0.0) {
-      row_upper[static_cast<std::size_t>(base + 2 * torques + c)] =
-          most_[static_cast<std::size_t>(c)];
-    }
+    const auto row = static_cast<std::size_t>(base + 2 * torques + c);
+    const double most = most_[static_cast<std::size_t>(c)];
+    const double least = least_[static_cast<std::size_t>(c)];
+    if (most >= 0.0) row_upper[row] = most;
+    if (least > 0.0) row_lower[row] = least;
   }
   programme_.load(columns, row_lower, row_upper);
   LinearAnswer answer = programme_.dual();

@@ -55,7 +55,8 @@ class TorqueProgramme {
     BallTrack track;
   };
   std::vector<Ball> balls_;
-  std::vector<double> most_;  ///< pressing force of each contact; negative: no such limit
+  std::vector<double> most_;   ///< pressing force of each contact; negative: no such limit
+  std::vector<double> least_;  ///< of each contact; 0: none
   std::vector<Ray> rays_;
   std::vector<int> joints_;  ///< with a limit
   Eigen::MatrixXd columns_;

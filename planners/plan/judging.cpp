@@ -183,7 +183,6 @@ Judging judging_of(const Graph& graph, const Plan& plan, const JudgingRequest& r
   }
   judging.incomplete = plan.incomplete;
   judging.moves = plan.moves;
-  judging.states_wrenches = plan.states_wrenches;
   if (contacts && !other) {
     Stance stance = load_contacts(contacts->file, *plan.robot->robot);
     for (const Contact& contact : stance.contacts)
@@ -223,12 +222,10 @@ std::optional<CheckReport> judged(const Motion& motion, const Judging& judging,
   const bool posture =
       motion.configurations.size() == 1 && motion.stance_from.front() >= 0 && !motion.stances_only;
   std::optional<CheckReport> report =
-      posture ? judge.check(motion.configurations.front(), motion.stances.front(), judging.options)
+      posture ? judge.check(motion.configurations.front(), motion.stances.front(), judging.options,
+                            motion.wrenches.empty() ? StanceWrenches() : motion.wrenches.front())
               : judge.check(motion, judging.options, job);
   if (report) judge_ends(motion, judging, *report);
-  if (report && judging.states_wrenches) {
-    report->trusted.push_back("the plan's wrenches: the judge found its own");
-  }
   return report;
 }
 

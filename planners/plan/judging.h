@@ -57,7 +57,6 @@ struct Judging {
   std::optional<PlannedTask> ends;   ///< of a plan that names a scenario: where `task` has them
   ContactMoves moves;                ///< by the plan's word, of the contacts of the task
   bool incomplete = false;           ///< by its word: goals are told, and not judged
-  bool states_wrenches = false;      ///< which are not judged: that there are some that hold is
 };
 
 /// Throws Error for files that cannot be used, for a plan that names both a scenario and a contacts

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <span>
 
 namespace locograph {
 namespace {
@@ -32,6 +33,7 @@ std::shared_ptr<const P> only(const Parameters& parameters) {
 }
 
 /// Wrenches act at contacts of a stance that the configuration is in: of the step before or after.
+/// One that opens there carries nothing.
 void require_wrenches_of_stances(const Graph& graph, const Plan& plan) {
   const auto holds = [&](std::size_t step, int contact) {
     return plan.stance_from[step] &&
@@ -39,13 +41,21 @@ void require_wrenches_of_stances(const Graph& graph, const Plan& plan) {
   };
   for (std::size_t i = 0; i < plan.slots.size(); ++i) {
     for (const int slot : plan.index.wrenches[i]) {
-      for (const int contact : graph.vertex(VertexId<VertexWrenches>{slot}).contact_numbers) {
-        if (holds(i, contact) || (i > 0 && holds(i - 1, contact))) continue;
+      const VertexWrenches& given = graph.vertex(VertexId<VertexWrenches>{slot});
+      Eigen::Index at = 0;
+      for (std::size_t c = 0; c < given.contact_numbers.size(); ++c) {
+        const int contact = given.contact_numbers[c];
+        const auto size =
+            static_cast<Eigen::Index>((*given.contacts)[c]->cone->components().size());
+        const bool carries = !given.state.segment(at, size).isZero(0.0);
+        at += size;
+        const bool opens = i > 0 && holds(i - 1, contact);
+        if (holds(i, contact) || (opens && !carries)) continue;
         throw Error("", graph.vertex_record(slot).line,
                     "configuration " + std::to_string(graph.vertex_record(plan.slots[i]).id) +
                         " has wrenches at contact " + std::to_string(contact) +
-                        ", which no stance of it has",
-                    "contacts of its stances");
+                        (opens ? ", which opens there" : ", which no stance of it has"),
+                    opens ? "zeros" : "contacts of its stances");
       }
     }
   }
@@ -162,28 +172,35 @@ void cut_segments(Graph& graph) {
 }
 
 /// At each contact of the stance that a configuration is left in; empty: not known of one that
-/// bears load, or of other contacts only.
+/// bears load and did before. Those that close there carry nothing yet where nothing is said of
+/// them.
 StanceWrenches wrenches_at(const Graph& graph, const Plan& plan, std::size_t i) {
   if (!plan.stance_from[i] || plan.index.wrenches[i].empty()) return {};
   const StanceParameter& stance = *plan.stance_from[i];
   const VertexWrenches& given =
       graph.vertex(VertexId<VertexWrenches>{plan.index.wrenches[i].front()});
   StanceWrenches wrenches(stance.contacts.size(), StanceWrenches::value_type::Zero());
+  std::vector<bool> stated(stance.contacts.size(), false);
   Eigen::Index at = 0;
-  std::ptrdiff_t bearing = 0;
   for (std::size_t c = 0; c < given.contact_numbers.size(); ++c) {
+    const std::span<const int> components = (*given.contacts)[c]->cone->components();
     const auto found = std::ranges::find(stance.contact_numbers, given.contact_numbers[c]);
-    if (found == stance.contact_numbers.end()) return {};
-    const auto k = static_cast<std::size_t>(found - stance.contact_numbers.begin());
-    for (const int component : (*given.contacts)[c]->cone->components()) {
-      wrenches[k][component] = given.state[at++];
+    if (found != stance.contact_numbers.end()) {
+      const auto k = static_cast<std::size_t>(found - stance.contact_numbers.begin());
+      for (std::size_t n = 0; n < components.size(); ++n) {
+        wrenches[k][components[n]] = given.state[at + static_cast<Eigen::Index>(n)];
+      }
+      stated[k] = true;
     }
-    bearing += stance.contacts[k]->contact.bears_load ? 1 : 0;
+    at += static_cast<Eigen::Index>(components.size());
   }
-  const bool all = bearing == std::ranges::count_if(stance.contacts, [](const auto& contact) {
-                     return contact->contact.bears_load;
-                   });
-  return all ? wrenches : StanceWrenches();
+  for (std::size_t k = 0; k < stated.size(); ++k) {
+    const bool closes = i > 0 && plan.stance_from[i - 1] &&
+                        std::ranges::count(plan.stance_from[i - 1]->contact_numbers,
+                                           stance.contact_numbers[k]) == 0;
+    if (!stated[k] && stance.contacts[k]->contact.bears_load && !closes) return {};
+  }
+  return wrenches;
 }
 
 std::string text_of(const ContactParameter& contact) {

@@ -3,6 +3,7 @@
 #include <locograph/planners/scenario/contact_task_element.h>
 #include <locograph/planners/scenario/effector_element.h>
 #include <locograph/planners/scenario/environment_element.h>
+#include <locograph/planners/scenario/execution_element.h>
 #include <locograph/planners/scenario/scenario.h>
 #include <locograph/robots/contact_kinds.h>
 #include <locograph/robots/shipped_robot.h>
@@ -31,7 +32,7 @@ class ScenarioReader {
     const Element& root = xml_.root();
     xml_.allow(root, {"version", "name"},
                {"robot", "wheels", "end_effectors", "limits", "environment", "drive", "start",
-                "goal", "planner"});
+                "goal", "planner", "execution"});
     if (const std::string version = xml_.attribute(root, "version"); version != "1") {
       throw xml_.error(root, "scenario version '" + version + "'", "version=\"1\"");
     }
@@ -44,6 +45,9 @@ class ScenarioReader {
     read_drive(only(root, "drive", false));
     scenario_.contacts = read_contact_task(xml_, scenario_.end_effectors);
     read_planner(only(root, "planner", false));
+    if (const Element* execution = only(root, "execution", false)) {
+      scenario_.margin = read_execution_margin(xml_, *execution);
+    }
     require_one_task(root);
     return std::move(scenario_);
   }

@@ -11,6 +11,7 @@
 #include <locograph/planners/scenario/contact_task.h>
 #include <locograph/planners/scenario/scanned_surface.h>
 #include <locograph/planners/scenario/scenario_camera.h>
+#include <locograph/plugins/configuration/execution_margin.h>
 #include <locograph/robots/contact.h>
 #include <locograph/robots/robot.h>
 #include <locograph/world/world.h>
@@ -60,6 +61,7 @@ struct Scenario {
   std::vector<SolidBox> solids;         ///< whose faces are among the surfaces
   std::vector<ScannedSurface> scanned;  ///< where more of both are found
   bool enforce_torque_limits = true;
+  ExecutionMargin margin;
   /// One of the two.
   std::optional<DriveTask> drive;
   std::optional<ContactTask> contacts;

@@ -40,6 +40,7 @@ Task task_of(const Scenario& scenario, std::shared_ptr<const RobotParameter> rob
   const bool on_ground = scenario.surfaces.empty() && scenario.scanned.empty();
   if (scenario.drive && on_ground) task.ground_z_m = kGround_m;
   task.check = check_of(scenario);
+  task.margin = scenario.margin;
   task.start_state = scenario.start_state;
   task.drive = scenario.drive;
   if (!scenario.contacts) return task;

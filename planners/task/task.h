@@ -27,6 +27,7 @@ struct Task {
   std::shared_ptr<const WorldSnapshot> world;  ///< with the files of map and obstacles
   /// Of a drive whose scenario names nothing to stand on: the height of the ground.
   std::optional<double> ground_z_m;
+  ExecutionMargin margin;   ///< that planners keep to, and the judge does not ask for
   CheckOptions check;       ///< what the judge is asked: limits, and what end effectors can bear
   std::string start_state;  ///< of the robot, see Scenario::start_state
 

@@ -26,6 +26,20 @@ ContactMoves read_moves(FieldReader& in) {
   return moves;
 }
 
+ExecutionMargin read_margin(FieldReader& in) {
+  ExecutionMargin margin;
+  for (double* number : {&margin.friction, &margin.area, &margin.torque, &margin.joint_rad,
+                         &margin.least_force, &margin.dwell_s}) {
+    *number = in.number();
+  }
+  try {
+    margin.validate();
+  } catch (const Error& error) {
+    in.fail(std::string("an execution margin: ") + error.what(), "");
+  }
+  return margin;
+}
+
 }  // namespace
 
 void refuse_older_plan(const FieldReader& in, std::string_view tag) {
@@ -42,7 +56,8 @@ void PlanParameter::read(FieldReader& in) {
   while (!in.at_end()) {
     const std::string word = in.word();
     if ((word == "stances_only" && stances_only) || (word == "incomplete" && incomplete) ||
-        (word == "moved_contacts" && moves.most_m > 0.0)) {
+        (word == "moved_contacts" && moves.most_m > 0.0) ||
+        (word == "execution_margin" && margin != ExecutionMargin::none())) {
       in.fail("a second '" + word + "'", "it once");
     }
     if (word == "stances_only") {
@@ -51,9 +66,13 @@ void PlanParameter::read(FieldReader& in) {
       incomplete = true;
     } else if (word == "moved_contacts") {
       moves = read_moves(in);
+    } else if (word == "execution_margin") {
+      margin = read_margin(in);
     } else {
-      in.fail("'" + word + "'",
-              "'stances_only', 'incomplete', 'moved_contacts' or the end of the line");
+      in.fail(
+          "'" + word + "'",
+          "'stances_only', 'incomplete', 'moved_contacts', 'execution_margin' or the end of the "
+          "line");
     }
   }
 }
@@ -62,11 +81,18 @@ void PlanParameter::write(FieldWriter& out) const {
   out.integer(kPlanFormat);
   if (stances_only) out.word("stances_only");
   if (incomplete) out.word("incomplete");
-  if (!(moves.most_m > 0.0)) return;
-  out.word("moved_contacts");
-  out.number(moves.most_m);
-  out.word(std::to_string(moves.seed));
-  out.integer(moves.draws);
+  if (moves.most_m > 0.0) {
+    out.word("moved_contacts");
+    out.number(moves.most_m);
+    out.word(std::to_string(moves.seed));
+    out.integer(moves.draws);
+  }
+  if (margin == ExecutionMargin::none()) return;
+  out.word("execution_margin");
+  for (const double number : {margin.friction, margin.area, margin.torque, margin.joint_rad,
+                              margin.least_force, margin.dwell_s}) {
+    out.number(number);
+  }
 }
 
 void ScenarioParameter::read(FieldReader& in) {

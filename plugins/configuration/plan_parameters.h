@@ -5,6 +5,8 @@
 ///     PARAMS_PLAN 1 3 stances_only             (transitions: nothing moves between configurations)
 ///     PARAMS_PLAN 1 3 incomplete               (the first part of a plan: the rest was not found)
 ///     PARAMS_PLAN 1 3 moved_contacts 0.05 3 1  (of the scenario's start and goals: ContactMoves)
+///     PARAMS_PLAN 1 3 execution_margin 0.65 0.65 0.9 0.02 0.03 0.5
+///                                              (that it keeps: ExecutionMargin, in its order)
 ///     PARAMS_SCENARIO 3 centauro_drive         (made for this scenario: a name, or a file)
 ///     PARAMS_CONTACTS 4 ../standing.xml        (a posture for this contacts file)
 ///
@@ -13,6 +15,7 @@
 /// every VERTEX_CONFIGURATION. Plans of version 1, which had PARAMS_WHEELS instead, are refused.
 
 #include <locograph/core/parameters.h>
+#include <locograph/plugins/configuration/execution_margin.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -41,6 +44,8 @@ struct PlanParameter final : Parameter {
   bool incomplete = false;
   /// It was made for a start and goals that are those of its scenario so moved.
   ContactMoves moves;
+  /// By its word, but for what its start and goals do not have.
+  ExecutionMargin margin = ExecutionMargin::none();
 
   std::string_view tag() const override { return "PARAMS_PLAN"; }
   void read(FieldReader& in) override;

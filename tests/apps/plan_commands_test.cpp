@@ -127,18 +127,43 @@ TEST(PlanCommands, CheckListsEveryConstraintAlsoThoseThatHold) {
   }
 }
 
-TEST(PlanCommands, CheckSaysThatTheWrenchesOfAPlanAreNotWhatItJudges) {
+TEST(PlanCommands, CheckRefusesWrenchesThatDoNotBalance) {
   const CommandRunner runner;
   runner.write("none.g2o", squat("2 4 5"));
-  runner.write("zero.g2o", squat("2 4 5") + "VERTEX_WRENCHES 20 2 4 5 0 0 0 0 0 0 0 0 0 0 0 0\n");
-  const std::string text = "the plan's wrenches: the judge found its own";
-  const auto trusted = [&](const std::string& file) {
-    const nlohmann::json all = runner.run("check " + file + " --json").json()["trusted"];
-    return std::count(all.begin(), all.end(), text);
+  const nlohmann::json none = runner.run("check none.g2o --json").json();
+  EXPECT_EQ((*constraint(none, "plan_wrenches"))["judged"], false);
+  const auto with = [&](const std::string& first) {
+    runner.write("some.g2o", squat("2 4 5") + "VERTEX_WRENCHES 20 2 4 5 " + first +
+                                 " 0 0 0 0 0 0 0 0 0 0 0\nEDGE_BALANCE 7 20 scalar 1\n");
+    return runner.run("check some.g2o --json");
   };
-  EXPECT_EQ(trusted("none.g2o"), 0);
-  EXPECT_EQ(trusted("zero.g2o"), 1);
-  EXPECT_NE(runner.run("check zero.g2o").out.find(text), std::string::npos);
+  const Outcome zero = with("0");
+  EXPECT_EQ(zero.exit_code, 1);
+  const nlohmann::json wrenches = *constraint(zero.json(), "plan_wrenches");
+  EXPECT_EQ(wrenches["violated"], true);
+  // All of the weight is left over, a thousand times what may be.
+  EXPECT_GE(wrenches["worst"].get<double>(), 1000.0);
+  EXPECT_NE(wrenches["what"].get<std::string>().find("left over"), std::string::npos);
+  const Outcome not_finite = with("nan");
+  EXPECT_NE(not_finite.exit_code, 0);
+}
+
+TEST(PlanCommands, CheckTellsRobustnessWhereItIsAskedFor) {
+  const CommandRunner runner;
+  runner.write("both.g2o", squat("2 4 5"));
+  const nlohmann::json plain = runner.run("check both.g2o --json").json();
+  EXPECT_FALSE(plain.contains("robustness"));
+  const Outcome asked = runner.run("check both.g2o --robustness --json");
+  const nlohmann::json json = asked.json();
+  EXPECT_EQ(json["feasible"], plain["feasible"]);
+  EXPECT_EQ(json["violations"], plain["violations"]);
+  for (const char* figure : {"friction", "area", "torque", "push_N", "mass"}) {
+    EXPECT_GT(json["robustness"][figure].get<double>(), 0.0) << figure;
+    EXPECT_EQ(json["robustness"]["by_stance"].at(0)[figure], json["robustness"][figure]);
+  }
+  EXPECT_LT(json["robustness"]["friction"].get<double>(), 1.0);
+  EXPECT_NE(runner.run("check both.g2o --robustness").out.find("holds until friction"),
+            std::string::npos);
 }
 
 TEST(PlanCommands, CheckJudgesBalanceAndTorquesOnTheStanceOfAPlan) {

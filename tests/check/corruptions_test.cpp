@@ -18,13 +18,41 @@ CheckOptions knowing(const std::vector<EndEffector>& known) {
   return options;
 }
 
+/// The left hand touches a little table with its ball.
+void lean_on_a_ball(Honest& honest) {
+  RobotState state(*honest.robot);
+  state.update(standing().home.data());
+  Contact ball;
+  ball.effector = {.name = "left_hand",
+                   .link = "LBall",
+                   .kind = ContactKind::kPoint,
+                   .point = {0.0, 0.0, -0.0105},
+                   .radius_m = 0.071,
+                   .friction = 0.5,
+                   .max_force_N = 1000.0};
+  const int link = honest.robot->link_index(ball.effector.link);
+  ball.position = state.world_from_link(link) * ball.effector.point -
+                  ball.effector.radius_m * Eigen::Vector3d::UnitZ();
+  honest.motion.stances[0].contacts.push_back(ball);
+  honest.options.known.push_back(ball.effector);
+  Surface table = ground();
+  table.name = "table";
+  table.world_from_surface.translation() = ball.position;
+  table.half_x_m = table.half_y_m = 0.02;
+  honest.world.surfaces.push_back(table);
+}
+
 std::vector<Honest> honest_motions() {
   std::vector<EndEffector> wheels;
   for (const Contact& contact : centauro().wheels.contacts) wheels.push_back(contact.effector);
   World flat;
   flat.surfaces = {ground()};
   Motion still = standing().motion(1);
+  Honest with_a_ball = {"leaning on a ball", standing().robot, flat, standing().motion(4),
+                        knowing(standing().known)};
+  lean_on_a_ball(with_a_ball);
   return {
+      with_a_ball,
       {"standing", standing().robot, flat, still, knowing(standing().known)},
       {"moving an arm", standing().robot, flat, standing().motion(4), knowing(standing().known)},
       {"parked", centauro().shared, flat, centauro().drive(1, 0.08, 0.8), knowing(wheels)},

@@ -33,7 +33,8 @@ TEST(Judge, AcceptsAStraightDriveOnRollingWheelsAndListsEveryConstraint) {
       "contact_motion",     "contact_turn",        "contact_relabelled",
       "contact_on_surface", "lateral_slip",        "longitudinal_slip",
       "obstacle_distance",  "ground_penetration",  "touching_depth",
-      "self_collision",     "static_balance",      "torque_limits"};
+      "self_collision",     "static_balance",      "torque_limits",
+      "plan_wrenches"};
   ASSERT_EQ(report.violations.size(), names.size());
   for (std::size_t i = 0; i < names.size(); ++i)
     EXPECT_EQ(report.violations[i].constraint, names[i]);

@@ -76,6 +76,11 @@ struct Context : Judging {
   Context() : Judging(33) { BalanceWorker(context).judge_vertices(0, 17, found); }
 };
 }  // namespace balance_worker_h
+namespace robustness_h {
+struct Context : in_check::Context {
+  const Judge judge{standing.robot, world};
+};
+}  // namespace robustness_h
 namespace loaded_contact_h {
 struct Context : Standing {
   const Contact& contact = stance.contacts[0];

@@ -7,13 +7,18 @@
 #include <locograph/check/judge.h>
 #include <locograph/common/data_folder.h>
 #include <locograph/core/graph_file.h>
+#include <locograph/planners/balance/least_wrenches.h>
+#include <locograph/planners/balance/margin_contacts.h>
 #include <locograph/planners/balance/reach_programme.h>
 #include <locograph/planners/offline/drive/drive_graph.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
 #include <locograph/planners/offline/motion/motion_graph.h>
+#include <locograph/planners/offline/motion/motion_loads.h>
+#include <locograph/planners/offline/motion/rest_spline.h>
 #include <locograph/planners/offline/motion/segment_motion.h>
 #include <locograph/planners/offline/motion/segment_planners.h>
 #include <locograph/planners/offline/stance/experience.h>
+#include <locograph/planners/offline/stance/given_margins.h>
 #include <locograph/planners/offline/stance/guided_tree.h>
 #include <locograph/planners/offline/stance/improve_stances.h>
 #include <locograph/planners/offline/stance/judged_path.h>
@@ -34,6 +39,7 @@
 #include <locograph/planners/scenario/bar_place.h>
 #include <locograph/planners/scenario/contact_place.h>
 #include <locograph/planners/scenario/contacts_file.h>
+#include <locograph/planners/scenario/execution_element.h>
 #include <locograph/planners/scenario/move_contacts.h>
 #include <locograph/planners/scenario/scenario.h>
 #include <locograph/planners/scenario/snap_to_places.h>
@@ -205,6 +211,22 @@ struct TimingContext : StepContext {
 namespace balance_balance_region_h {
 using Context = StepContext;
 }
+namespace balance_margin_contacts_h {
+struct Context : StepContext {
+  const Eigen::Vector2d centre = state.center_of_mass().head<2>();
+  const std::span<const Eigen::Vector2d> com{&centre, 1};
+};
+}  // namespace balance_margin_contacts_h
+namespace balance_least_wrenches_h {
+struct Context : StepContext {
+  const std::vector<BearingContact>& counted = bearing;
+  RobotDynamics dynamics{robot};
+  const Eigen::VectorXd velocity = Eigen::VectorXd::Zero(robot.tangent_size()),
+                        acceleration = velocity;
+  Eigen::VectorXd asked = velocity;
+  StanceWrenches feed_forward;
+};
+}  // namespace balance_least_wrenches_h
 namespace balance_torque_programme_h {
 struct Context : StepContext {
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(robot.tangent_size());
@@ -217,7 +239,7 @@ struct Context {
   const Eigen::VectorXd within = Eigen::Vector2d(1e-6, 1e-6),
                         inside = Eigen::Vector3d(0.2, 0.2, 0.2), target = Eigen::Vector2d(3.0, 0.0);
   const ReachProgramme::Bounds bounds = {
-      .group = {0, 0, 0}, .lower = {0, 0, 0}, .upper = {1, 1, 1}, .most = {-1}};
+      .group = {0, 0, 0}, .lower = {0, 0, 0}, .upper = {1, 1, 1}, .least = {0}, .most = {-1}};
 };
 }  // namespace balance_reach_programme_h
 namespace offline_drive_drive_graph_h {
@@ -243,6 +265,11 @@ struct Context : SearchContext {
 namespace offline_stance_footing_h {
 using Context = SearchContext;
 }
+namespace offline_stance_given_margins_h {
+struct Context : StepContext {
+  const StancePlan& plan = step_stances();
+};
+}  // namespace offline_stance_given_margins_h
 namespace offline_stance_guided_tree_h {
 struct Context {
   const GuidedTree::Move move = {};
@@ -320,6 +347,22 @@ struct Context {
   const Scenario scenario = one_step();
 };
 }  // namespace offline_motion_motion_planner_h
+namespace offline_motion_motion_loads_h {
+struct Context : StepContext {
+  const std::vector<BearingContact>& counted = bearing;
+  const double effort_scale = 1.0;
+  const SegmentMotion way = {.configurations = {q, q},
+                             .slopes = {2, Eigen::VectorXd::Zero(robot.tangent_size())},
+                             .duration_s = 0.02};
+  static void use(const std::vector<StanceWrenches>&) {}
+};
+}  // namespace offline_motion_motion_loads_h
+namespace offline_motion_rest_spline_h {
+struct Context : StepContext {
+  std::vector<Eigen::VectorXd> configurations = std::vector<Eigen::VectorXd>(kLeastOfRestSpline, q),
+                               slopes;
+};
+}  // namespace offline_motion_rest_spline_h
 namespace offline_motion_segment_motion_h {
 struct Context : SegmentContext {
   const MotionOptions options;
@@ -627,6 +670,17 @@ struct Context {
   Context() { write_example_file("stones.xml", kOneStep); }
 };
 }  // namespace scenario_contact_task_element_h
+namespace scenario_execution_element_h {
+struct Context {
+  const XmlFile xml = file();
+  const XmlFile::Element& element = xml.root();
+  Scenario scenario;
+  static XmlFile file() {
+    write_example_file("margin.xml", R"(<execution friction="0.7"/>)");
+    return XmlFile("margin.xml", "execution");
+  }
+};
+}  // namespace scenario_execution_element_h
 namespace scenario_effector_element_h {
 struct Context {
   const XmlFile xml = file();

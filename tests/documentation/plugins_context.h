@@ -5,6 +5,7 @@
 #include <documentation/example_robots.h>
 #include <documentation/example_world.h>
 #include <locograph/core/graph_file.h>
+#include <locograph/plugins/configuration/execution_margin.h>
 #include <locograph/plugins/configuration/frame_parameter.h>
 #include <locograph/plugins/configuration/stance_parameter.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>

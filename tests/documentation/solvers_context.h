@@ -6,6 +6,7 @@
 #include <locograph/common/thread_pool.h>
 #include <locograph/core/graph.h>
 #include <locograph/core/optimiser.h>
+#include <locograph/solvers/dense_qp.h>
 #include <locograph/solvers/elimination_tree.h>
 #include <locograph/solvers/front_kernels.h>
 #include <locograph/solvers/linear_solvers.h>

@@ -219,8 +219,9 @@ class Lies(unittest.TestCase):
 
 BALL = """<robot name="ball"><link name="ball"><inertial><mass value="2"/><inertia ixx="1e-3" ixy="0"
 ixz="0" iyy="1e-3" iyz="0" izz="1e-3"/></inertial><collision><geometry><sphere radius="0.03"/></geometry>
-</collision></link><link name="arm"/><joint name="elbow" type="revolute"><parent link="ball"/>
-<child link="arm"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" velocity="1" effort="1"/></joint></robot>"""
+</collision></link><link name="arm"><inertial><mass value="0.01"/><inertia ixx="1e-5"
+ixy="0" ixz="0" iyy="1e-5" iyz="0" izz="1e-5"/></inertial></link><joint name="elbow" type="revolute">
+<parent link="ball"/><child link="arm"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" velocity="1" effort="1"/></joint></robot>"""
 BALL_ROLLS = """<scenario version="1" name="ball_rolls"><robot urdf="ball.urdf"/><end_effectors>
 <end_effector name="ball" link="ball" kind="point" radius="0.03" max_force="100"/>
 <end_effector name="tip" link="arm" kind="point" max_force="100" point="0.2 0 0"/></end_effectors>
@@ -242,7 +243,7 @@ class Balls(unittest.TestCase):
         os.makedirs(FOLDER, exist_ok=True)
         files = {"ball.urdf": BALL, "ball.xml": BALL_ROLLS.format(base=base, place=place)}
         contact = f"PARAMS_CONTACT 2 0 ball ball point 0.03 0.5 100 0 0 0 0 0 1 1 0 0 at {place} 0 0 1 free"
-        lines = ["PARAMS_ROBOT 0 ball.urdf - floating 0", "PARAMS_SCENARIO 1 ball.xml", contact,
+        lines = ["PARAMS_ROBOT 0 ball.urdf - floating 0", "PARAMS_SCENARIO 1 ./ball.xml", contact,
                  "PARAMS_STANCE 3 1 2", "PARAMS_PLAN 4 3" + " stances_only" * stances_only]
         last = np.array(base.split(), float) + way(1.0) + rotations.exp(np.array(turn, float)) @ [0.2, 0, 0]
         # Something else touches down as a plan of stances goes on.

@@ -28,8 +28,15 @@ inline Scenario changed_scenario(const std::string& name, const Replacements& re
   return scenario_of(text);
 }
 
+/// Without an execution margin.
 inline Task stance_task(const std::string& name, const Replacements& replacements = {}) {
-  return started_task(changed_scenario(name, replacements)).task;
+  Scenario scenario = changed_scenario(name, replacements);
+  scenario.margin = ExecutionMargin::none();
+  return started_task(scenario).task;
+}
+
+inline Task stance_task_with_margin(const std::string& name) {
+  return started_task(changed_scenario(name, {})).task;
 }
 
 inline Contact& contact_of(Stance& stance, const std::string& name) {

@@ -88,6 +88,12 @@ const BadLine kBadLines[] = {
     {"PlanMovedByNoSeed", "PARAMS_PLAN 9 2 moved_contacts 0.1 -3 1", "the seed '-3'"},
     {"PlanMovedByNoDraw", "PARAMS_PLAN 9 2 moved_contacts 0.1 3 0", "draw 0, expected 1 to 20"},
     {"PlanMovedHalf", "PARAMS_PLAN 9 2 moved_contacts 0.1", "too few fields"},
+    {"PlanWithHalfAMargin", "PARAMS_PLAN 9 3 execution_margin 0.65 0.65", "too few fields"},
+    {"PlanWithAMarginBeyondAll", "PARAMS_PLAN 9 3 execution_margin 1.1 1 1 0 0 0", "friction"},
+    {"PlanWithANegativeMargin", "PARAMS_PLAN 9 3 execution_margin 1 1 1 0 -0.1 0", "least_force"},
+    {"PlanWithTwoMargins",
+     "PARAMS_PLAN 9 3 execution_margin 1 1 1 0 0 1 execution_margin 1 1 1 0 0 1",
+     "a second 'execution_margin'"},
     {"PlanWithTheOtherWordTwice", "PARAMS_PLAN 9 2 incomplete stances_only incomplete",
      "a second 'incomplete'"},
     // Wheels

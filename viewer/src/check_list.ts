@@ -14,6 +14,15 @@ const FIGURES: [string, string, string][] = [
   ['max_ball_rolling_m', 'balls roll', 'm'],
 ];
 
+/** Of `check.robustness`: the change at which some moment no longer holds. */
+const ROBUSTNESS: [string, string, string][] = [
+  ['friction', 'friction may shrink by', ''],
+  ['area', 'areas may shrink by', ''],
+  ['torque', 'torques may shrink by', ''],
+  ['push_N', 'holds a push of', 'N'],
+  ['mass', 'holds added mass, share', ''],
+];
+
 export class CheckList {
   private readonly rows = new Map<number, HTMLElement>();
 
@@ -36,12 +45,8 @@ export class CheckList {
     if (unjudged > 0) verdict.textContent += `, ${unjudged} not judged`;
 
     const figures = element('dl', 'figures', parent);
-    for (const [key, name, unit] of FIGURES) {
-      if (typeof check[key] !== 'number') continue;
-      const tile = element('div', '', figures);
-      element('dt', '', tile).textContent = name;
-      element('dd', '', tile).textContent = quantity(check[key], unit);
-    }
+    addFigures(figures, check, FIGURES);
+    addFigures(figures, check.robustness ?? {}, ROBUSTNESS);
     const list = element('ul', 'violations', parent);
     list.id = 'violations';
     const order = marks.map((_, i) => i);
@@ -75,6 +80,19 @@ export class CheckList {
     });
     row.addEventListener('click', () => this.jump(index));
     this.rows.set(index, row);
+  }
+}
+
+function addFigures(
+  parent: HTMLElement,
+  values: Record<string, unknown>,
+  figures: [string, string, string][],
+): void {
+  for (const [key, name, unit] of figures) {
+    if (typeof values[key] !== 'number') continue;
+    const tile = element('div', '', parent);
+    element('dt', '', tile).textContent = name;
+    element('dd', '', tile).textContent = quantity(values[key], unit);
   }
 }
 

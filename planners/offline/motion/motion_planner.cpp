@@ -1,10 +1,15 @@
 #include <locograph/check/judge.h>
+#include <locograph/planners/balance/margin_contacts.h>
+#include <locograph/planners/offline/motion/motion_loads.h>
 #include <locograph/planners/offline/motion/motion_planner.h>
 #include <locograph/planners/offline/motion/segment_motion.h>
 #include <locograph/planners/offline/stance/stance_planners.h>
 #include <locograph/planners/offline/stance/standing_wheels.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -22,6 +27,13 @@ constexpr int kFewStates = 4000;
 /// Of the centre of mass, where both ends of a segment have none to the sides of its polygon.
 constexpr double kRoomAtEnds_m = 2e-3;
 
+/// Segments whose forces change too fast are slowed down so often, at first only in places.
+constexpr int kMostEased = 12, kMostEasedInPlaces = 5;
+constexpr double kDwellStep_s = 0.1;
+const std::string kDwell = "dwell";  ///< in the place of a segment planner, at the end
+/// Of the execution margin, where a motion does not have all of it.
+constexpr std::array kSharesOfMargin = {1.0, 0.75, 0.5, 0.25, 0.0};
+
 /// What one segment came to be, to be looked up when the stance planner comes back to it.
 struct TriedSegment {
   Footing before, held, after;  ///< before: empty where the motion begins
@@ -29,9 +41,22 @@ struct TriedSegment {
   std::size_t planner = 0;  ///< the first one that has not been refused
   SegmentPace pace;
   int slowed = 0;
-  bool judged = false;  ///< and found feasible, by itself
+  bool judged = false;     ///< and found feasible, by itself
+  ExecutionMargin margin;  ///< what its ends, which are given, leave of the task's
   SegmentMotion motion;
+  std::vector<StanceWrenches> wrenches;  ///< along it, once they were found
 };
+
+/// Of the joint that is nearest to a limit; 0: at it, or beyond.
+double room_of_joints(const Robot& robot, const Eigen::VectorXd& q) {
+  double room = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < robot.active_joint_count(); ++i) {
+    const Joint& joint = robot.active_joint(i);
+    const double x = q[robot.base_configuration_size() + i];
+    room = std::min({room, x - joint.lower, joint.upper - x});
+  }
+  return std::max(0.0, room);
+}
 
 bool is_of_inertia(const Violation& violation) {
   return violation.constraint == "static_balance" || violation.constraint == "torque_limits";
@@ -48,7 +73,9 @@ class MotionSearch {
         mover_(task_, options),
         all_planners_(!options.segment_planners.empty()),
         judge_(task_.robot->robot, task_.world),
-        state_(*task_.robot->robot) {}
+        state_(*task_.robot->robot),
+        loads_(*task_.robot->robot),
+        smoothing_s_(options.loaded_smoothing_s) {}
 
   /// Moves along a way through stances. 0: it does, maybe between other configurations than the
   /// way came with, from change number `first` + 1 on; else the number of a change that will not
@@ -59,11 +86,13 @@ class MotionSearch {
     for (bool whole = false;; whole = true) {
       for (std::size_t j = first; j < count; ++j) {
         if (!found_at(way, j) && !move_postures(way, first, j)) return refuse(j);
+        if (bears_on() && !load(*ways_[j])) return refuse(j);
       }
       assemble(way);
-      std::vector<StanceWrenches> wrenches(plan_.motion.configurations.size());
-      plan_.report = judged(plan_.motion, &wrenches);
-      plan_.motion.wrenches = std::move(wrenches);
+      std::vector<StanceWrenches> found;
+      if (!bears_on()) found.resize(plan_.motion.configurations.size());
+      plan_.report = judged(plan_.motion, bears_on() ? nullptr : &found);
+      if (!bears_on()) plan_.motion.wrenches = std::move(found);
       if (plan_.report.feasible) return 0;
       // At first those only that the report names: of each constraint one.
       std::vector<bool> named(count, whole);
@@ -90,23 +119,38 @@ class MotionSearch {
     Motion& motion = plan_.motion;
     motion = {};
     plan_.segments.clear();
-    double time_s = 0.0;
-    for (std::size_t j = 0; j < ways_.size() && ways_[j]->motion.success(); ++j) {
-      const SegmentMotion& way = ways_[j]->motion;
+    time_s_ = 0.0;
+    std::size_t done = 0;
+    while (done < ways_.size() && ways_[done]->motion.success()) ++done;
+    StanceWrenches at_end;
+    if (bears_on()) at_end = at_rest(path.footings[done], path.configurations[done]);
+    for (std::size_t j = 0; j < done; ++j) {
+      const TriedSegment& tried = *ways_[j];
+      const SegmentMotion& way = tried.motion;
       SegmentRecord record;
       record.stance = static_cast<int>(j);
       record.first = static_cast<int>(motion.configurations.size());
+      record.duration_s = way.duration_s;
+      if (bears_on() && j > 0 && gains(path, j - 1)) {
+        record.duration_s +=
+            dwell(record.stance, way.configurations.front(),
+                  carried(ways_[j - 1]->wrenches.back(), path.footings[j - 1], path.footings[j]),
+                  tried.wrenches.front());
+      }
       const std::size_t steps = way.configurations.size() - 1;
       for (std::size_t i = 0; i < steps; ++i) {
-        motion.configurations.push_back(way.configurations[i]);
-        motion.slopes.push_back(way.slopes[i]);
-        motion.time_s.push_back(time_s + way.duration_s * static_cast<double>(i) /
-                                             static_cast<double>(steps));
-        motion.stance_from.push_back(record.stance);
+        append(record.stance, way.configurations[i], way.slopes[i]);
+        if (bears_on()) motion.wrenches.push_back(tried.wrenches[i]);
+        motion.time_s.push_back(time_s_ + way.duration_s * static_cast<double>(i) /
+                                              static_cast<double>(steps));
       }
-      time_s += way.duration_s;
+      time_s_ += way.duration_s;
+      if (bears_on() && !gains(path, j)) {
+        const StanceWrenches& next = j + 1 < done ? ways_[j + 1]->wrenches.front() : at_end;
+        record.duration_s += dwell(record.stance, way.configurations.back(), tried.wrenches.back(),
+                                   carried(next, path.footings[j + 1], path.footings[j]));
+      }
       record.last = static_cast<int>(motion.configurations.size());
-      record.duration_s = way.duration_s;
       record.planner = way.planner;
       record.path_s = way.statistics.path_s;
       record.timing_s = way.statistics.timing_s;
@@ -115,14 +159,27 @@ class MotionSearch {
       record.clear_m = way.clear_m;
       plan_.segments.push_back(std::move(record));
     }
-    const std::size_t done = plan_.segments.size();
     for (std::size_t j = 0; j <= done; ++j) {
       motion.stances.push_back(space_.stance(path.footings[j]));
     }
-    motion.configurations.push_back(path.configurations[done]);
-    motion.slopes.push_back(Eigen::VectorXd::Zero(task_.robot->robot->tangent_size()));
-    motion.time_s.push_back(time_s);
-    motion.stance_from.push_back(static_cast<int>(done));
+    if (bears_on() && done > 0) {
+      SegmentRecord record;
+      record.stance = static_cast<int>(done);
+      record.first = static_cast<int>(motion.configurations.size());
+      record.planner = kDwell;
+      const bool gained = gains(path, done - 1);
+      record.duration_s = dwell(record.stance, path.configurations[done],
+                                gained ? carried(ways_[done - 1]->wrenches.back(),
+                                                 path.footings[done - 1], path.footings[done])
+                                       : at_end,
+                                at_end);
+      record.last = static_cast<int>(motion.configurations.size());
+      plan_.segments.push_back(std::move(record));
+    }
+    append(static_cast<int>(done), path.configurations[done],
+           Eigen::VectorXd::Zero(task_.robot->robot->tangent_size()));
+    motion.time_s.push_back(time_s_);
+    if (bears_on()) motion.wrenches.push_back(std::move(at_end));
   }
 
   /// Why the last one was refused; empty: none was.
@@ -135,6 +192,134 @@ class MotionSearch {
     ++plan_.statistics.refused_segments;
     refused_reason_ = ways_[segment]->motion.reason;
     return segment + 1;
+  }
+
+  /// Forces go over between stances, and follow the motion.
+  bool bears_on() const { return task_.margin.dwell_s > 0.0; }
+
+  /// Whether the stance after segment j has one contact more than its own.
+  static bool gains(const StancePath& path, std::size_t j) {
+    return contacts_of(path.footings[j + 1]) > contacts_of(path.footings[j]);
+  }
+
+  void append(int stance, const Eigen::VectorXd& q, Eigen::VectorXd slope) {
+    plan_.motion.configurations.push_back(q);
+    plan_.motion.slopes.push_back(std::move(slope));
+    plan_.motion.stance_from.push_back(stance);
+  }
+
+  /// Stands while forces go over, for as long as the margin says, or longer where they need it.
+  double dwell(int stance, const Eigen::VectorXd& q, const StanceWrenches& from,
+               const StanceWrenches& to) {
+    const double duration_s =
+        std::max(task_.margin.dwell_s, loads_.change(from, to) / kFastestLoad);
+    const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / kDwellStep_s - 1e-9)));
+    for (int i = 0; i < steps; ++i) {
+      const double share = static_cast<double>(i) / steps;
+      append(stance, q, Eigen::VectorXd::Zero(task_.robot->robot->tangent_size()));
+      plan_.motion.time_s.push_back(time_s_ + share * duration_s);
+      StanceWrenches& now = plan_.motion.wrenches.emplace_back(from);
+      for (std::size_t c = 0; c < now.size(); ++c) now[c] += share * (to[c] - from[c]);
+    }
+    time_s_ += duration_s;
+    return duration_s;
+  }
+
+  /// The wrenches of one footing at the contacts of another: none where it has no contact.
+  static StanceWrenches carried(const StanceWrenches& wrenches, const Footing& of,
+                                const Footing& to) {
+    StanceWrenches result;
+    std::size_t at = 0;
+    for (std::size_t e = 0; e < of.size(); ++e) {
+      if (to[e] != kFree) result.push_back(StanceWrenches::value_type::Zero());
+      if (to[e] != kFree && of[e] != kFree) result.back() = wrenches[at];
+      if (of[e] != kFree) ++at;
+    }
+    return result;
+  }
+
+  /// With what there is of the margin, down to none at all.
+  StanceWrenches at_rest(const Footing& footing, const Eigen::VectorXd& q) {
+    const std::vector<BearingContact> bearing = space_.bearing_contacts(footing);
+    for (const double share : kSharesOfMargin) {
+      const ExecutionMargin margin = task_.margin.scaled(share);
+      if (auto found = loads_.at_rest(counted(bearing, margin), effort_scale(margin), q)) {
+        return std::move(*found);
+      }
+    }
+    return StanceWrenches(bearing.size(), StanceWrenches::value_type::Zero());
+  }
+
+  double effort_scale(const ExecutionMargin& margin) const {
+    return task_.check.enforce_torque_limits ? task_.check.effort_scale * margin.torque : 0.0;
+  }
+
+  /// Makes forces change less fast: slower where they do, as they change by the third power of
+  /// speed where the path bends.
+  void slow_where_forces_change(const SegmentLoads& loads, TriedSegment& tried) const {
+    constexpr std::size_t kPlaces = 101;
+    constexpr double kMore = 0.93, kSteepest = 1.15;  // of speeds, from place to place
+    const SegmentMotion& way = tried.motion;
+    std::vector<double>& most = tried.pace.most_speed;
+    if (most.empty()) most.assign(kPlaces, 1.5 * *std::ranges::max_element(way.speed));
+    const auto place = [](double share) {
+      return std::min(kPlaces - 1, static_cast<std::size_t>(share * (kPlaces - 1)));
+    };
+    const auto last = static_cast<std::ptrdiff_t>(loads.rates.size());
+    const auto around = static_cast<std::ptrdiff_t>(
+        std::ceil(smoothing_s_ / way.duration_s * static_cast<double>(last)));
+    for (std::ptrdiff_t i = 0; i < last; ++i) {
+      const double ratio = loads.rates[static_cast<std::size_t>(i)] / kFastestLoad;
+      if (ratio <= 1.0) continue;
+      const std::ptrdiff_t from = std::max<std::ptrdiff_t>(0, i - around);
+      const std::ptrdiff_t to = std::min(last, i + 1 + around);
+      const double speed = kMore / std::cbrt(ratio) *
+                           *std::max_element(way.speed.begin() + from, way.speed.begin() + to + 1);
+      const std::size_t end = place(way.share[static_cast<std::size_t>(to)]) + 1;
+      for (std::size_t k = place(way.share[static_cast<std::size_t>(from)]);
+           k <= std::min(end, kPlaces - 1); ++k) {
+        most[k] = std::min(most[k], speed);
+      }
+    }
+    for (std::size_t k = 1; k < kPlaces; ++k) {
+      most[k] = std::min(most[k], kSteepest * most[k - 1]);
+    }
+    for (std::size_t k = kPlaces - 1; k > 0; --k) {
+      most[k - 1] = std::min(most[k - 1], kSteepest * most[k]);
+    }
+  }
+
+  /// Finds the wrenches along a segment: slower where they change too fast or do not hold, then
+  /// with less of the margin. False: there are none.
+  bool load(TriedSegment& tried) {
+    if (!tried.wrenches.empty()) return true;
+    const std::vector<BearingContact> bearing = space_.bearing_contacts(tried.held);
+    ExecutionMargin margin = tried.margin;
+    std::size_t share = 0;
+    for (int attempt = 0;; ++attempt) {
+      auto found =
+          loads_.along(counted(bearing, margin), effort_scale(margin), as_motion(tried.motion));
+      if (found && found->fastest <= kFastestLoad) {
+        tried.wrenches = std::move(found->wrenches);
+        return true;
+      }
+      if (attempt < kMostEased) {
+        if (!found || attempt >= kMostEasedInPlaces) {
+          tried.pace.slower *= found ? 1.03 * std::cbrt(found->fastest / kFastestLoad) : kSlower;
+        }
+        if (found && !tried.motion.speed.empty()) slow_where_forces_change(*found, tried);
+        tried.judged = false;
+        retime(tried);
+        continue;
+      }
+      if (found || ++share == kSharesOfMargin.size()) {
+        tried.motion.status = PlannerStatus::kNotFound;
+        tried.motion.reason =
+            found ? "forces at its contacts change too fast" : "no wrenches hold it along its way";
+        return false;
+      }
+      margin = tried.margin.scaled(kSharesOfMargin[share]);
+    }
   }
 
   /// Other postures at an end of segment j, near the one at its other end: where free arms are on
@@ -218,11 +403,50 @@ class MotionSearch {
     fresh->after = path.footings[j + 1];
     fresh->from = path.configurations[j];
     fresh->to = path.configurations[j + 1];
+    fresh->margin = margin_of(*fresh);
     return *known_.emplace_back(std::move(fresh));
   }
 
   static Footing before_of(const StancePath& path, std::size_t j) {
     return j == 0 ? Footing() : path.footings[j - 1];
+  }
+
+  /// Ends are found with the execution margin but for the start and the goals; what they do not
+  /// have is not asked of the way between them, either.
+  ExecutionMargin margin_of(const TriedSegment& tried) {
+    if (task_.margin == ExecutionMargin::none()) return task_.margin;
+    const std::vector<BearingContact> bearing = space_.bearing_contacts(tried.held);
+    const Robot& robot = *task_.robot->robot;
+    ExecutionMargin margin = task_.margin;
+    double torque = 0.0, share = 1.0;
+    for (const Eigen::VectorXd* q : {&tried.from, &tried.to}) {
+      state_.update(q->data());
+      const Eigen::Vector2d centre = state_.center_of_mass().head<2>();
+      share = std::min(share, share_of_margin(robot.total_mass(), rolled_to(state_, bearing),
+                                              task_.margin, {&centre, 1}));
+      margin.joint_rad = std::min(margin.joint_rad, room_of_joints(robot, *q));
+    }
+    const ExecutionMargin had = task_.margin.scaled(share);
+    margin.friction = had.friction;
+    margin.area = had.area;
+    margin.least_force = had.least_force;
+    if (!task_.check.enforce_torque_limits) return margin;
+    TorqueProgramme torques(robot, counted(bearing, margin), task_.check.effort_scale,
+                            kRegionMargin);
+    Eigen::VectorXd gradient;
+    for (const Eigen::VectorXd* q : {&tried.from, &tried.to}) {
+      state_.update(q->data());
+      torque = std::max(torque, torques.solve(state_, gradient));
+    }
+    margin.torque =
+        std::clamp(torque / (1.0 - TransitionOptions().torque_margin), margin.torque, 1.0);
+    return margin;
+  }
+
+  std::vector<BearingContact> counted(std::span<const BearingContact> bearing,
+                                      const ExecutionMargin& margin) const {
+    const double weight_N = task_.robot->robot->total_mass() * standard_gravity().norm();
+    return with_margin(bearing, margin, weight_N);
   }
 
   void move(TriedSegment& tried) {
@@ -232,12 +456,14 @@ class MotionSearch {
     asked.termination.max_iterations = 0;  // is of stances
     if (!all_planners_) asked.max_states = kFewStates;
     tried.motion = {};
+    tried.wrenches.clear();
     on_segment(tried, [&](const Segment& segment, std::span<const BearingContact> bearing) {
       tried.motion = mover_.move(segment, bearing, tried.planner, allowed(), asked);
     });
   }
 
   void retime(TriedSegment& tried) {
+    tried.wrenches.clear();
     on_segment(tried, [&](const Segment& segment, std::span<const BearingContact> bearing) {
       mover_.retime(segment, bearing, tried.pace, tried.motion);
     });
@@ -254,11 +480,13 @@ class MotionSearch {
   /// Calls f with the segment and its contacts.
   template <class F>
   void on_segment(TriedSegment& tried, const F& f) {
-    const std::vector<BearingContact> bearing = space_.bearing_contacts(tried.held);
+    const std::vector<BearingContact> bearing =
+        counted(space_.bearing_contacts(tried.held), tried.margin);
     const BalanceRegion region = region_of(tried, bearing);
     std::optional<TorqueProgramme> torques;
     if (task_.check.enforce_torque_limits) {
-      torques.emplace(*task_.robot->robot, bearing, task_.check.effort_scale, kRegionMargin);
+      torques.emplace(*task_.robot->robot, bearing, task_.check.effort_scale * tried.margin.torque,
+                      kRegionMargin);
     }
     Segment segment;
     segment.held = space_.stance(tried.held).contacts;
@@ -270,6 +498,8 @@ class MotionSearch {
     segment.reached = besides(tried.after, tried.held);
     segment.from = tried.from;
     segment.to = tried.to;
+    segment.joint_margin_rad = tried.margin.joint_rad;
+    segment.torque_share = tried.margin.torque;
     plan_.statistics.path_s -= tried.motion.statistics.path_s;
     plan_.statistics.timing_s -= tried.motion.statistics.timing_s;
     f(segment, bearing);
@@ -328,7 +558,7 @@ class MotionSearch {
 
   std::size_t segment_of(const Violation& violation) const {
     std::size_t j = 0;
-    while (j + 1 < plan_.segments.size() && plan_.segments[j].last <= violation.at_vertex) ++j;
+    while (j + 1 < ways_.size() && plan_.segments[j].last <= violation.at_vertex) ++j;
     return j;
   }
 
@@ -405,6 +635,9 @@ class MotionSearch {
   bool all_planners_;  ///< from the first segment on
   Judge judge_;
   RobotState state_;
+  MotionLoads loads_;
+  double smoothing_s_;
+  double time_s_ = 0.0;  ///< where assemble() has got to
   std::vector<std::unique_ptr<TriedSegment>> known_;
   std::vector<TriedSegment*> ways_;
   std::string refused_reason_;

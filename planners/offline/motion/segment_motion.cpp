@@ -1,4 +1,5 @@
 #include <locograph/check/motion_curve.h>
+#include <locograph/planners/offline/motion/rest_spline.h>
 #include <locograph/planners/offline/motion/segment_motion.h>
 #include <locograph/planners/offline/motion/segment_planners.h>
 #include <locograph/planners/offline/motion/swing.h>
@@ -65,6 +66,26 @@ CheckOptions with_accelerations(CheckOptions check, const MotionOptions& options
     check.joint_acceleration_rad_s2 = options.joint_acceleration_rad_s2;
   }
   return check;
+}
+
+/// One more row: x at most that of SegmentPace::most_speed.
+TimingRowsAt with_most_speed(TimingRowsAt rows, double length,
+                             const std::vector<double>& most_speed) {
+  if (most_speed.empty()) return rows;
+  return [rows = std::move(rows), length, most_speed](const PathPoint& point) {
+    TimingRows found = rows ? rows(point) : TimingRows();
+    const double at = point.s / length * static_cast<double>(most_speed.size() - 1);
+    const std::size_t i = std::min(static_cast<std::size_t>(at), most_speed.size() - 2);
+    const double t = at - static_cast<double>(i);
+    const double most = length * ((1.0 - t) * most_speed[i] + t * most_speed[i + 1]);
+    for (Eigen::VectorXd* part : {&found.a, &found.b, &found.c}) {
+      part->conservativeResize(part->size() + 1);
+    }
+    found.a.tail<1>()[0] = 0.0;
+    found.b.tail<1>()[0] = 1.0;
+    found.c.tail<1>()[0] = most * most;
+    return found;
+  };
 }
 
 void add_reason(const std::string& reason, SegmentMotion& motion) {
@@ -151,7 +172,7 @@ void SegmentMover::shape(std::span<const BearingContact> bearing, const SegmentP
   const std::optional<PathSpline> closed = close(motion.waypoints, pace.finer, motion.to);
   motion.statistics.path_s += closing.seconds();
   const Stopwatch timing;
-  const bool timed = closed && time(*closed, bearing, pace.slower, motion);
+  const bool timed = closed && time(*closed, bearing, pace, motion);
   motion.status = timed ? PlannerStatus::kSolved : PlannerStatus::kNotFound;
   motion.statistics.timing_s += timing.seconds();
   motion.clear_m = clear_of(motion);
@@ -351,16 +372,19 @@ std::optional<SegmentMover::Node> SegmentMover::missing(const PathSpline& path, 
 }
 
 bool SegmentMover::time(const PathSpline& path, std::span<const BearingContact> bearing,
-                        double slower, SegmentMotion& motion) {
-  const bool torques = task_.check.enforce_torque_limits;
-  BalanceRows balance(space_.robot(), bearing,
-                      {.effort_scale = torques ? task_.check.effort_scale : 0.0});
+                        const SegmentPace& pace, SegmentMotion& motion) {
+  double slower = pace.slower;
+  const double effort_scale = task_.check.enforce_torque_limits
+                                  ? task_.check.effort_scale * space_.segment().torque_share
+                                  : 0.0;
+  BalanceRows balance(space_.robot(), bearing, {.effort_scale = effort_scale});
   TimingOptions options;
-  options.smoothing_s = options_.smoothing_s;
+  options.smoothing_s = bears_on() ? options_.loaded_smoothing_s : options_.smoothing_s;
   options.intervals = 100;
   options.intervals_per_step = 4;
-  std::optional<PathTiming> timing(std::in_place, path, limits_, options,
-                                   balance.along(path, limits_));
+  std::optional<PathTiming> timing(
+      std::in_place, path, limits_, options,
+      with_most_speed(balance.along(path, limits_), path.length(), pace.most_speed));
   // Where rows leave nothing, which is for rounding only: slowly, as the judge will say.
   if (!timing->answer().success()) {
     timing.emplace(path, limits_, options);
@@ -369,7 +393,8 @@ bool SegmentMover::time(const PathSpline& path, std::span<const BearingContact> 
   if (!timing->answer().success()) return false;
   const double duration_s = slower * timing->duration_s();
   const auto steps_in = [&](double seconds) {
-    return std::max(2, static_cast<int>(std::ceil(seconds / options_.step_s)));
+    const int least = bears_on() ? static_cast<int>(kLeastOfRestSpline) - 1 : 2;
+    return std::max(least, static_cast<int>(std::ceil(seconds / options_.step_s)));
   };
   int steps = steps_in(duration_s);
   // Where the cubics through the samples have to be slower, there are more of them.
@@ -387,11 +412,15 @@ void SegmentMover::sample(const PathTiming& timing, double slower, int steps,
   motion.duration_s = slower * timing.duration_s();
   motion.configurations.clear();
   motion.slopes.clear();
+  motion.share.clear();
+  motion.speed.clear();
   motion.length = 0.0;
   for (int i = 0; i <= steps; ++i) {
     const TimedPoint point = timing.at(timing.duration_s() * i / steps);
     motion.configurations.push_back(point.configuration);
     motion.slopes.push_back(slope_of(space_.robot(), point) / slower);
+    motion.share.push_back(point.s / timing.path().length());
+    motion.speed.push_back(point.speed / timing.path().length() / slower);
     if (i == 0) continue;
     motion.length += space_.distance(motion.configurations[static_cast<std::size_t>(i) - 1],
                                      motion.configurations.back());
@@ -411,7 +440,15 @@ void SegmentMover::sample(const PathTiming& timing, double slower, int steps,
     }
     moved.push_back(!within);
   }
-  take_slopes(moved, motion);
+  if (!bears_on()) {
+    take_slopes(moved, motion);
+    return;
+  }
+  const double step_s = motion.duration_s / steps;
+  rest_spline(space_.robot(), step_s, motion.configurations, motion.slopes);
+  for (std::size_t i = 1; i + 1 < motion.configurations.size(); ++i) {
+    keep_within_limits(space_.robot(), motion.configurations[i], step_s, motion.slopes[i]);
+  }
 }
 
 /// Of what was moved after it was timed, by the rule of the curve: of wheels in contact, and of
@@ -460,6 +497,7 @@ void SegmentMover::keep_limits(SegmentMotion& motion) {
   const double slower = std::sqrt(most * (1.0 + kRounding));
   motion.duration_s *= slower;
   for (Eigen::VectorXd& slope : motion.slopes) slope /= slower;
+  for (double& speed : motion.speed) speed /= slower;
 }
 
 /// A wheel in contact stands still: what its carrier pitches, its joint turns back.

@@ -32,6 +32,9 @@ namespace locograph {
 struct SegmentPace {
   double slower = 1.0;  ///< the motion takes so many times as long, at least 1
   bool finer = false;   ///< the spline keeps closer to the path
+  /// The most that it goes at places equally far apart along the path, in lengths of the path per
+  /// second, linear between them; empty: as fast as limits allow.
+  std::vector<double> most_speed = {};
 };
 
 struct SegmentStatistics : PlannerStatistics {  // of all planners that tried
@@ -46,6 +49,8 @@ struct SegmentMotion : PlannerAnswer {
   Eigen::VectorXd to;                           ///< where the motion ends
   std::vector<Eigen::VectorXd> configurations;  ///< equispaced in time, both ends included
   std::vector<Eigen::VectorXd> slopes;          ///< of each, as Motion::slopes; zero at both ends
+  /// Of each configuration the part of the path before it, and how fast that grows [1/s].
+  std::vector<double> share, speed;
   double duration_s = 0.0;
   double length = 0.0, straight = 0.0;  ///< SegmentSpace::distance, of the path and of its ends
   /// How far what swings from one place to another gets from all else, at most 0.1 m; of several
@@ -62,8 +67,8 @@ class SegmentMover {
   /// Throws Error for unknown names of planners, and as SegmentSpace does.
   SegmentMover(const Task& task, const MotionOptions& options);
 
-  /// bearing: the contacts that are held, with their areas. first, end: numbers of the segment
-  /// planners that are tried.
+  /// bearing: the contacts that are held, with their areas, as planners count on them. first, end:
+  /// numbers of the segment planners that are tried.
   SegmentMotion move(const Segment& segment, std::span<const BearingContact> bearing,
                      std::size_t first, std::size_t end, const SegmentOptions& options);
   /// The same path at another pace; without success there is no timing.
@@ -101,8 +106,10 @@ class SegmentMover {
   /// Gives a motion with waypoints all the rest.
   void shape(std::span<const BearingContact> bearing, const SegmentPace& pace,
              SegmentMotion& motion);
-  bool time(const PathSpline& path, std::span<const BearingContact> bearing, double slower,
-            SegmentMotion& motion);
+  bool time(const PathSpline& path, std::span<const BearingContact> bearing,
+            const SegmentPace& pace, SegmentMotion& motion);
+  /// Forces have to follow the motion: its accelerations do not jump.
+  bool bears_on() const { return task_.margin.dwell_s > 0.0; }
   void sample(const PathTiming& timing, double slower, int steps, SegmentMotion& motion);
   std::optional<double> clear_of(const SegmentMotion& motion);
   void hold_wheels(std::vector<Eigen::VectorXd>& configurations);

@@ -26,9 +26,10 @@ constexpr double kAlmost = 0.006;  // m, rad
 /// Of what swings, above what it leaves: rows that hold to kRowsTolerance keep it out of it.
 constexpr double kOff_m = 2e-4;
 
-TransitionOptions margins_between() {
+TransitionOptions margins_between(const Segment& segment) {
   TransitionOptions options;
-  options.joint_margin_rad = kRowsTolerance + kJointRoom_rad;
+  options.joint_margin_rad =
+      std::max(kRowsTolerance + kJointRoom_rad, segment.joint_margin_rad - kJointRoom_rad);
   for (double* margin :
        {&options.self_margin_m, &options.surface_margin_m, &options.obstacle_margin_m,
         &options.border_margin_m, &options.balance_margin_m, &options.torque_margin}) {
@@ -190,7 +191,7 @@ void SegmentSpace::set_rows(bool swinging, const std::vector<bool>& which) {
   problem.torques = segment_->torques;
   problem.near = near;
   problem.near_m = swinging ? kOff_m : 0.25 * lift_off_m_;
-  rows_.set_problem(problem, margins_between());
+  rows_.set_problem(problem, margins_between(*segment_));
 }
 
 const TransitionRows& SegmentSpace::rows_at(const Eigen::VectorXd& q, bool swinging) {
@@ -282,6 +283,7 @@ bool SegmentSpace::solve(const Eigen::VectorXd& start, std::span<const Contact> 
   problem.near = near;
   TransitionOptions options;
   options.max_iterations = 25;
+  options.joint_margin_rad = std::max(options.joint_margin_rad, segment_->joint_margin_rad);
   TransitionResult result = solver_.solve(problem, options);
   q = std::move(result.configuration);
   if (result.success()) return true;

@@ -32,9 +32,11 @@ struct Segment {
   std::vector<Contact> held;               ///< closed and bearing all along, as they touched down
   const BalanceRegion* balance = nullptr;  ///< of those; null: not asked for
   TorqueProgramme* torques = nullptr;      ///< of those; null: not limited
-  std::vector<Contact> left;     ///< of the stance before, closed at `from`, where they are then
-  std::vector<Contact> reached;  ///< of the stance after, closed at `to`, not held
-  Eigen::VectorXd from, to;      ///< feasible for `held`; without `from` balls are at their places
+  std::vector<Contact> left;      ///< of the stance before, closed at `from`, where they are then
+  std::vector<Contact> reached;   ///< of the stance after, closed at `to`, not held
+  Eigen::VectorXd from, to;       ///< feasible for `held`; without `from` balls are at their places
+  double joint_margin_rad = 0.0;  ///< to joint limits, where more than by default
+  double torque_share = 1.0;      ///< of efforts, that timing uses
 };
 
 class SegmentSpace {

@@ -35,6 +35,7 @@ std::vector<int> add_task(Graph& graph, const Task& task, const std::vector<Stan
   format->stances_only = kind.stances_only;
   format->incomplete = kind.incomplete;
   format->moves = task.moves;
+  format->margin = task.margin;
   graph.parameters().replace(kPlanNumber, format);
   return numbers;
 }

@@ -1,4 +1,5 @@
 #include <locograph/check/limits.h>
+#include <locograph/planners/balance/margin_contacts.h>
 #include <locograph/planners/offline/stance/stance_space.h>
 #include <locograph/planners/scenario/bar_place.h>
 #include <locograph/robots/contact_kinds.h>
@@ -101,6 +102,14 @@ StanceSpace::StanceSpace(const Task& task, const StancePlannerOptions& options)
     require_sound_effector(*task.robot->robot, effector);
     reach_m_.push_back(options.reach * chain_length(*task.robot->robot, effector));
   }
+  if (task.margin == ExecutionMargin::none()) return;
+  const auto give = [&](const Stance& stance) {
+    const Footing given = footing(stance);
+    given_shares_[given] =
+        share_of_margin(state_.robot().total_mass(), bearing_contacts(given), task.margin);
+  };
+  give(task.start);
+  for (const Stance& goal : task.goals) give(goal);
 }
 
 int StanceSpace::intern(int effector, const Contact& contact) {
@@ -369,6 +378,17 @@ std::vector<BearingContact> StanceSpace::bearing_contacts(const Footing& footing
   return bearing;
 }
 
+double StanceSpace::margin_share(const Footing& footing) const {
+  const auto given = given_shares_.find(footing);
+  return given == given_shares_.end() ? 1.0 : given->second;
+}
+
+std::vector<BearingContact> StanceSpace::counted_contacts(const Footing& footing) const {
+  const double weight_N = state_.robot().total_mass() * standard_gravity().norm();
+  return with_margin(bearing_contacts(footing), task_.margin.scaled(margin_share(footing)),
+                     weight_N);
+}
+
 TransitionTask StanceSpace::task_of(const Footing& from, const Footing& to,
                                     const Eigen::VectorXd& start, std::uint64_t seed,
                                     const TransitionOptions& options,
@@ -377,12 +397,14 @@ TransitionTask StanceSpace::task_of(const Footing& from, const Footing& to,
   TransitionTask task{.larger = adds ? to : from, .smaller = adds ? from : to};
   task.closed = stance(task.larger).contacts;
   task.held = stance(task.smaller).contacts;
-  task.bearing = bearing_contacts(task.smaller);
+  task.bearing = counted_contacts(task.smaller);
+  if (task_.margin.least_force > 0.0) task.all_bearing = counted_contacts(task.larger);
   task.start = start;
   task.seed = seed;
   task.options = options;
   task.opens = !adds;
   if (before != nullptr && has_balls(from)) task.before = *before;
+  task.options.joint_margin_rad = std::max(options.joint_margin_rad, task_.margin.joint_rad);
   return task;
 }
 

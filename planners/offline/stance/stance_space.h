@@ -60,6 +60,11 @@ class StanceSpace {
   Stance stance(const Footing& footing) const;
   /// Its contacts with what they can bear where they are.
   std::vector<BearingContact> bearing_contacts(const Footing& footing) const;
+  /// What part of the task's execution margin is asked of a footing: all of it, of the start and
+  /// the goals, which are given, as much as leaves room for the centre of mass.
+  double margin_share(const Footing& footing) const;
+  /// The same, less that part of the margin.
+  std::vector<BearingContact> counted_contacts(const Footing& footing) const;
 
   /// Where the end effector's point is in a configuration [m, world].
   Eigen::Vector3d position(int effector, const Eigen::VectorXd& q);
@@ -157,7 +162,8 @@ class StanceSpace {
   std::map<std::vector<long long>, int> numbers_;
   std::unordered_set<Footing, FootingHash> refused_;  ///< transitions, as joined() gives them
   std::map<std::pair<int, std::string>, int> failures_;
-  int began_ = 0;  ///< transitions tried before this goal
+  std::map<Footing, double> given_shares_;  ///< of the execution margin, of start and goals
+  int began_ = 0;                           ///< transitions tried before this goal
 };
 
 }  // namespace locograph

@@ -71,11 +71,17 @@ std::string find_start(const Judge& judge, const Eigen::VectorXd& given, const D
   const CheckReport as_given = judge.check(given, task.start, task.check);
   if (as_given.feasible) return "";
   const StancePlannerOptions options;
-  StanceSpace space(task, options);
+  Task bare = task;
+  bare.margin = ExecutionMargin::none();
+  StanceSpace keeping(task, options), giving_up(bare, options);
   std::string reason;
-  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+  // A start that has no margin is taken all the same.
+  const int with = task.margin == bare.margin ? 0 : kMostAttempts;
+  for (int attempt = 0; attempt < with + kMostAttempts; ++attempt) {
     if (attempt > 0) deadline.require();
-    const StanceSpace::Attempt found = space.stand(task.start, given, attempt);
+    const StanceSpace::Attempt found = attempt < with
+                                           ? keeping.stand(task.start, given, attempt)
+                                           : giving_up.stand(task.start, given, attempt - with);
     if (!found.found) {
       if (reason.empty()) reason = found.reason;
       continue;

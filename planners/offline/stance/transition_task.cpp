@@ -43,7 +43,18 @@ TaskSolver::TaskSolver(const Task& task, BalanceRegions& regions)
     : task_(task),
       regions_(regions),
       solver_(task.robot, task.world->world()),
-      state_(*task.robot->robot) {}
+      state_(*task.robot->robot),
+      preferred_(task.start_configuration) {
+  // A posture that tends to a limit would always be pulled out of the margin.
+  const double margin = task.margin.joint_rad;
+  const Robot& robot = state_.robot();
+  for (int i = 0; margin > 0.0 && preferred_.size() > 0 && i < robot.active_joint_count(); ++i) {
+    const Joint& joint = robot.active_joint(i);
+    double& x = preferred_[robot.base_configuration_size() + i];
+    if (joint.upper - joint.lower <= 2.0 * margin) continue;
+    x = std::clamp(x, joint.lower + margin, joint.upper - margin);
+  }
+}
 
 TransitionResult TaskSolver::solve(const TransitionTask& task) {
   TransitionProblem problem;
@@ -51,7 +62,7 @@ TransitionResult TaskSolver::solve(const TransitionTask& task) {
   problem.held = task.held;
   problem.balance = &regions_.of(task.smaller, task.bearing);
   problem.start = task.start;
-  problem.preferred = task.preferred.size() > 0 ? task.preferred : task_.start_configuration;
+  problem.preferred = task.preferred.size() > 0 ? task.preferred : preferred_;
   problem.seed = task.seed;
   HeldBalls balls;
   if (task.before.size() > 0) {
@@ -63,36 +74,55 @@ TransitionResult TaskSolver::solve(const TransitionTask& task) {
     problem.rolled_from = balls;
   }
   TransitionResult result = solver_.solve(problem, task.options);
-  if (result.success() && !balls.empty()) balance_where_rolled(task, problem, result);
+  if (result.success() && (!balls.empty() || !task.all_bearing.empty())) {
+    balance_all(task, !balls.empty(), problem, result);
+  }
   if (result.success() && task_.check.enforce_torque_limits) ease_torques(task, problem, result);
   return result;
 }
 
-/// The polygon is that of the touch-down places, worked out once for all: where it will not do,
-/// that of the places rolled to takes its place.
-void TaskSolver::balance_where_rolled(const TransitionTask& task, TransitionProblem& problem,
-                                      TransitionResult& result) {
+/// The polygons are those of the touch-down places, worked out once for all: where they will not do,
+/// those of the places rolled to take their place.
+void TaskSolver::balance_all(const TransitionTask& task, bool rolls, TransitionProblem& problem,
+                             TransitionResult& result) {
   const double mass_kg = state_.robot().total_mass();
   for (int round = 0;; ++round) {
     state_.update(result.configuration.data());
-    const std::vector<BearingContact> bearing = rolled_to(state_, task.bearing);
     const Eigen::Vector2d com = state_.center_of_mass().head<2>();
-    if (balances(mass_kg, bearing, kRegionMargin, com)) return;
+    const std::vector<BearingContact> smaller = rolled_to(state_, task.bearing);
+    const std::vector<BearingContact> larger = rolled_to(state_, task.all_bearing);
+    if ((!rolls || balances(mass_kg, smaller, kRegionMargin, com)) &&
+        (larger.empty() || balances(mass_kg, larger, kRegionMargin, com))) {
+      return;
+    }
     if (round == kMostRolled) break;
-    rolled_region_ = balance_region(mass_kg, bearing, kRegionMargin, kRolledResolution_m);
-    problem.balance = &rolled_region_;
+    const auto region = [&](const Footing& footing, std::span<const BearingContact> contacts) {
+      return rolls ? balance_region(mass_kg, contacts, kRegionMargin, kRolledResolution_m)
+                   : regions_.of(footing, contacts);
+    };
+    region_ = region(task.smaller, smaller);
+    if (!larger.empty() && !region_.empty()) {
+      BalanceRegion of_both = region(task.larger, larger);
+      if (!of_both.empty()) {
+        of_both.sides.insert(of_both.sides.end(), region_.sides.begin(), region_.sides.end());
+        of_both.width_m = std::min(of_both.width_m, region_.width_m);
+      }
+      region_ = std::move(of_both);
+    }
+    problem.balance = &region_;
     problem.start = result.configuration;
     result = solver_.solve(problem, task.options);
     if (!result.success()) return;
   }
   result.status = PlannerStatus::kNotFound;
   result.failure = TransitionFailure::kBalance;
-  result.reason = "the centre of mass outside what the contacts balance where they rolled to";
+  result.reason = "the centre of mass outside what the contacts balance";
 }
 
 void TaskSolver::ease_torques(const TransitionTask& task, TransitionProblem& problem,
                               TransitionResult& result) {
-  TorqueProgramme torques(state_.robot(), task.bearing, task_.check.effort_scale, kRegionMargin);
+  TorqueProgramme torques(state_.robot(), task.bearing,
+                          task_.check.effort_scale * task_.margin.torque, kRegionMargin);
   state_.update(result.configuration.data());
   Eigen::VectorXd gradient;
   if (torques.solve(state_, gradient) <= 1.0 - task.options.torque_margin) return;

@@ -23,6 +23,9 @@ struct TransitionTask {
   std::vector<Contact> closed = {};          ///< of the larger one
   std::vector<Contact> held = {};            ///< of the smaller one
   std::vector<BearingContact> bearing = {};  ///< of the smaller one
+  /// Of the larger one, where they have to bear as well, each its least force; empty: they have
+  /// not.
+  std::vector<BearingContact> all_bearing = {};
   Eigen::VectorXd start = {};
   Eigen::VectorXd preferred = {};  ///< empty: where the task starts
   /// The configuration before, from which the balls roll that are held from there on: those of the
@@ -58,8 +61,10 @@ class TaskSolver {
   TransitionResult solve(const TransitionTask& task);
 
  private:
-  void balance_where_rolled(const TransitionTask& task, TransitionProblem& problem,
-                            TransitionResult& result);
+  /// Solves again where balls have rolled to, and for the larger stance, where it has to balance as
+  /// well.
+  void balance_all(const TransitionTask& task, bool rolls, TransitionProblem& problem,
+                   TransitionResult& result);
   void ease_torques(const TransitionTask& task, TransitionProblem& problem,
                     TransitionResult& result);
 
@@ -67,7 +72,8 @@ class TaskSolver {
   BalanceRegions& regions_;
   TransitionSolver solver_;
   RobotState state_;
-  BalanceRegion rolled_region_;
+  BalanceRegion region_;         ///< of balance_all()
+  Eigen::VectorXd preferred_;  ///< where the task starts, within the joint margin
 };
 
 }  // namespace locograph

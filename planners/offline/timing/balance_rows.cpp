@@ -28,7 +28,8 @@ struct Rays {
   Eigen::Matrix<double, 6, Eigen::Dynamic> at_contact;  ///< the same about the contact's position
   std::vector<int> contact;
   std::vector<double> lower, upper;
-  std::vector<double> most;  ///< by contact: sum of its rays; negative: none
+  std::vector<double> least;  ///< by contact: sum of its rays; 0: none
+  std::vector<double> most;   ///< likewise; negative: none
 
   Rays(std::span<const BearingContact> bearing, const Eigen::Vector3d& origin, double weight_N) {
     std::vector<BearingRay> rays;
@@ -40,6 +41,7 @@ struct Rays {
         lower.push_back(ray.lower);
         upper.push_back(ray.upper);
       }
+      least.push_back(least_of_rays(one, weight_N));
       most.push_back(most_of_rays(one.contact, kOfPyramids, weight_N));
     }
     wrenches.resize(6, static_cast<Eigen::Index>(rays.size()));
@@ -57,7 +59,7 @@ struct Rays {
   /// The most that y . (what forces do) can be; pull: y . column of each ray.
   double most_along(const Eigen::VectorXd& pull) const {
     double result = 0.0;
-    std::vector<double> best(most.size(), 0.0);
+    std::vector<double> best(most.size(), -std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < contact.size(); ++i) {
       const double value = pull[static_cast<Eigen::Index>(i)];
       const auto c = static_cast<std::size_t>(contact[i]);
@@ -69,11 +71,12 @@ struct Rays {
     }
     for (std::size_t c = 0; c < most.size(); ++c) {
       if (best[c] > 1e-9) result += most[c] * best[c];
+      if (best[c] < 0.0 && least[c] > 0.0) result += least[c] * best[c];
     }
     return result;
   }
 
-  /// Each contact pressed a little, no torques of friction.
+  /// Each contact pressed a little, or as much as it has to be, no torques of friction.
   Eigen::VectorXd gentle() const {
     Eigen::VectorXd result = Eigen::VectorXd::Zero(wrenches.cols());
     for (std::size_t i = 0; i < contact.size(); ++i) {
@@ -81,7 +84,7 @@ struct Rays {
       if (most[c] < 0.0) continue;
       const auto many = std::count(contact.begin(), contact.end(), contact[i]);
       result[static_cast<Eigen::Index>(i)] =
-          0.5 * std::min(1.0, most[c]) / static_cast<double>(many);
+          std::max(least[c], 0.5 * std::min(1.0, most[c])) / static_cast<double>(many);
     }
     return result;
   }
@@ -303,7 +306,7 @@ class BalanceRows::Work {
     within.tail(joints).setOnes();
     programme_ = std::make_unique<ReachProgramme>(
         columns, within, rays.gentle(),
-        ReachProgramme::Bounds{rays.contact, rays.lower, rays.upper, rays.most});
+        ReachProgramme::Bounds{rays.contact, rays.lower, rays.upper, rays.least, rays.most});
   }
 
   TimingRowsAt interpolated(const std::vector<Asked>& asked) const {

@@ -219,7 +219,8 @@ TimedPoint PathTiming::at(double time_s) const {
   path_.at(now.s, point);
   const double speed = now.speed / slower_;
   return {point.configuration, speed * point.first,
-          now.acceleration / (slower_ * slower_) * point.first + speed * speed * point.second};
+          now.acceleration / (slower_ * slower_) * point.first + speed * speed * point.second,
+          now.s, speed};
 }
 
 TimedPath PathTiming::sampled(double step_s) const {

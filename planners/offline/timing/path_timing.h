@@ -44,6 +44,7 @@ struct TimedPath {
 
 struct TimedPoint {
   Eigen::VectorXd configuration, velocity, acceleration;
+  double s = 0.0, speed = 0.0;  ///< on the path; ds/dt
 };
 
 /// The path that PathTiming makes of waypoints.

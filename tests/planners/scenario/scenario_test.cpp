@@ -124,6 +124,16 @@ TEST(Scenario, ADriveWithSurfacesStandsOnThoseOnly) {
   EXPECT_EQ(world.surfaces[0].name, "bridge");
 }
 
+TEST(Scenario, AnExecutionMarginSaysWhatIsNotTheDefault) {
+  EXPECT_EQ(scenario_of(drive_in("<environment/>")).margin, ExecutionMargin());
+  const Scenario scenario = scenario_of(
+      drive_in("<environment/><execution friction=\"0.8\" least_force=\"0\" dwell=\"0.25\"/>"));
+  EXPECT_EQ(scenario.margin.friction, 0.8);
+  EXPECT_EQ(scenario.margin.least_force, 0.0);
+  EXPECT_EQ(scenario.margin.dwell_s, 0.25);
+  EXPECT_EQ(scenario.margin.area, ExecutionMargin().area);
+}
+
 class BadScenario : public testing::TestWithParam<Mistake> {};
 
 const std::string kGood =
@@ -175,6 +185,21 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"UnknownLimit", "<environment/>", "<limits jerk=\"1\"/>", 6, "'jerk'"},
         Mistake{"TorqueLimitsThatAreNone", "<environment/>", "<planner torque_limits=\"no\"/>", 6,
                 "torque_limits is 'no'"},
+        Mistake{"ExecutionMarginBeyondOne", "<environment/>", "<execution friction=\"1.5\"/>", 6,
+                "friction=\"1.5\", expected a share that is used, above 0, at most 1"},
+        Mistake{"ExecutionMarginOfNothing", "<environment/>", "<execution area=\"0\"/>", 6, "area"},
+        Mistake{"NegativeTorqueShare", "<environment/>", "<execution torque=\"-0.9\"/>", 6,
+                "torque"},
+        Mistake{"NegativeJointMargin", "<environment/>", "<execution joint=\"-0.02\"/>", 6,
+                "joint"},
+        Mistake{"LeastForceOfTheWholeWeight", "<environment/>", "<execution least_force=\"1\"/>", 6,
+                "least_force"},
+        Mistake{"DwellWithoutEnd", "<environment/>", "<execution dwell=\"1e9\"/>", 6,
+                "expected 0 to 60 s"},
+        Mistake{"NegativeDwell", "<environment/>", "<execution dwell=\"-0.5\"/>", 6, "dwell"},
+        Mistake{"UnknownMargin", "<environment/>", "<execution mass=\"0.1\"/>", 6, "'mass'"},
+        Mistake{"TwoMargins", "<environment/>", "<execution/><execution/>", 6,
+                "a second <execution>"},
         Mistake{"SomethingUnknownInTheEnvironment", "<environment/>",
                 "<environment><pond name=\"p\"/></environment>", 6, "unknown element <pond>"},
         Mistake{"UnknownAttributeOfAWheel", "radius=", "width=\"1\" radius=", 4, "'width'"},

@@ -1,0 +1,28 @@
+#pragma once
+/// What plans leave unused, as commands tell it.
+///
+///     json["execution_margin"] = margin_json(scenario.margin);
+///     text += margin_text(scenario.margin);
+
+#include <locograph/apps/output.h>
+#include <locograph/plugins/configuration/execution_margin.h>
+
+namespace locograph {
+
+inline Json margin_json(const ExecutionMargin& margin) {
+  return {{"friction", margin.friction},       {"area", margin.area},
+          {"torque", margin.torque},           {"joint_rad", margin.joint_rad},
+          {"least_force", margin.least_force}, {"dwell_s", margin.dwell_s}};
+}
+
+/// In one line.
+inline std::string margin_text(const ExecutionMargin& margin) {
+  if (margin == ExecutionMargin::none()) return "no execution margin\n";
+  return "execution margin: friction " + short_number(margin.friction) + ", areas " +
+         short_number(margin.area) + ", torques " + short_number(margin.torque) + ", " +
+         short_number(margin.joint_rad) + " rad to joint limits, each contact pressed by " +
+         short_number(margin.least_force) + " of the weight, dwell " +
+         short_number(margin.dwell_s) + " s\n";
+}
+
+}  // namespace locograph

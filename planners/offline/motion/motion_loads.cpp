@@ -1,0 +1,64 @@
+#include <locograph/check/motion_curve.h>
+#include <locograph/planners/balance/least_wrenches.h>
+#include <locograph/planners/offline/motion/motion_loads.h>
+#include <locograph/robots/statics.h>
+
+#include <algorithm>
+
+namespace locograph {
+
+MotionLoads::MotionLoads(const Robot& robot)
+    : robot_(robot),
+      state_(robot),
+      dynamics_(robot),
+      still_(Eigen::VectorXd::Zero(robot.tangent_size())),
+      asked_(robot.tangent_size()) {}
+
+std::optional<SegmentLoads> MotionLoads::along(std::span<const BearingContact> contacts,
+                                               double effort_scale, const Motion& motion) {
+  LeastWrenches least(robot_, contacts, effort_scale);
+  const MotionCurve curve(robot_, motion);
+  const int last = static_cast<int>(motion.configurations.size()) - 1;
+  SegmentLoads loads;
+  CurvePoint before{{}, still_, still_}, after = before;
+  for (int i = 0; i <= last; ++i) {
+    if (i > 0 && i < last) {
+      curve.step(i - 1).at(1.0, before);
+      curve.step(i).at(0.0, after);
+      after.acceleration = 0.5 * (after.acceleration + before.acceleration);
+    } else {
+      after.velocity = after.acceleration = still_;
+    }
+    state_.update(motion.configurations[static_cast<std::size_t>(i)].data());
+    dynamics_.inverse_dynamics(state_, after.velocity, after.acceleration, {}, asked_);
+    if (!least.solve(state_, asked_)) return std::nullopt;
+    loads.wrenches.push_back(least.wrenches());
+    if (i == 0) continue;
+    const auto k = static_cast<std::size_t>(i);
+    const double h = motion.time_s[k] - motion.time_s[k - 1];
+    loads.rates.push_back(change(loads.wrenches[k - 1], loads.wrenches[k]) / h);
+    loads.fastest = std::max(loads.fastest, loads.rates.back());
+  }
+  return loads;
+}
+
+std::optional<StanceWrenches> MotionLoads::at_rest(std::span<const BearingContact> contacts,
+                                                   double effort_scale,
+                                                   const Eigen::VectorXd& configuration) {
+  LeastWrenches least(robot_, contacts, effort_scale);
+  state_.update(configuration.data());
+  gravity_torques(state_, standard_gravity(), asked_);
+  if (!least.solve(state_, asked_)) return std::nullopt;
+  return least.wrenches();
+}
+
+double MotionLoads::change(const StanceWrenches& from, const StanceWrenches& to) const {
+  const double weight_N = robot_.total_mass() * standard_gravity().norm();
+  double most = 0.0;
+  for (std::size_t c = 0; c < from.size(); ++c) {
+    most = std::max(most, (to[c].head<3>() - from[c].head<3>()).norm() / weight_N);
+  }
+  return most;
+}
+
+}  // namespace locograph

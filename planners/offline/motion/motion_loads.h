@@ -1,0 +1,53 @@
+#pragma once
+/// What contacts bear along a segment and at rest: the least wrenches (balance/least_wrenches.h),
+/// and how fast they change.
+///
+///     MotionLoads loads(robot);
+///     const std::optional<SegmentLoads> found = loads.along(counted, effort_scale,
+///     as_motion(way)); if (found && found->fastest <= kFastestLoad) use(found->wrenches);
+///
+/// contacts: of one stance, less the execution margin (balance/margin_contacts.h). effort_scale: of
+/// the URDF's efforts; 0: no torque limits. Nothing: no wrenches hold.
+
+#include <locograph/check/motion.h>
+#include <locograph/robots/bearing_rays.h>
+#include <locograph/robots/dynamics.h>
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace locograph {
+
+/// Of the force of a contact, in weights of the robot per second: what the judge allows, less a
+/// little.
+inline constexpr double kFastestLoad = 2.45;
+
+struct SegmentLoads {
+  std::vector<StanceWrenches> wrenches;  ///< of each configuration
+  std::vector<double> rates;             ///< from each to the next, change of the force that
+                                         ///< changes most [weights per second]
+  double fastest = 0.0;                  ///< change of a contact's force [weights per second]
+};
+
+class MotionLoads {
+ public:
+  explicit MotionLoads(const Robot& robot);
+
+  /// From rest to rest, in one stance. Where accelerations jump their mean counts.
+  std::optional<SegmentLoads> along(std::span<const BearingContact> contacts, double effort_scale,
+                                    const Motion& motion);
+  std::optional<StanceWrenches> at_rest(std::span<const BearingContact> contacts,
+                                        double effort_scale, const Eigen::VectorXd& configuration);
+  /// The largest change of a contact's force [weights].
+  double change(const StanceWrenches& from, const StanceWrenches& to) const;
+
+ private:
+  const Robot& robot_;
+  RobotState state_;
+  RobotDynamics dynamics_;
+  Eigen::VectorXd still_, asked_;
+};
+
+}  // namespace locograph
