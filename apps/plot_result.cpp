@@ -191,9 +191,9 @@ void add_robustness(PlotScript& plot, const Json& robustness) {
     if (rows.empty()) continue;
     const bool push = std::string(name) == "push_N";
     plot.data(name, rows);
-    command += std::string(command.empty() ? "plot $" : ", $") + name + " with lines linewidth 2" +
-               (push ? " dashtype 2 axes x1y2" : "") + " linecolor " + color + " title " +
-               PlotScript::label(push ? "push [N]" : name);
+    command += std::string(command.empty() ? "plot $" : ", $") + name + (push ? " axes x1y2" : "") +
+               " with lines linewidth 2" + (push ? " dashtype 2" : "") + " linecolor " + color +
+               " title " + PlotScript::label(push ? "push, N (right)" : name);
   }
   if (command.empty()) return;
   plot.line("set ytics auto");
@@ -226,7 +226,7 @@ PlotScript constraints(const Json& result) {
   if (panels.empty()) throw Error("no constraints with numbers", "the JSON of locograph check");
   const Json robustness = result.value("robustness", Json());
   const bool has_robustness = robustness.is_object() && robustness.contains("by_stance");
-  const int bar_px = 30, panel_px = 62, head_px = 64, robustness_px = has_robustness ? 260 : 0;
+  const int bar_px = 30, panel_px = 62, head_px = 64, robustness_px = has_robustness ? 300 : 0;
   const int height = head_px + static_cast<int>(panels.size()) * panel_px +
                      static_cast<int>(rows) * bar_px + robustness_px;
   PlotScript plot(900, height);
@@ -247,7 +247,7 @@ PlotScript constraints(const Json& result) {
     top = bottom - panel_px;
   }
   if (has_robustness) {
-    plot.line("set tmargin screen " + short_number(top / height));
+    plot.line("set tmargin screen " + short_number((top - 24.0) / height));
     plot.line("set bmargin screen " + short_number(60.0 / height));
     add_robustness(plot, robustness);
   }

@@ -12,7 +12,7 @@
 /// axis a, with n at the angle phi about it and e = a x n, they are coordinates along the axis and
 /// along the arc,
 ///
-///     z' + r w . e   and   (R + r) phi' - r w . a
+///   z' + r w . e   and   (R + r) phi' - r w . a
 ///
 /// and their integrals are what has slipped. A step is exact where the link turns at a constant
 /// rate about one axis and phi at a constant rate. Along a curve the error of the sum over steps is

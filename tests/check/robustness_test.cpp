@@ -13,7 +13,7 @@
 namespace locograph {
 namespace {
 
-constexpr double kWeight_N = 98.1, kBisected = 1.0 / 1024.0;
+constexpr double kBlock_N = 98.1, kBisected = 1.0 / 1024.0;
 
 /// A block of 10 kg whose centre of mass is 0.4 m high, on a sole and, where it has more, on
 /// another one that is wider.
@@ -62,8 +62,8 @@ TEST_F(Falling, IsToldByTheLeastChangeThatDoesNotHold) {
   ASSERT_TRUE(report.robustness);
   const Robustness& least = report.robustness->least;
   EXPECT_NEAR(least.area.value(), 0.4, kBisected);  // of 0.05 m, 0.03 are needed
-  EXPECT_NEAR(least.push_N.value(), 0.02 / 0.4 * kWeight_N, kBisected * kWeight_N);
-  EXPECT_NEAR(least.mass.value(), 120.0 / kWeight_N - 1.0, kBisected);
+  EXPECT_NEAR(least.push_N.value(), 0.02 / 0.4 * kBlock_N, kBisected * kBlock_N);
+  EXPECT_NEAR(least.mass.value(), 120.0 / kBlock_N - 1.0, kBisected);
   EXPECT_NEAR(least.friction.value(), 0.999, kBisected);  // it stands on the level
   EXPECT_FALSE(least.torque) << "it has no joints";
 }
@@ -97,7 +97,7 @@ TEST_F(Falling, IsToldByStanceAndTheLeastOfAll) {
   EXPECT_EQ(all.by_stance[1].from_s, 1.0);
   EXPECT_EQ(all.by_stance[1].until_s, 2.0);
   // Along x there are 0.02 m on one side.
-  EXPECT_NEAR(all.by_stance[1].least.push_N.value(), 0.02 / 0.4 * kWeight_N, kBisected * kWeight_N);
+  EXPECT_NEAR(all.by_stance[1].least.push_N.value(), 0.02 / 0.4 * kBlock_N, kBisected * kBlock_N);
   EXPECT_EQ(all.least.push_N.value(),
             std::min(all.by_stance[0].least.push_N, all.by_stance[1].least.push_N).value());
   EXPECT_EQ(all.by_stance[0].stance, 0);
