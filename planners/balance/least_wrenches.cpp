@@ -1,5 +1,6 @@
 #include <locograph/common/error.h>
 #include <locograph/planners/balance/least_wrenches.h>
+#include <locograph/planners/balance/margin_contacts.h>
 #include <locograph/robots/contact_kinds.h>
 #include <locograph/robots/rolling_ball.h>
 #include <locograph/robots/statics.h>
@@ -137,6 +138,21 @@ bool LeastWrenches::solve(const RobotState& state, const Eigen::VectorXd& asked)
     wrenches_[c].tail<3>() = (axes.transpose() * wrenches_[c].tail<3>()).eval();
   }
   return true;
+}
+
+std::optional<StanceWrenches> wrenches_at_rest(const RobotState& state,
+                                               std::span<const BearingContact> contacts,
+                                               const ExecutionMargin& margin, double effort_scale) {
+  const Robot& robot = state.robot();
+  const double weight_N = robot.total_mass() * standard_gravity().norm();
+  Eigen::VectorXd asked(robot.tangent_size());
+  gravity_torques(state, standard_gravity(), asked);
+  for (const double part : kPartsOfMargin) {
+    const ExecutionMargin less = margin.scaled(part);
+    LeastWrenches least(robot, with_margin(contacts, less, weight_N), effort_scale * less.torque);
+    if (least.solve(state, asked)) return least.wrenches();
+  }
+  return std::nullopt;
 }
 
 }  // namespace locograph

@@ -16,11 +16,13 @@
 /// Solved by solvers/dense_qp.h, from the active rows of the last solve. solve() does not allocate.
 /// Thread-safety: one thread at a time. The robot must outlive it.
 
+#include <locograph/plugins/configuration/execution_margin.h>
 #include <locograph/robots/bearing_rays.h>
 #include <locograph/robots/robot_state.h>
 #include <locograph/solvers/dense_qp.h>
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -61,5 +63,11 @@ class LeastWrenches {
   Eigen::VectorXd torques_;
   StanceWrenches wrenches_;
 };
+
+/// At rest, with as much of the margin as there is. contacts: without a margin; effort_scale as
+/// above, the margin's share of torques is taken of it. Nothing: none hold.
+std::optional<StanceWrenches> wrenches_at_rest(const RobotState& state,
+                                               std::span<const BearingContact> contacts,
+                                               const ExecutionMargin& margin, double effort_scale);
 
 }  // namespace locograph

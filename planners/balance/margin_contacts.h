@@ -10,6 +10,7 @@
 #include <locograph/robots/bearing_rays.h>
 
 #include <Eigen/Core>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,9 @@ namespace locograph {
 /// Without a margin, the same to the last bit.
 std::vector<BearingContact> with_margin(std::span<const BearingContact> contacts,
                                         const ExecutionMargin& margin, double weight_N);
+
+/// Parts of a margin that are asked for one after the other where not all of it is there.
+inline constexpr std::array kPartsOfMargin = {1.0, 0.75, 0.5, 0.25, 0.0};
 
 /// What part of the margin contacts have that balance each of these centres of mass, 0 to 1, in
 /// steps of 1/64; 0 also where they do not balance one at all.

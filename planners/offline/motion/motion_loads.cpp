@@ -42,16 +42,6 @@ std::optional<SegmentLoads> MotionLoads::along(std::span<const BearingContact> c
   return loads;
 }
 
-std::optional<StanceWrenches> MotionLoads::at_rest(std::span<const BearingContact> contacts,
-                                                   double effort_scale,
-                                                   const Eigen::VectorXd& configuration) {
-  LeastWrenches least(robot_, contacts, effort_scale);
-  state_.update(configuration.data());
-  gravity_torques(state_, standard_gravity(), asked_);
-  if (!least.solve(state_, asked_)) return std::nullopt;
-  return least.wrenches();
-}
-
 double MotionLoads::change(const StanceWrenches& from, const StanceWrenches& to) const {
   const double weight_N = robot_.total_mass() * standard_gravity().norm();
   double most = 0.0;

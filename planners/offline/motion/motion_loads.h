@@ -1,5 +1,5 @@
 #pragma once
-/// What contacts bear along a segment and at rest: the least wrenches (balance/least_wrenches.h),
+/// What contacts bear along a segment: the least wrenches (balance/least_wrenches.h),
 /// and how fast they change.
 ///
 ///     MotionLoads loads(robot);
@@ -38,8 +38,6 @@ class MotionLoads {
   /// From rest to rest, in one stance. Where accelerations jump their mean counts.
   std::optional<SegmentLoads> along(std::span<const BearingContact> contacts, double effort_scale,
                                     const Motion& motion);
-  std::optional<StanceWrenches> at_rest(std::span<const BearingContact> contacts,
-                                        double effort_scale, const Eigen::VectorXd& configuration);
   /// The largest change of a contact's force [weights].
   double change(const StanceWrenches& from, const StanceWrenches& to) const;
 

@@ -15,7 +15,7 @@ struct MotionOptions {
   double step_s = 0.02;       ///< between configurations of the plan, at most
   double smoothing_s = 0.04;  ///< of accelerations, see path_timing.h
   /// The same where forces have to follow: with an execution margin that has a dwell.
-  double loaded_smoothing_s = 0.12;
+  double loaded_smoothing_s = 0.14;
   double lift_off_m = 0.035;  ///< along normals, before and after a swing
   /// Where the scenario has no limit of accelerations [rad/s^2, m/s^2 of prismatic joints].
   double joint_acceleration_rad_s2 = 10.0;

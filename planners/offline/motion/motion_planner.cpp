@@ -1,4 +1,5 @@
 #include <locograph/check/judge.h>
+#include <locograph/planners/balance/least_wrenches.h>
 #include <locograph/planners/balance/margin_contacts.h>
 #include <locograph/planners/offline/motion/motion_loads.h>
 #include <locograph/planners/offline/motion/motion_planner.h>
@@ -31,8 +32,6 @@ constexpr double kRoomAtEnds_m = 2e-3;
 constexpr int kMostEased = 12, kMostEasedInPlaces = 5;
 constexpr double kDwellStep_s = 0.1;
 const std::string kDwell = "dwell";  ///< in the place of a segment planner, at the end
-/// Of the execution margin, where a motion does not have all of it.
-constexpr std::array kSharesOfMargin = {1.0, 0.75, 0.5, 0.25, 0.0};
 
 /// What one segment came to be, to be looked up when the stance planner comes back to it.
 struct TriedSegment {
@@ -89,10 +88,7 @@ class MotionSearch {
         if (bears_on() && !load(*ways_[j])) return refuse(j);
       }
       assemble(way);
-      std::vector<StanceWrenches> found;
-      if (!bears_on()) found.resize(plan_.motion.configurations.size());
-      plan_.report = judged(plan_.motion, bears_on() ? nullptr : &found);
-      if (!bears_on()) plan_.motion.wrenches = std::move(found);
+      plan_.report = judged(plan_.motion);
       if (plan_.report.feasible) return 0;
       // At first those only that the report names: of each constraint one.
       std::vector<bool> named(count, whole);
@@ -238,16 +234,11 @@ class MotionSearch {
     return result;
   }
 
-  /// With what there is of the margin, down to none at all.
   StanceWrenches at_rest(const Footing& footing, const Eigen::VectorXd& q) {
     const std::vector<BearingContact> bearing = space_.bearing_contacts(footing);
-    for (const double share : kSharesOfMargin) {
-      const ExecutionMargin margin = task_.margin.scaled(share);
-      if (auto found = loads_.at_rest(counted(bearing, margin), effort_scale(margin), q)) {
-        return std::move(*found);
-      }
-    }
-    return StanceWrenches(bearing.size(), StanceWrenches::value_type::Zero());
+    state_.update(q.data());
+    return wrenches_at_rest(state_, bearing, task_.margin, effort_scale({.torque = 1.0}))
+        .value_or(StanceWrenches(bearing.size(), StanceWrenches::value_type::Zero()));
   }
 
   double effort_scale(const ExecutionMargin& margin) const {
@@ -258,7 +249,7 @@ class MotionSearch {
   /// speed where the path bends.
   void slow_where_forces_change(const SegmentLoads& loads, TriedSegment& tried) const {
     constexpr std::size_t kPlaces = 101;
-    constexpr double kMore = 0.93, kSteepest = 1.15;  // of speeds, from place to place
+    constexpr double kMore = 0.97, kSteepest = 1.15;  // of speeds, from place to place
     const SegmentMotion& way = tried.motion;
     std::vector<double>& most = tried.pace.most_speed;
     if (most.empty()) most.assign(kPlaces, 1.5 * *std::ranges::max_element(way.speed));
@@ -267,7 +258,7 @@ class MotionSearch {
     };
     const auto last = static_cast<std::ptrdiff_t>(loads.rates.size());
     const auto around = static_cast<std::ptrdiff_t>(
-        std::ceil(smoothing_s_ / way.duration_s * static_cast<double>(last)));
+        std::ceil(0.5 * smoothing_s_ / way.duration_s * static_cast<double>(last)));
     for (std::ptrdiff_t i = 0; i < last; ++i) {
       const double ratio = loads.rates[static_cast<std::size_t>(i)] / kFastestLoad;
       if (ratio <= 1.0) continue;
@@ -312,13 +303,13 @@ class MotionSearch {
         retime(tried);
         continue;
       }
-      if (found || ++share == kSharesOfMargin.size()) {
+      if (found || ++share == kPartsOfMargin.size()) {
         tried.motion.status = PlannerStatus::kNotFound;
         tried.motion.reason =
             found ? "forces at its contacts change too fast" : "no wrenches hold it along its way";
         return false;
       }
-      margin = tried.margin.scaled(kSharesOfMargin[share]);
+      margin = tried.margin.scaled(kPartsOfMargin[share]);
     }
   }
 
@@ -542,15 +533,10 @@ class MotionSearch {
     return all_planners_ ? mover_.planners() : std::min(some, mover_.planners());
   }
 
-  CheckReport judged(const Motion& motion, std::vector<StanceWrenches>* wrenches = nullptr) {
+  CheckReport judged(const Motion& motion) {
     const Stopwatch watch;
     CheckOptions asked = task_.check;
     asked.threads = stances_.threads;
-    if (wrenches != nullptr) {
-      asked.on_balance = [wrenches](int vertex, const StanceWrenches& found) {
-        (*wrenches)[static_cast<std::size_t>(vertex)] = found;
-      };
-    }
     CheckReport report = judge_.check(motion, asked);
     plan_.statistics.judge_s += watch.seconds();
     return report;

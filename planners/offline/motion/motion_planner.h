@@ -44,8 +44,8 @@ struct MotionStatistics : PlannerStatistics {  // iterations: of the stance plan
 
 struct MotionPlan : PlannerAnswer {
   StancePlan stances;
-  /// Without success as far as it got: the segments up to the first that has none. With the
-  /// wrenches that the judge found; none without success.
+  /// Without success as far as it got: the segments up to the first that has none. With the least
+  /// wrenches, where the task's margin has a dwell in which they can go over.
   Motion motion;
   std::vector<SegmentRecord> segments;
   CheckReport report;  ///< of the motion

@@ -68,24 +68,12 @@ CheckOptions with_accelerations(CheckOptions check, const MotionOptions& options
   return check;
 }
 
-/// One more row: x at most that of SegmentPace::most_speed.
-TimingRowsAt with_most_speed(TimingRowsAt rows, double length,
-                             const std::vector<double>& most_speed) {
-  if (most_speed.empty()) return rows;
-  return [rows = std::move(rows), length, most_speed](const PathPoint& point) {
-    TimingRows found = rows ? rows(point) : TimingRows();
-    const double at = point.s / length * static_cast<double>(most_speed.size() - 1);
-    const std::size_t i = std::min(static_cast<std::size_t>(at), most_speed.size() - 2);
-    const double t = at - static_cast<double>(i);
-    const double most = length * ((1.0 - t) * most_speed[i] + t * most_speed[i + 1]);
-    for (Eigen::VectorXd* part : {&found.a, &found.b, &found.c}) {
-      part->conservativeResize(part->size() + 1);
-    }
-    found.a.tail<1>()[0] = 0.0;
-    found.b.tail<1>()[0] = 1.0;
-    found.c.tail<1>()[0] = most * most;
-    return found;
-  };
+/// SegmentPace::most_speed at a place of a path.
+double most_speed_at(const std::vector<double>& most_speed, double share) {
+  const double at = share * static_cast<double>(most_speed.size() - 1);
+  const std::size_t i = std::min(static_cast<std::size_t>(at), most_speed.size() - 2);
+  const double t = at - static_cast<double>(i);
+  return (1.0 - t) * most_speed[i] + t * most_speed[i + 1];
 }
 
 void add_reason(const std::string& reason, SegmentMotion& motion) {
@@ -382,12 +370,17 @@ bool SegmentMover::time(const PathSpline& path, std::span<const BearingContact> 
   options.smoothing_s = bears_on() ? options_.loaded_smoothing_s : options_.smoothing_s;
   options.intervals = 100;
   options.intervals_per_step = 4;
-  std::optional<PathTiming> timing(
-      std::in_place, path, limits_, options,
-      with_most_speed(balance.along(path, limits_), path.length(), pace.most_speed));
+  TimingLimits limits = limits_;
+  if (!pace.most_speed.empty()) {
+    limits.path_speed = [&pace, length = path.length()](double s) {
+      return length * most_speed_at(pace.most_speed, s / length);
+    };
+  }
+  std::optional<PathTiming> timing(std::in_place, path, limits, options,
+                                   balance.along(path, limits_));
   // Where rows leave nothing, which is for rounding only: slowly, as the judge will say.
   if (!timing->answer().success()) {
-    timing.emplace(path, limits_, options);
+    timing.emplace(path, limits, options);
     slower *= kSlowly;
   }
   if (!timing->answer().success()) return false;

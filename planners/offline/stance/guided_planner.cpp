@@ -24,7 +24,8 @@ constexpr int kFirstTree = 75, kMostMoves = 40, kMostDeadEnds = 20, kLiftRestart
 /// length of the way counts.
 constexpr int kMoreAround = 10;
 constexpr double kLookAroundLonger = 7.0, kLengthAround = 0.2;
-constexpr double kTreeGrowth = 1.25;
+/// An execution margin leaves less room: few manners of trees find a way then, and soon or never.
+constexpr double kTreeGrowth = 1.25, kTreeGrowthInMargin = 1.05;
 /// Of trees of all other manners, for each of those that look around.
 constexpr int kRounds = 3;
 /// Moves that are looked at for other threads, and how many of them for each thread are expected.
@@ -52,6 +53,7 @@ class GuidedSearch final : public StanceSearch {
   bool reach(const Footing& goal, StancePath& path) override {
     goal_ = goal;
     goal_posture_.reset();
+    const bool in_margin = space_.task().margin != ExecutionMargin::none();
     double most = kFirstTree;
     int tree = 0, dead_ends = 0;
     while (!space_.ended()) {
@@ -66,7 +68,7 @@ class GuidedSearch final : public StanceSearch {
       // Other noise, other moves; but not for ever where there are none.
       if (exhausted_ && ++dead_ends >= kMostDeadEnds) return false;
       if (space_.tried_enough()) return false;
-      most *= kTreeGrowth;
+      most *= in_margin ? kTreeGrowthInMargin : kTreeGrowth;
     }
     return false;
   }

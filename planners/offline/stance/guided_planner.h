@@ -9,7 +9,8 @@ namespace locograph {
 /// most is tried first, by stances so far, stances to go were there no balance and no limits (each
 /// end effector by itself, in moves of the lengths that have worked), how often moves like it have
 /// failed, how crowded the tree is there, and noise. Transitions are only solved for what is tried.
-/// After 75 transitions the tree is begun anew with other noise, each time with a quarter more;
+/// After 75 transitions the tree is begun anew with other noise, each time with a quarter
+/// more, in an execution margin with a twentieth;
 /// what failed is remembered. Every second time two trees grow towards each other, one of them
 /// backwards from the goal: a transition serves both ways.
 class GuidedPlanner final : public StancePlanner {

@@ -157,6 +157,10 @@ class Grid {
       cap_[i] = std::min(cap_[i], cap);
       cap_[i + 1] = std::min(cap_[i + 1], cap);
     }
+    for (std::size_t i = 0; limits_.path_speed && i <= n; ++i) {
+      const double most = limits_.path_speed(s_[i]);
+      cap_[i] = std::min(cap_[i], most * most);
+    }
   }
 
   Eigen::VectorXd most_over(std::size_t interval, Eigen::Index row, Eigen::Index rows) const {

@@ -31,6 +31,9 @@ struct TimingLimits {
   Eigen::VectorXd velocity, acceleration;
   double base_linear_m_s = std::numeric_limits<double>::infinity();     ///< largest speed
   double base_angular_rad_s = std::numeric_limits<double>::infinity();  ///< the same
+  /// The largest ds/dt at a place s of the path, above 0; may be empty. It may change slowly only:
+  /// it holds at the points of the grid, and smoothing (path_timing.h) does not look at it.
+  std::function<double(double)> path_speed = {};
 };
 
 /// Joint velocities of the URDF, the rest as the judge asks it.
