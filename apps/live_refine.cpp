@@ -2,11 +2,14 @@
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_file.h>
 #include <locograph/apps/scene.h>
+#include <locograph/apps/scene_perception.h>
+#include <locograph/common/deadline.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/online/window_cause.h>
 #include <locograph/planners/plan/seen_world.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace locograph {
 namespace {
@@ -52,24 +55,42 @@ Json cycle_json(const PlanFile& file, const CycleReport& cycle) {
 
 void run(const LiveJob& job, LiveChannel& channel) {
   PlanFile file = load_plan(job.plan, job.plugins);
-  const Judging judging =
-      judging_of(file, {.scenario = {}, .map = job.map, .obstacles = job.obstacles});
-  const auto seen = seen_world(file.graph, file.plan, judging.world->world());
+  const WorldOptions world = {.scenario = {}, .map = job.map, .obstacles = job.obstacles};
+  const Judging judging = judging_of(file, world);
+  WalkOptions options;
+  options.planner.horizon = job.horizon;
+  std::optional<PerceptionScene> seen;
+  WorldAt world_at;
+  if (job.perception.given()) {
+    seen.emplace(file, judging, job.perception);
+    seen->eyes().equip(options);
+    world_at = seen->eyes().world_at();
+  } else {
+    options.verify = step_check(judging);
+    const auto known = seen_world(file.graph, file.plan, judging.world->world());
+    world_at = [known](int executed) { return executed == 0 ? known : nullptr; };
+  }
   send(channel, {{"type", "start"},
                  {"count", file.plan.slots.size()},
                  {"dof", file.plan.robot->robot->tangent_size()},
                  {"speed", job.speed}});
-  WalkOptions options;
-  options.planner.horizon = job.horizon;
-  options.verify = step_check(judging);
+  Stopwatch since_last;
   options.on_cycle = [&](const CycleReport& cycle) {
-    send(channel, cycle_json(file, cycle));
-    const double step_s = time_of(file, cycle.executed + 1) - time_of(file, cycle.executed);
-    if (!channel.wait(std::max(0.0, step_s / job.speed - cycle.statistics.total_s)))
+    const double now_s = time_of(file, cycle.executed);
+    Json message = cycle_json(file, cycle);
+    if (seen) message["perception"] = seen->news(now_s);
+    send(channel, message);
+    const double step_s = time_of(file, cycle.executed + 1) - now_s;
+    if (!channel.wait(std::max(0.0, step_s / job.speed - since_last.seconds())))
       throw ChannelClosed();
+    since_last.lap();
   };
-  const WalkReport report = walk_plan(
-      file.graph, [&seen](int executed) { return executed == 0 ? seen : nullptr; }, options);
+  WalkReport report = walk_plan(file.graph, world_at, options);
+  if (seen && report.configurations > 1) {
+    // Steps were judged by what was seen; this is in the world as it is.
+    file.plan = plan_of_file(file.graph, file.name);
+    take_verdict(check_plan(file, judging_of(file, world)), report);
+  }
   send(channel, {{"type", "end"},
                  {"success", report.success()},
                  {"reason", report.reason},

@@ -4,6 +4,7 @@
 ///     LiveServer server(port, page, [&](LiveChannel& channel) { live_refine(job, channel); });
 
 #include <locograph/apps/live_server.h>
+#include <locograph/apps/refine_perception.h>
 
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@ struct LiveJob {
   int horizon = 20;
   double speed = 1.0;                ///< 2: twice as fast as the plan's time stamps say
   std::vector<std::string> plugins;  ///< as graph_types()
+  PerceptionChoice perception = {};  ///< as `refine` takes it
 };
 
 /// Returns when the plan is at its end or the channel is closed. Bad input goes to the channel as

@@ -27,12 +27,14 @@ std::string base64(const unsigned char* bytes, std::size_t size) {
 
 template <class T>
 std::string packed(const std::vector<T>& values) {
-  return base64(reinterpret_cast<const unsigned char*>(values.data()), 4 * values.size());
+  return base64(reinterpret_cast<const unsigned char*>(values.data()), sizeof(T) * values.size());
 }
 
 }  // namespace
 
 std::string packed_floats(const std::vector<float>& values) { return packed(values); }
 std::string packed_ints(const std::vector<std::int32_t>& values) { return packed(values); }
+std::string packed_shorts(const std::vector<std::int16_t>& values) { return packed(values); }
+std::string packed_bytes(const std::vector<std::uint8_t>& values) { return packed(values); }
 
 }  // namespace locograph

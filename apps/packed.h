@@ -4,7 +4,7 @@
 ///     json["triangles"] = packed_floats({0.0f, 1.0f, 0.5f});
 ///     json["edges"] = packed_ints({0, 1, 1, 2});
 ///
-/// Four bytes for each number, little-endian.
+/// Little-endian.
 
 #include <cstdint>
 #include <string>
@@ -14,5 +14,7 @@ namespace locograph {
 
 std::string packed_floats(const std::vector<float>& values);
 std::string packed_ints(const std::vector<std::int32_t>& values);
+std::string packed_shorts(const std::vector<std::int16_t>& values);
+std::string packed_bytes(const std::vector<std::uint8_t>& values);
 
 }  // namespace locograph

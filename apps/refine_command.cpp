@@ -103,15 +103,6 @@ CheckReport final_check(const PlanFile& file, const std::shared_ptr<const Task>&
   return judged(file.graph, plan, judging);
 }
 
-/// A refined plan is a success if it is one for the judge. Where a robot went by what its cameras
-/// showed, a part of a plan is no success either if the judge refuses it.
-void take_verdict(const CheckReport& check, WalkReport& report) {
-  if (check.feasible) return;
-  const std::string refused = "refused: " + violation_text(check.worst());
-  report.reason = report.success() ? refused : refused + "; " + report.reason;
-  report.status = PlannerStatus::kNotFound;
-}
-
 /// What of the judge's word is about the world that the cameras saw.
 Json truth_json(const CheckReport& check) {
   bool touched = false;
@@ -224,6 +215,8 @@ Command add_refine(OptionParser& app) {
       .required();
   add_world_options(parser, o.world);
   add_perception_options(parser, o.perception);
+  parser.add_option("--save-map", o.perception.save_map,
+                    "Where to write the OctoMap of what was seen and known (.bt)");
   parser.add_option("--horizon", o.horizon, "Configurations that one cycle optimises")
       .show_default();
   parser.add_option("--deadline-ms", o.deadline_ms, "Time one cycle may take; 0: no limit")

@@ -107,8 +107,6 @@ void add_perception_options(OptionParser& parser, PerceptionChoice& choice) {
       .show_default();
   parser.add_option("--known-map", choice.known_map,
                     "With --cameras: OctoMap of what is known beforehand");
-  parser.add_option("--save-map", choice.save_map,
-                    "Where to write the OctoMap of what was seen and known (.bt)");
   parser.add_option("--voxel", choice.voxel_m, "Voxels of the map around the robot [m]")
       .between(0.01, 1.0)
       .show_default();
@@ -137,8 +135,16 @@ void check_perception_options(const PerceptionChoice& choice,
   check_output(choice.save_map, inputs);
 }
 
+void take_verdict(const CheckReport& check, WalkReport& report) {
+  if (check.feasible) return;
+  const std::string refused = "refused: " + violation_text(check.worst());
+  report.reason = report.success() ? refused : refused + "; " + report.reason;
+  report.status = PlannerStatus::kNotFound;
+}
+
 RefinePerception::RefinePerception(const PlanFile& file, const Judging& judging,
-                                   const PerceptionChoice& choice)
+                                   const PerceptionChoice& choice,
+                                   std::function<void(const FilteredImage&)> on_image)
     : choice_(choice) {
   if (choice.unknown == "slow" && !file.plan.segments.empty()) {
     throw Error(file.name, 0, "the plan tells its segments and how long they take",
@@ -147,8 +153,10 @@ RefinePerception::RefinePerception(const PlanFile& file, const Judging& judging,
   const World& world = judging.world->world();
   const std::vector<DepthCamera> cameras =
       judging.task ? judging.task->cameras : cameras_of(*judging.robot);
-  perception_ = std::make_unique<Perception>(
-      judging.robot, cameras, known_beforehand(world, choice), options_of(file, world, choice));
+  PerceptionOptions options = options_of(file, world, choice);
+  options.on_image = std::move(on_image);
+  perception_ = std::make_unique<Perception>(judging.robot, cameras,
+                                             known_beforehand(world, choice), options);
   files_ = files_of(file);
   if (choice.cameras) {
     images_ = simulated_images(file, judging, choice, cameras);

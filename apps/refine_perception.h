@@ -1,6 +1,6 @@
 #pragma once
-/// `refine --cameras` and `refine --clouds DIR`: the robot walks along its plan knowing of the
-/// world what its depth cameras show.
+/// `--cameras` and `--clouds DIR` of `refine` and `view`: the robot walks along its plan knowing of
+/// the world what its depth cameras show.
 ///
 ///     PerceptionChoice choice;
 ///     add_perception_options(parser, choice);
@@ -22,6 +22,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -42,7 +43,7 @@ struct PerceptionChoice {
   bool given() const { return cameras || !clouds.empty(); }
 };
 
-/// choice must outlive the parsing.
+/// All but `--save-map`. choice must outlive the parsing.
 void add_perception_options(OptionParser& parser, PerceptionChoice& choice);
 
 /// Throws Error for options that do not go together, and for a save_map that is one of the inputs
@@ -50,15 +51,26 @@ void add_perception_options(OptionParser& parser, PerceptionChoice& choice);
 void check_perception_options(const PerceptionChoice& choice,
                               const std::vector<std::filesystem::path>& inputs);
 
+/// A refined plan is a success if it is one for the judge. Where a robot went by what its cameras
+/// showed, a part of a plan is no success either if the judge refuses it.
+void take_verdict(const CheckReport& check, WalkReport& report);
+
 class RefinePerception {
  public:
   /// The file must outlive it. Throws Error for files that cannot be used, a robot without cameras,
   /// a map of other voxels than the window's, a window that is too large, and a save_map that is
   /// one of files().
-  RefinePerception(const PlanFile& file, const Judging& judging, const PerceptionChoice& choice);
+  /// on_image: see PerceptionOptions.
+  RefinePerception(const PlanFile& file, const Judging& judging, const PerceptionChoice& choice,
+                   std::function<void(const FilteredImage&)> on_image = {});
 
   /// Of the plan and of recorded clouds: all that must not be written.
   const std::vector<std::filesystem::path>& files() const { return files_; }
+
+  const Perception& perception() const { return *perception_; }
+  const CameraWalk& walk() const { return *walk_; }
+  /// Of the image that would come next; infinite: there is none.
+  double next_stamp_s() const { return images_->next_stamp_s(); }
 
   /// Sets what is asked on the way: verify, and pace.
   void equip(WalkOptions& options);

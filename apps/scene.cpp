@@ -1,5 +1,6 @@
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/scene.h>
+#include <locograph/apps/scene_perception.h>
 #include <locograph/apps/stance_tree_file.h>
 #include <locograph/common/data_folder.h>
 #include <locograph/common/input_file.h>
@@ -35,6 +36,7 @@ KnownWorld known_world(const PlanFile& file, const SceneOptions& options) {
         judging_of(file, {.scenario = {}, .map = options.map, .obstacles = options.obstacles});
     return {judging, judging.world};
   } catch (const Error& error) {
+    if (options.perception.given()) throw;
     // What the command line names must be there.
     auto named = std::make_shared<const WorldSnapshot>(load_world(options.map, options.obstacles));
     print_warning(std::string("neither judged nor shown in its world: ") + error.what());
@@ -58,6 +60,14 @@ Stance first_stance(const PlanFile& file) {
   return first ? first->stance : Stance();
 }
 
+Json perception_json(const PlanFile& file, const Judging& judging, const SceneOptions& options) {
+  PerceptionScene seen(file, judging, options.perception);
+  for (const std::filesystem::path& output : options.outputs) {
+    check_not_input(output, seen.eyes().files());
+  }
+  return options.live ? seen.blank() : seen.along_plan(options.on_progress);
+}
+
 Json plan_scene(PlanFile file, const SceneOptions& options) {
   const Robot& robot = *file.plan.robot->robot;
   Json scene = {{"version", 1},
@@ -78,6 +88,9 @@ Json plan_scene(PlanFile file, const SceneOptions& options) {
     near.extend(Eigen::Vector3d::Zero());
   }
   add_world_scene(world->world(), near, scene);
+  if (options.perception.given()) {
+    scene["perception"] = perception_json(file, *judging, options);
+  }
   if (!options.check || !judging) return scene;
   try {
     scene["check"] = check_scene(file, check_plan(file, *judging));
@@ -106,8 +119,13 @@ Json pose_json(const Eigen::Isometry3d& pose) {
 Json make_scene(const std::string& file, const SceneOptions& options) {
   const bool robot = std::filesystem::path(file).extension() == ".urdf";
   const auto require_plan = [&](bool is_plan) {
-    if (!options.tree.empty() && !is_plan) {
+    if (is_plan) return;
+    if (!options.tree.empty()) {
       throw Error(file, 0, "--tree has no plan to go with", "a plan of stances (.g2o)");
+    }
+    if (options.perception.given()) {
+      const std::string option = options.perception.cameras ? "--cameras" : "--clouds";
+      throw Error(file, 0, option + " has no plan to go with", "a plan of a motion (.g2o)");
     }
   };
   require_plan(!robot);

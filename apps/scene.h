@@ -11,9 +11,12 @@
 
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_file.h>
+#include <locograph/apps/refine_perception.h>
 #include <locograph/core/graph.h>
 
 #include <Eigen/Geometry>
+#include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -31,6 +34,11 @@ struct SceneOptions {
   std::string srdf;                  ///< robots: instead of the file beside the URDF
   std::string state;                 ///< robots: group_state to stand in; "": home or another one
   bool capsules = false;             ///< robots: draw what links are kept apart by, nothing else
+  PerceptionChoice perception;       ///< plans: what cameras show on the way
+  bool live = false;                 ///< what they show comes with the messages of a run
+  /// Files to be written: they must not be among the clouds that are read.
+  std::vector<std::filesystem::path> outputs = {};
+  std::function<void(double)> on_progress = {};  ///< of the way that cameras go; may be empty
 };
 
 /// file: a graph (.g2o) or a robot (.urdf).

@@ -8,9 +8,11 @@
 #include <locograph/apps/view_command.h>
 #include <locograph/common/atomic_file.h>
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace locograph {
 namespace {
@@ -28,8 +30,9 @@ ExitCode serve(const CommandOptions& options, Json scene) {
     throw Error(options.input, 0, "--serve has nothing to run", "a plan (.g2o)");
   }
   scene["live"] = "/live";
-  const LiveJob job = {options.input,        options.scene.map, options.scene.obstacles,
-                       options.scene.window, options.speed,     options.scene.plugins};
+  const LiveJob job = {options.input,           options.scene.map, options.scene.obstacles,
+                       options.scene.window,    options.speed,     options.scene.plugins,
+                       options.scene.perception};
   LiveServer server(options.port, scene_page(scene),
                     [job](LiveChannel& channel) { live_refine(job, channel); });
   if (options.json) {
@@ -55,6 +58,12 @@ void report(const CommandOptions& options, const Json& scene, std::size_t bytes)
   if (scene.contains("plan")) json["configurations"] = scene["plan"]["times"].size();
   if (scene.contains("robot")) json["missing_meshes"] = scene["robot"]["missing"];
   if (scene.contains("check")) json["feasible"] = scene["check"]["feasible"];
+  if (scene.contains("perception") && scene["perception"].contains("images")) {
+    for (const char* count : {"images", "blind_images", "refused_images"}) {
+      json[count] = scene["perception"][count];
+    }
+    json["clouds"] = scene["perception"]["clouds"].size();
+  }
   if (!options.output.empty()) json["output"] = options.output;
   if (!options.output.empty()) json["bytes"] = bytes;
   if (!options.png.empty()) json["picture"] = options.png;
@@ -79,23 +88,36 @@ void warn_of_missing_meshes(const Json& scene) {
                 " not found or not STL, stand-ins shown:" + names);
 }
 
+std::vector<std::filesystem::path> outputs_of(const CommandOptions& options) {
+  std::vector<std::filesystem::path> files;
+  for (const std::string& file : {options.output, options.png}) {
+    if (!file.empty()) files.emplace_back(file);
+  }
+  return files;
+}
+
 ExitCode view(const CommandOptions& options) {
   const bool serving = options.port >= 0;
   if (options.output.empty() && options.png.empty() && !serving) {
     throw Error("nothing to write", "-o OUT.html, --png FILE or --serve PORT");
   }
-  for (const std::string& file : {options.output, options.png}) {
-    if (file.empty()) continue;
-    const SceneOptions& scene = options.scene;
-    check_output(file, {options.input, scene.map, scene.obstacles, scene.tree, scene.srdf},
-                 options.json);
+  const SceneOptions& given = options.scene;
+  const std::vector<std::filesystem::path> inputs = {options.input,   given.map,
+                                                     given.obstacles, given.tree,
+                                                     given.srdf,      given.perception.known_map};
+  for (const std::filesystem::path& file : given.outputs) check_output(file, inputs, options.json);
+  check_perception_options(given.perception, inputs);
+  if (given.perception.given() && given.perception.unknown == "slow") {
+    throw Error("--unknown slow", "free or occupied: a page has the times of the plan");
   }
   if (serving && options.input == "-") {
     throw Error("standard input", 0, "can be read once only", "a file to --serve");
   }
   if (!options.png.empty()) require_browser();
   std::optional<Progress> progress("reading " + options.input);
-  Json scene = make_scene(options.input, options.scene);
+  SceneOptions scene_options = options.scene;
+  scene_options.on_progress = [&progress](double share) { progress->show(share); };
+  Json scene = make_scene(options.input, scene_options);
   warn_of_missing_meshes(scene);
   const std::string page = scene_page(scene);
   progress.emplace("drawing " + options.input);
@@ -125,6 +147,7 @@ Command add_view(OptionParser& app) {
   parser.add_option("--obstacles", o.scene.obstacles, "Obstacle file (.xml); may go with --map");
   parser.add_option("--tree", o.scene.tree,
                     "Plans of stances: what the search tried, as `plan --tree` wrote it");
+  add_perception_options(parser, o.scene.perception);
   parser.add_option("--png", o.png, "Picture to write, taken by headless Chromium");
   parser.add_option("--at", o.at_s, "Time of the picture [s]").finite().show_default();
   parser
@@ -153,6 +176,8 @@ Command add_view(OptionParser& app) {
   parser.add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] {
             options->scene.check = !options->no_check;
+            options->scene.outputs = outputs_of(*options);
+            options->scene.live = options->port >= 0 && options->scene.outputs.empty();
             return view(*options);
           }};
 }

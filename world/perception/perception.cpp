@@ -163,9 +163,12 @@ std::shared_ptr<const WorldSnapshot> Perception::image(DepthImage image) {
   last_stamp_s_[index] = image.stamp_s;
   ++images_;
   if (pixels_seen(image) == 0) ++blind_;
-  filter_.remove(state_, camera, image);
-  map_.insert(camera, state_.world_from_link(camera.link) * camera.link_from_optical, image);
+  filter_.remove(state_, camera, image, options_.on_image ? &taken_ : nullptr);
+  const Eigen::Isometry3d world_from_optical =
+      state_.world_from_link(camera.link) * camera.link_from_optical;
+  map_.insert(camera, world_from_optical, image);
   publish();
+  if (options_.on_image) options_.on_image({camera, world_from_optical, image, taken_});
   return newest_;
 }
 

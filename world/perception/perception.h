@@ -29,10 +29,19 @@
 #include <octomap/OcTree.h>
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <memory>
 #include <vector>
 
 namespace locograph {
+
+/// An image that was taken in, in its two parts.
+struct FilteredImage {
+  const DepthCamera& camera;
+  Eigen::Isometry3d world_from_optical;
+  const DepthImage& kept;   ///< as it went into the map
+  const DepthImage& taken;  ///< the pixels that show the robot, 0 elsewhere
+};
 
 struct PerceptionOptions {
   LocalMapOptions map;
@@ -40,6 +49,9 @@ struct PerceptionOptions {
   double kept_s = 5.0;     ///< configurations, before the newest
   double around_m = 0.3;   ///< what is free around the robot where it stands: see stand()
   bool keeps_map = false;  ///< what the window leaves: see map()
+  /// Called with each image that is taken in, after newest() has it; may be empty. It throws
+  /// nothing.
+  std::function<void(const FilteredImage&)> on_image = {};
 
   void validate() const;
 };
@@ -95,6 +107,7 @@ class Perception {
   LocalMap map_;
   RobotState state_;
   std::vector<double> last_stamp_s_;  // of each camera
+  DepthImage taken_;                  // of the newest image, if anyone wants it
   std::shared_ptr<const LocalField> field_;
   std::shared_ptr<const WorldSnapshot> newest_;
   int images_ = 0, blind_ = 0;

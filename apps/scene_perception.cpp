@@ -1,0 +1,192 @@
+#include <locograph/apps/packed.h>
+#include <locograph/apps/scene.h>
+#include <locograph/apps/scene_perception.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace locograph {
+namespace {
+
+/// A page of some 4 MB, whatever the plan.
+constexpr int kMostTimes = 60;
+constexpr int kMostPoints = 800000, kMostPointsOfACloud = 20000;
+constexpr int kUnit_mm = 2;
+
+const PlanFile& moving(const PlanFile& file) {
+  if (!file.plan.stances_only) return file;
+  throw Error(file.name, 0, "nothing moves between stances, so that cameras have no way",
+              "a plan of a motion to --cameras or --clouds");
+}
+
+double time_of(const PlanFile& file, std::size_t i) {
+  return file.graph.vertex(VertexId<VertexConfiguration>{file.plan.slots[i]}).time_s;
+}
+
+/// Of every how many-th configuration the page has what was seen.
+std::size_t times_step(const PlanFile& file) {
+  return (file.plan.slots.size() + kMostTimes - 1) / kMostTimes;
+}
+
+/// How many of n pixels in a row are shown, the first of them being number stride / 2.
+int shown_of(int n, int stride) { return (n - stride / 2 + stride - 1) / stride; }
+
+void append_varint(std::size_t number, std::vector<std::uint8_t>& bytes) {
+  for (; number >= 128; number >>= 7)
+    bytes.push_back(static_cast<std::uint8_t>(number & 127) | 128);
+  bytes.push_back(static_cast<std::uint8_t>(number));
+}
+
+/// Runs of voxels that are alike, along x, then y, then z: three times their length, and one more
+/// for free ones, two for occupied ones.
+std::string packed_states(const LocalField& field) {
+  const VoxelWindow& window = field.window();
+  std::vector<std::uint8_t> bytes;
+  std::size_t length = 0, state = 0;
+  for (int k = 0; k < window.size.z(); ++k) {
+    for (int j = 0; j < window.size.y(); ++j) {
+      for (int i = 0; i < window.size.x(); ++i) {
+        const Eigen::Vector3i index = window.first + Eigen::Vector3i(i, j, k);
+        const std::size_t here = field.is_occupied(index) ? 2 : field.is_known(index) ? 1 : 0;
+        if (here != state && length > 0) {
+          append_varint(3 * length + state, bytes);
+          length = 0;
+        }
+        state = here;
+        ++length;
+      }
+    }
+  }
+  append_varint(3 * length + state, bytes);
+  return packed_bytes(bytes);
+}
+
+Json indices_json(const Eigen::Vector3i& v) { return {v.x(), v.y(), v.z()}; }
+
+Json map_json(const LocalField& field, double time_s) {
+  return {{"time", rounded(time_s)},
+          {"first", indices_json(field.window().first)},
+          {"size", indices_json(field.window().size)},
+          {"states", packed_states(field)}};
+}
+
+void append(Json more, Json& list) {
+  for (Json& one : more) list.push_back(std::move(one));
+}
+
+}  // namespace
+
+PerceptionScene::PerceptionScene(const PlanFile& file, const Judging& judging,
+                                 const PerceptionChoice& choice)
+    : file_(moving(file)),
+      choice_(choice),
+      eyes_(file, judging, choice, [this](const FilteredImage& image) { take(image); }),
+      newest_(eyes_.perception().cameras().size()) {}
+
+int PerceptionScene::stride(const DepthCamera& camera) const {
+  const std::size_t times = (file_.plan.slots.size() - 1) / times_step(file_) + 1;
+  const double clouds = static_cast<double>(times * eyes_.perception().cameras().size());
+  const double points = std::min<double>(kMostPointsOfACloud, kMostPoints / clouds);
+  return static_cast<int>(std::ceil(std::sqrt(camera.width * camera.height / points)));
+}
+
+void PerceptionScene::take(const FilteredImage& image) {
+  Cloud& cloud = newest_[static_cast<std::size_t>(image.kept.camera)];
+  cloud.is_new = true;
+  cloud.stamp_s = image.kept.stamp_s;
+  cloud.world_from_optical = image.world_from_optical;
+  cloud.depths.clear();
+  const int step = stride(image.camera);
+  for (int v = step / 2; v < image.kept.height; v += step) {
+    for (int u = step / 2; u < image.kept.width; u += step) {
+      const auto at = static_cast<std::size_t>(v) * static_cast<std::size_t>(image.kept.width) +
+                      static_cast<std::size_t>(u);
+      const int depth = (image.kept.depth_mm[at] - image.taken.depth_mm[at]) / kUnit_mm;
+      cloud.depths.push_back(static_cast<std::int16_t>(depth));
+    }
+  }
+}
+
+Json PerceptionScene::blank() const {
+  const LocalMapOptions& map = eyes_.perception().options().map;
+  Json cameras = Json::array();
+  for (const DepthCamera& camera : eyes_.perception().cameras()) {
+    const double step = stride(camera);
+    const int first = stride(camera) / 2;
+    cameras.push_back(
+        {{"name", camera.name},
+         {"size",
+          {shown_of(camera.width, stride(camera)), shown_of(camera.height, stride(camera))}},
+         {"focal", {rounded(camera.fx / step), rounded(camera.fy / step)}},
+         {"centre", {rounded((camera.cx - first) / step), rounded((camera.cy - first) / step)}},
+         {"range", rounded(std::min(camera.range_max_m, map.range_m))}});
+  }
+  Json json = {{"cameras", std::move(cameras)},
+               {"resolution", map.resolution_m},
+               {"unknown", choice_.unknown},
+               {"clouds", Json::array()},
+               {"maps", Json::array()}};
+  if (std::isfinite(map.floor_top_m())) json["floor"] = rounded(map.floor_top_m());
+  return json;
+}
+
+Json PerceptionScene::news(double time_s) {
+  Json clouds = Json::array(), maps = Json::array();
+  for (std::size_t i = 0; i < newest_.size(); ++i) {
+    Cloud& cloud = newest_[i];
+    if (!std::exchange(cloud.is_new, false)) continue;
+    clouds.push_back({{"camera", i},
+                      {"stamp", rounded(cloud.stamp_s)},
+                      {"pose", pose_json(cloud.world_from_optical)},
+                      {"depths", packed_shorts(cloud.depths)}});
+  }
+  const std::shared_ptr<const LocalField>& field = eyes_.perception().field();
+  if (field != shown_) maps.push_back(map_json(*field, time_s));
+  shown_ = field;
+  return {{"clouds", std::move(clouds)}, {"maps", std::move(maps)}};
+}
+
+Json PerceptionScene::along_plan(const std::function<void(double)>& on_progress) {
+  Json json = blank();
+  const WorldAt show = eyes_.world_at();
+  const std::size_t count = file_.plan.slots.size(), step = times_step(file_);
+  for (std::size_t i = 0; i < count; ++i) {
+    show(static_cast<int>(i));
+    if (on_progress) on_progress(static_cast<double>(i + 1) / static_cast<double>(count));
+    if (i % step != 0 && i + 1 < count) continue;
+    Json more = news(time_of(file_, i));
+    append(std::move(more["clouds"]), json["clouds"]);
+    append(std::move(more["maps"]), json["maps"]);
+  }
+  const Perception& perception = eyes_.perception();
+  json["images"] = perception.images();
+  json["blind_images"] = perception.blind();
+  json["refused_images"] = eyes_.walk().refused();
+  warn_of_unseen();
+  return json;
+}
+
+void PerceptionScene::warn_of_unseen() const {
+  const Perception& perception = eyes_.perception();
+  const int refused = eyes_.walk().refused();
+  const std::string from = short_number(time_of(file_, 0));
+  const std::string to = short_number(time_of(file_, file_.plan.slots.size() - 1));
+  if (perception.images() == 0) {
+    throw Error(choice_.clouds, 0,
+                refused > 0 ? eyes_.walk().last_refusal() : "no cloud until the plan ends",
+                "clouds of its time, " + from + " to " + to + " s");
+  }
+  if (refused > 0) {
+    print_warning(counted(refused, "image", "images") +
+                  " not used: " + eyes_.walk().last_refusal());
+  }
+  if (perception.blind() > 0) {
+    print_warning(counted(perception.blind(), "image shows", "images show") + " nothing");
+  }
+  if (choice_.clouds.empty() || !std::isfinite(eyes_.next_stamp_s())) return;
+  print_warning("clouds from " + short_number(eyes_.next_stamp_s()) +
+                " s on are not shown: the plan ends at " + to + " s");
+}
+
+}  // namespace locograph
