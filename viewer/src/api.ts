@@ -1,7 +1,7 @@
 /**
  * `window.locograph`: what pictures and tests without a person use, and the page's address.
  *
- *     page.html#t=12.3&view=side&ui=0&theme=dark&ghosts=6&show=collision&hide=map,com
+ *     page.html#t=12.3&view=side&ui=0&theme=dark&ghosts=6&slice=0.3&show=collision&hide=map,com
  */
 import { App } from './app';
 import { VIEWS, ViewName } from './cameras';
@@ -47,6 +47,7 @@ export class Api {
       window: plan?.window ?? 0,
       violations: marks.filter(({ violation }) => violation.violated).length,
       selectedViolation: marks[violations.selected]?.violation.constraint ?? null,
+      seen: app.views.perception?.state() ?? null,
       pictures: app.pictures?.strip.drawn ?? null,
       layers: Object.fromEntries(app.layers.all.map(({ id, on }) => [id, on])),
       frames: app.frames,
@@ -94,6 +95,7 @@ export function applyHash(app: App, hash: string): void {
     app.setGhosts(Number(wanted.get('ghosts')));
     app.layers.set('ghosts', true);
   }
+  if (wanted.has('slice')) app.setSlice(Number(wanted.get('slice')));
   for (const id of wanted.get('show')?.split(',') ?? []) app.layers.set(id, true);
   for (const id of wanted.get('hide')?.split(',') ?? []) app.layers.set(id, false);
   if (wanted.has('violation')) app.jumpTo(Number(wanted.get('violation')));

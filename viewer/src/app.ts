@@ -1,14 +1,15 @@
 /** The whole page for one scene: puts its parts together, and brings them to the time shown. */
 import { Vector3 } from 'three';
 import { CameraRig, headingOf, ViewName, VIEWS } from './cameras';
-import { element } from './dom';
+import { element, setText } from './dom';
 import { Help } from './help';
 import { listenToKeys } from './keyboard';
 import { Layers } from './layers';
 import { Legend } from './legend';
-import { legendEntries } from './legend_entries';
+import { legendEntries, legendScales } from './legend_entries';
 import { PageActions } from './page_actions';
 import { Panel } from './panel';
+import { PerceptionView } from './perception_view';
 import { PictureStrip } from './picture_strip';
 import { Player } from './player';
 import { Scene } from './scene_format';
@@ -53,6 +54,8 @@ export class App implements PageActions {
   private panelTime = 0;
   private paintedExecuted: number | null | undefined = undefined;
   private initial: Float32Array | null = null;
+  private sliceInput: HTMLInputElement | null = null;
+  private sliceText: HTMLElement | null = null;
 
   constructor(
     readonly scene: Scene,
@@ -92,6 +95,7 @@ export class App implements PageActions {
     addSceneLayers(this.layers, this.views, this.stage.ground, this.pictures?.strip);
     const switches = this.panel.addSwitches(this.layers);
     if (plan && plan.count > 1) this.addGhostNumber(switches);
+    if (this.views.perception) this.addSliceHeight(switches, this.views.perception);
     this.legend = new Legend(this.view, (layer) => this.layers.isOn(layer));
     this.help = new Help(this.page, this.layers.all);
     this.bar = new TopBar(bar, scene, this.views, this);
@@ -126,6 +130,24 @@ export class App implements PageActions {
     });
   }
 
+  private addSliceHeight(parent: HTMLElement, { lowest, highest, step }: PerceptionView): void {
+    const label = element('label', 'switch slice', parent);
+    element('span', '', label).textContent = 'Height of the slice';
+    const input = element('input', '', label);
+    input.type = 'range';
+    input.id = 'slice';
+    input.min = String(lowest);
+    input.max = String(highest);
+    input.step = String(step);
+    this.sliceText = element('output', '', label);
+    input.addEventListener('input', () => {
+      this.setSlice(Number(input.value));
+      this.layers.set('field', true);
+    });
+    this.sliceInput = input;
+    this.setSlice(Number.NaN);
+  }
+
   private setExtent(): void {
     const { graph } = this.views;
     const box = this.views.box();
@@ -148,8 +170,7 @@ export class App implements PageActions {
       this.paintedExecuted = undefined;
       if (this.layers.isOn('ghosts')) this.views.placeGhosts(this.ghostNumber);
       const entries = legendEntries(this.views, this.layers, THEMES[this.themeName], this.gridCell);
-      const { voxels } = this.views;
-      this.legend?.show(entries, voxels?.count ? voxels : null);
+      this.legend?.show(entries, legendScales(this.views));
     }
     this.stage.invalidate();
   }
@@ -167,6 +188,16 @@ export class App implements PageActions {
   setGhosts(number: number): void {
     if (Number.isFinite(number)) this.ghostNumber = Math.min(Math.max(Math.round(number), 2), MOST_GHOSTS);
     this.invalidate(true);
+  }
+
+  /** Height of the slice of the distance field [m]; not a number: as it is. */
+  setSlice(height: number): void {
+    const { perception } = this.views;
+    if (!perception || !this.sliceInput || !this.sliceText) return;
+    if (Number.isFinite(height)) perception.setHeight(height);
+    this.sliceInput.value = String(perception.height);
+    setText(this.sliceText, `${perception.height.toFixed(2)} m`);
+    this.invalidate();
   }
 
   setTheme(name: ThemeName): void {
@@ -274,6 +305,7 @@ export class App implements PageActions {
     this.applyLive(rows, 0, 0);
     plan.restoreSlopes();
     this.views.path?.place();
+    this.views.perception?.clear();
   }
 
   /** Takes over configurations, by their index, that a running refinement has changed. */
@@ -363,6 +395,7 @@ export class App implements PageActions {
     if (!plan || !kinematics) return;
     const { time } = this.player;
     this.panel.update(time, kinematics.floating ? basePosition : null, centreOfMass, track);
+    this.panel.updateCameras(time, this.views.perception?.counts ?? []);
     this.views.updateRates(time);
     const { configuration, velocities, torques } = this.views;
     this.panel.updateJoints(configuration, kinematics.floating ? 7 : 0, velocities, torques);

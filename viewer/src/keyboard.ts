@@ -7,6 +7,7 @@ import { Player } from './player';
 function belongsToField(target: EventTarget | null, key: string): boolean {
   if (target instanceof HTMLSelectElement) return true;
   if (target instanceof HTMLInputElement && target.type === 'number') return true;
+  if (target instanceof HTMLInputElement && target.id === 'slice') return /^(Arrow|Home|End)/.test(key);
   const pressable =
     target instanceof HTMLButtonElement ||
     (target instanceof HTMLElement && target.tagName === 'SUMMARY') ||

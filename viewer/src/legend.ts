@@ -1,6 +1,6 @@
 /** The legend: what the colours mean, and their units. */
-import { element, number } from './dom';
-import { HEIGHT_COLOURS, hex } from './theme';
+import { element, quantity } from './dom';
+import { hex } from './theme';
 
 export interface LegendEntry {
   label: string;
@@ -8,6 +8,15 @@ export interface LegendEntry {
   shape: 'dot' | 'line' | 'dashed' | 'arrow' | 'patch';
   /** Layer it belongs to: gone when the layer is hidden. */
   layer?: string;
+}
+
+/** A scale of colours. */
+export interface LegendScale {
+  label: string;
+  lowest: number;
+  highest: number;
+  colours: number[];
+  layer: string;
 }
 
 export class Legend {
@@ -24,7 +33,7 @@ export class Legend {
     this.list = element('ul', '', this.element);
   }
 
-  show(entries: LegendEntry[], heights: { lowest: number; highest: number } | null): void {
+  show(entries: LegendEntry[], scales: LegendScale[]): void {
     this.list.replaceChildren();
     for (const entry of entries) {
       if (entry.layer && !this.isOn(entry.layer)) continue;
@@ -33,11 +42,13 @@ export class Legend {
       key.style.setProperty('--key', hex(entry.colour));
       element('span', '', item).textContent = entry.label;
     }
-    if (!heights || !this.isOn('map')) return;
-    const item = element('li', 'heights', this.list);
-    element('span', '', item).textContent = `map: ${number(heights.lowest)} m`;
-    const bar = element('i', 'gradient', item);
-    bar.style.background = `linear-gradient(90deg, ${HEIGHT_COLOURS.map(hex).join(', ')})`;
-    element('span', '', item).textContent = `${number(heights.highest)} m`;
+    for (const { label, lowest, highest, colours, layer } of scales) {
+      if (!this.isOn(layer)) continue;
+      const item = element('li', 'heights', this.list);
+      element('span', '', item).textContent = `${label}: ${quantity(lowest, 'm')}`;
+      const bar = element('i', 'gradient', item);
+      bar.style.background = `linear-gradient(90deg, ${colours.map(hex).join(', ')})`;
+      element('span', '', item).textContent = quantity(highest, 'm');
+    }
   }
 }

@@ -2,16 +2,17 @@
 import { kindColour } from './contacts';
 import { number } from './dom';
 import { Layers } from './layers';
-import { LegendEntry } from './legend';
+import { LegendEntry, LegendScale } from './legend';
+import { FIELD_REACH_M } from './perception';
 import { Plan } from './plan';
 import { FIRST_GHOST, LAST_GHOST } from './robot_view';
 import { SceneViews } from './scene_views';
-import { Theme } from './theme';
+import { FIELD_COLOURS, HEIGHT_COLOURS, SEEN_COLOURS, Theme } from './theme';
 import { DEPTH_COLOURS } from './tree_view';
 
 /** `gridCell`: the width of the fine grid [m]. */
 export function legendEntries(
-  { plan, track, contactView, world, graph, tree }: SceneViews,
+  { plan, track, contactView, world, graph, tree, perception }: SceneViews,
   layers: Layers,
   theme: Theme,
   gridCell: number,
@@ -48,6 +49,10 @@ export function legendEntries(
     add('centre of mass, projection', theme.centreOfMass, 'dot', 'com');
   }
   if (world.hasMoving) add('moving obstacle', theme.moving, 'patch', 'obstacles');
+  add('seen by cameras', theme.seen, 'dot', 'clouds');
+  if (perception?.hasFloor) add('seen of the floor', theme.floor, 'dot', 'clouds');
+  add('taken by the self-filter', theme.taken, 'dot', 'taken');
+  add('seen beyond the range of the map', theme.beyond, 'dot', 'beyond');
   add('first ghost', FIRST_GHOST, 'patch', 'ghosts');
   add('last ghost', LAST_GHOST, 'patch', 'ghosts');
   add('violation', theme.violation, 'dot', 'violations');
@@ -62,6 +67,23 @@ export function legendEntries(
     'ground',
   );
   return entries;
+}
+
+/** Scales of its colours. */
+export function legendScales({ voxels, perception }: SceneViews): LegendScale[] {
+  const scales: LegendScale[] = [];
+  if (voxels?.count) {
+    const { lowest, highest } = voxels;
+    scales.push({ label: 'map', lowest, highest, colours: HEIGHT_COLOURS, layer: 'map' });
+  }
+  if (perception) {
+    const { lowest, highest } = perception;
+    scales.push(
+      { label: 'seen map', lowest, highest, colours: SEEN_COLOURS, layer: 'seen' },
+      { label: 'distance', lowest: 0, highest: FIELD_REACH_M, colours: FIELD_COLOURS, layer: 'field' },
+    );
+  }
+  return scales;
 }
 
 function contactKinds(plan: Plan | null): Set<string> {

@@ -4,6 +4,7 @@
  */
 import type { App } from './app';
 import { number, quantity } from './dom';
+import { SeenDescription } from './scene_format';
 
 export interface StartMessage {
   type: 'start';
@@ -15,6 +16,8 @@ export interface CycleMessage {
   window: number;
   /** By their index in the plan. */
   configurations: Record<string, number[]>;
+  /** What is new there. */
+  perception?: SeenDescription;
   feasible?: boolean;
   cycle_time?: number;
   violation?: { constraint: string; worst?: number; unit?: string; index?: number } | null;
@@ -102,6 +105,7 @@ export class LiveSession {
     if (message.type === 'start') {
       this.app.restartLive();
     } else if (message.type === 'cycle') {
+      if (message.perception) this.app.views.perception?.add(message.perception);
       this.app.applyLive(message.configurations, message.executed, message.window);
       const { violation, cycle_time } = message;
       const bad = violation

@@ -5,6 +5,7 @@ import { element, number, quantity, setText } from './dom';
 import { JointBars } from './joint_bars';
 import { Kinematics } from './kinematics';
 import { Layers } from './layers';
+import { CloudCount } from './perception_view';
 import { Plan } from './plan';
 import { PoseGraphView } from './pose_graph_view';
 import { Scene } from './scene_format';
@@ -99,6 +100,17 @@ export class Panel {
         if (contact.force) sum += Math.hypot(...contact.force);
       }
       this.set('contact forces', quantity(sum, 'N'));
+    }
+  }
+
+  /** Of each camera its newest cloud. */
+  updateCameras(time: number, counts: CloudCount[]): void {
+    for (const { name, stamp, kept, taken } of counts) {
+      const text =
+        stamp === null
+          ? 'nothing yet'
+          : `${number(kept)} points, ${number(taken)} the robot's, ${(time - stamp).toFixed(2)} s ago`;
+      this.set(name, text);
     }
   }
 

@@ -166,6 +166,48 @@ export interface TreeDescription {
   states: string;
 }
 
+/** An image of a camera, its points thinned out. */
+export interface CloudDescription {
+  camera: number;
+  stamp: number;
+  /** Of the optical frame. */
+  pose: Pose;
+  /** Packed int16, row by row: depth in units of 2 mm, negative: taken by the self-filter; 0: none. */
+  depths: string;
+}
+
+/** The voxels around the robot. */
+export interface LocalMapDescription {
+  time: number;
+  /** Index of the lowest voxel; voxel (i, j, k) is from i to i + 1 times the resolution, … */
+  first: Vector;
+  size: Vector;
+  /** Packed bytes, runs as perception.ts reads them. */
+  states: string;
+}
+
+/** What has been seen: all of it, or what is new. */
+export interface SeenDescription {
+  clouds: CloudDescription[];
+  maps: LocalMapDescription[];
+}
+
+export interface PerceptionDescription extends SeenDescription {
+  cameras: {
+    name: string;
+    /** Columns and rows of its clouds. */
+    size: [number, number];
+    focal: [number, number];
+    centre: [number, number];
+    /** Depth beyond which nothing goes into the map. */
+    range: number;
+  }[];
+  resolution: number;
+  unknown: 'free' | 'occupied';
+  /** What is seen below this height is the floor. */
+  floor?: number;
+}
+
 export interface Scene {
   version: number;
   kind: 'plan' | 'pose_graph';
@@ -174,6 +216,7 @@ export interface Scene {
   plan?: PlanDescription;
   stances?: Stance[];
   tree?: TreeDescription;
+  perception?: PerceptionDescription;
   map?: { resolution?: number; voxels: string; left_out?: number };
   surfaces?: SurfaceDescription[];
   bars?: BarDescription[];
@@ -250,14 +293,15 @@ function validateRobot(robot: RobotDescription): void {
   }
 }
 
-function bytesOf(packed: string, what: string): ArrayBuffer {
+function bytesOf(packed: string, numberSize: number, what: string): ArrayBuffer {
   let text: string;
   try {
     text = atob(packed);
   } catch {
     throw new SceneError(`The numbers of ${what} are not base64.`);
   }
-  require(text.length % 4 === 0, `The numbers of ${what} are cut off: ${text.length} bytes.`);
+  require(text.length % numberSize ===
+    0, `The numbers of ${what} are cut off: ${text.length} bytes.`);
   const bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
   return bytes.buffer;
@@ -265,7 +309,7 @@ function bytesOf(packed: string, what: string): ArrayBuffer {
 
 /** Rows of `width` little-endian float32 numbers. */
 export function unpackFloats(packed: string, width: number, what: string): Float32Array {
-  const numbers = new Float32Array(bytesOf(packed, what));
+  const numbers = new Float32Array(bytesOf(packed, 4, what));
   require(numbers.length % width ===
     0, `${what}: ${numbers.length} numbers are not whole rows of ${width}.`);
   return numbers;
@@ -273,8 +317,19 @@ export function unpackFloats(packed: string, width: number, what: string): Float
 
 /** Rows of `width` little-endian int32 numbers. */
 export function unpackIntegers(packed: string, width: number, what: string): Int32Array {
-  const numbers = new Int32Array(bytesOf(packed, what));
+  const numbers = new Int32Array(bytesOf(packed, 4, what));
   require(numbers.length % width ===
     0, `${what}: ${numbers.length} numbers are not whole rows of ${width}.`);
   return numbers;
+}
+
+/** `count` little-endian int16 numbers. */
+export function unpackShorts(packed: string, count: number, what: string): Int16Array {
+  const numbers = new Int16Array(bytesOf(packed, 2, what));
+  require(numbers.length === count, `${what}: ${numbers.length} numbers instead of ${count}.`);
+  return numbers;
+}
+
+export function unpackBytes(packed: string, what: string): Uint8Array {
+  return new Uint8Array(bytesOf(packed, 1, what));
 }

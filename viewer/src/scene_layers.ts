@@ -14,6 +14,7 @@ export function addSceneLayers(
   pictures: Showable | undefined,
 ): void {
   const { robot, path, contactView, track, voxels, world, graph, plan, kinematics, tree } = views;
+  const { perception } = views;
   const show = (
     id: string,
     label: string,
@@ -56,6 +57,11 @@ export function addSceneLayers(
   const massive = (kinematics?.mass ?? 0) > 0;
   show('com', 'Centre of mass and support', 's', contactView?.balance, massive);
   show('map', 'Map', 'm', voxels?.group, (voxels?.count ?? 0) > 0);
+  show('clouds', 'Clouds of the cameras', 'k', perception?.kept, true);
+  show('taken', 'What the self-filter took', 'j', perception?.taken, true);
+  show('beyond', 'Beyond the range of the map', 'q', perception?.beyond, true, false);
+  show('seen', 'Map around the robot', 'w', perception?.voxels, true);
+  show('field', 'Slice of the distance field', 'z', perception?.slice, true);
   show('obstacles', 'Obstacles', 'o', world.obstacles, world.obstacles.children.length > 0);
   show('surfaces', 'Surfaces and bars', 'u', world.surfaces, world.surfaces.children.length > 0);
   if (views.violations.group.children.length > 0) {

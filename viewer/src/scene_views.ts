@@ -5,6 +5,7 @@ import { ContactView } from './contact_view';
 import { Kinematics } from './kinematics';
 import { NearBox } from './near';
 import { PathView } from './path_view';
+import { PerceptionView } from './perception_view';
 import { Plan } from './plan';
 import { PoseGraphView } from './pose_graph_view';
 import { RobotView } from './robot_view';
@@ -26,6 +27,7 @@ export class SceneViews {
   readonly voxels: VoxelView | null = null;
   readonly graph: PoseGraphView | null = null;
   readonly tree: TreeView | null = null;
+  readonly perception: PerceptionView | null = null;
   readonly violations: ViolationView;
 
   /** At the time shown; velocities and torques after updateRates(). */
@@ -87,6 +89,10 @@ export class SceneViews {
     if (scene.tree) {
       this.tree = new TreeView(scene.tree);
       drawing.add(this.tree.group);
+    }
+    if (scene.perception) {
+      this.perception = new PerceptionView(scene.perception);
+      drawing.add(...this.perception.objects);
     }
     this.violations = new ViolationView(scene.check?.violations ?? [], this.plan, overlay);
     drawing.add(this.violations.group);
@@ -183,6 +189,7 @@ export class SceneViews {
     this.world.applyTheme(theme);
     this.graph?.applyTheme(theme);
     this.tree?.applyTheme(theme);
+    this.perception?.applyTheme(theme);
   }
 
   placeGhosts(number: number): void {
@@ -200,6 +207,7 @@ export class SceneViews {
       this.base.setFromMatrixPosition(this.worldFromBase!);
     }
     this.world.update(time);
+    this.perception?.update(time);
   }
 
   /** Velocities and torques of the joints at a time [s] that everything has been brought to. */

@@ -24,6 +24,10 @@ export interface Theme {
   obstacle: number;
   moving: number;
   surface: number;
+  seen: number;
+  floor: number;
+  taken: number;
+  beyond: number;
 }
 
 const COMMON = {
@@ -34,6 +38,9 @@ const COMMON = {
   cone: 0x12b886,
   violation: 0xe03131,
   moving: 0xe8813a,
+  seen: 0x0b7285,
+  floor: 0x66b2bf,
+  taken: 0xe64980,
 };
 
 export const THEMES: Record<ThemeName, Theme> = {
@@ -54,6 +61,7 @@ export const THEMES: Record<ThemeName, Theme> = {
     loop: 0x9c36b5,
     obstacle: 0x9aa5b1,
     surface: 0x94a9c2,
+    beyond: 0x6b7684,
   },
   dark: {
     ...COMMON,
@@ -71,6 +79,7 @@ export const THEMES: Record<ThemeName, Theme> = {
     loop: 0xd678ea,
     obstacle: 0x738091,
     surface: 0x5d7391,
+    beyond: 0x98a4b3,
   },
 };
 
@@ -84,3 +93,7 @@ export function preferredTheme(): ThemeName {
 
 /** Height colours of the map, low to high, as in its legend (sRGB). */
 export const HEIGHT_COLOURS = [0x4a5a8f, 0x2f8fa3, 0x4fb37a, 0xd5c34a, 0xe07b39];
+/** The same of the voxels that cameras have seen. */
+export const SEEN_COLOURS = [0x7a4a12, 0xa8661b, 0xd08a2e, 0xeab54d, 0xf6dc8b];
+/** Of the distance to the nearest of them, from none to a metre. */
+export const FIELD_COLOURS = [0xc92a2a, 0xf76707, 0xffd43b, 0x69db7c, 0x339af0];

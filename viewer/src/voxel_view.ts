@@ -50,8 +50,8 @@ export class VoxelView {
     this.lowest = this.count ? lowest : 0;
     this.highest = this.count ? highest : 0;
     if (this.count === 0) return;
-    const grid = new Occupancy(voxels, resolution ?? smallest);
-    const mesh = new Mesh(faceGeometry(voxels, grid), heightMaterial(this.lowest, this.highest));
+    const material = heightMaterial(this.lowest, this.highest, HEIGHT_COLOURS);
+    const mesh = new Mesh(voxelGeometry(voxels, resolution ?? smallest), material);
     mesh.receiveShadow = true;
     this.group.add(mesh);
   }
@@ -120,7 +120,9 @@ function faceCorners(side: number[]): { corner: Vector3; u: number; v: number }[
   }));
 }
 
-function faceGeometry(voxels: Float32Array, grid: Occupancy): BufferGeometry {
+/** Of cubes, x y z size each. */
+export function voxelGeometry(voxels: Float32Array, resolution: number): BufferGeometry {
+  const grid = new Occupancy(voxels, resolution);
   const faces: number[] = [];
   for (let i = 0; i < voxels.length; i += 4) {
     SIDES.forEach((side, k) => {
@@ -159,11 +161,16 @@ function faceGeometry(voxels: Float32Array, grid: Occupancy): BufferGeometry {
   return geometry;
 }
 
-function heightMaterial(lowest: number, highest: number): MeshLambertMaterial {
+/** `colours`: five of them, for heights from the lowest to the highest. */
+export function heightMaterial(
+  lowest: number,
+  highest: number,
+  colours: number[],
+): MeshLambertMaterial {
   const material = new MeshLambertMaterial();
   material.onBeforeCompile = (shader) => {
     shader.uniforms.uHeights = { value: [lowest, Math.max(highest, lowest + 1e-6)] };
-    shader.uniforms.uColours = { value: HEIGHT_COLOURS.map((colour) => new Color(colour)) };
+    shader.uniforms.uColours = { value: colours.map((colour) => new Color(colour)) };
     shader.vertexShader = shader.vertexShader.replace(
       'void main() {',
       `attribute float height;
