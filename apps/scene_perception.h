@@ -11,7 +11,6 @@
 
 #include <locograph/apps/refine_perception.h>
 
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -36,13 +35,12 @@ class PerceptionScene {
 
  private:
   struct Cloud {
-    double stamp_s = 0.0;
     Eigen::Isometry3d world_from_optical;
-    std::vector<std::int16_t> depths;
+    DepthImage kept, taken;
     bool is_new = false;
   };
-  /// Every how many-th pixel of a camera is shown, along both sides.
-  int stride(const DepthCamera& camera) const;
+  /// Of the squares of pixels that one is shown of, in pixels.
+  int square(const DepthCamera& camera) const;
   void take(const FilteredImage& image);
   void warn_of_unseen() const;
 

@@ -1,5 +1,5 @@
 // `refine --cameras` and `refine --clouds`, as a user runs them.
-#include <apps/command_runner.h>
+#include <apps/recorded_clouds.h>
 #include <locograph/world/octree.h>
 
 namespace locograph {
@@ -17,21 +17,6 @@ class CameraRunner : public CommandRunner {
     box.world_from_box.translation() = Eigen::Vector3d(2.0, 3.0, 0.25);
     box.size.setConstant(0.5);
     save_octree(*octree_from_boxes({&box, 1}, 0.05), folder() / name);
-  }
-  /// A cloud of a square metre, two metres ahead of the camera, listed with this line.
-  void write_clouds(const std::string& line) const {
-    std::filesystem::create_directory(folder() / "clouds");
-    std::string points;
-    for (int i = -20; i <= 20; ++i) {
-      for (int k = -20; k <= 20; ++k) {
-        points += std::to_string(0.025 * i) + ' ' + std::to_string(0.025 * k) + " 2\n";
-      }
-    }
-    const std::string count = std::to_string(41 * 41);
-    write("clouds/a.pcd", "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " +
-                              count + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + count +
-                              "\nDATA ascii\n" + points);
-    write("clouds/clouds.csv", "time_s,camera,file\n" + line + '\n');
   }
 };
 
@@ -63,7 +48,7 @@ TEST(RefineCameras, TellsWhatTheCamerasSaw) {
 
 TEST(RefineCameras, ShowsRecordedCloudsAtTheirTimes) {
   const CameraRunner runner;
-  runner.write_clouds("0.0,D435i_camera,a.pcd\n1.5,D435i_camera,a.pcd\n900,D435i_camera,a.pcd");
+  write_clouds(runner, "0.0,D435i_camera,a.pcd\n1.5,D435i_camera,a.pcd\n900,D435i_camera,a.pcd");
   const Outcome outcome = runner.run("refine plan.g2o --clouds clouds -o out.g2o --json");
   EXPECT_LE(outcome.exit_code, 1) << outcome.err;
   EXPECT_EQ(outcome.json()["images"], 2) << "the last one comes too late";
@@ -92,15 +77,15 @@ TEST(RefineCameras, RefuseWhatCannotBeUsedInOneLine) {
   refused("--cameras --unknown perhaps", "", "unknown");
   refused("--cameras --camera-rate 0", "", "camera-rate");
   refused("--cameras --save-map none/seen.bt", "", "none/seen.bt");
-  runner.write_clouds("0.0,ear,a.pcd");
+  write_clouds(runner, "0.0,ear,a.pcd");
   refused("--clouds clouds", "clouds/clouds.csv:2", "ear");
-  runner.write_clouds("0.0,D435i_camera,b.pcd");
+  write_clouds(runner, "0.0,D435i_camera,b.pcd");
   refused("--clouds clouds", "clouds/clouds.csv:2", "b.pcd");
 }
 
 TEST(RefineCameras, WritesOntoNothingThatItReads) {
   const CameraRunner runner;
-  runner.write_clouds("0.0,D435i_camera,a.pcd");
+  write_clouds(runner, "0.0,D435i_camera,a.pcd");
   runner.write("box.xml",
                "<obstacles version=\"1\"><box center=\"2 3 1\" size=\"1 1 1\"/></obstacles>\n");
   ASSERT_EQ(runner.run("refine plan.g2o --obstacles box.xml -o with_box.g2o").exit_code, 0);

@@ -33,12 +33,15 @@ import {
   LocalMapDescription,
   PerceptionDescription,
   SeenDescription,
+  unpackBytes,
   unpackShorts,
 } from './scene_format';
 import { FIELD_COLOURS, SEEN_COLOURS, Theme } from './theme';
 import { heightMaterial, voxelGeometry } from './voxel_view';
 
 const DEPTH_UNIT_M = 0.002;
+/** Pixels of a square that may be shown, along its sides: how their places are numbered. */
+const PLACES_ALONG = 15;
 const POINT_PIXELS = 3;
 /** Points and things that were seen shine through their voxels. */
 const VOXEL_OPACITY = 0.45;
@@ -192,10 +195,12 @@ export class PerceptionView {
     for (const points of all) points.end();
   }
 
-  private addCloud({ camera, pose, depths }: CloudDescription): void {
+  private addCloud(cloud: CloudDescription): void {
     const { cameras, floor } = this.perception.description;
-    const { name, size, focal, centre, range } = cameras[camera];
-    const numbers = unpackShorts(depths, size[0] * size[1], `a cloud of ${name}`);
+    const { name, square, between, columns, rows, focal, centre, range } = cameras[cloud.camera];
+    const { pose } = cloud;
+    const numbers = unpackShorts(cloud.depths, columns * rows, `a cloud of ${name}`);
+    const places = unpackBytes(cloud.places, `a cloud of ${name}`);
     const world = new Matrix4().compose(
       new Vector3(pose[0], pose[1], pose[2]),
       new Quaternion(pose[3], pose[4], pose[5], pose[6]),
@@ -205,7 +210,8 @@ export class PerceptionView {
     numbers.forEach((number, i) => {
       if (number === 0) return;
       const depth = Math.abs(number) * DEPTH_UNIT_M;
-      const [u, v] = [i % size[0], Math.floor(i / size[0])];
+      const u = square * (i % columns) + between * (places[i] % PLACES_ALONG);
+      const v = square * Math.floor(i / columns) + between * Math.floor(places[i] / PLACES_ALONG);
       point.set(((u - centre[0]) / focal[0]) * depth, ((v - centre[1]) / focal[1]) * depth, depth);
       point.applyMatrix4(world);
       if (number < 0) {

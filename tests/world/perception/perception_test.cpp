@@ -7,6 +7,8 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "world/perception/small_camera_robot.h"
 
@@ -14,6 +16,8 @@ namespace locograph {
 namespace {
 
 using test::camera_robot;
+using test::kHeight;
+using test::kWidth;
 using test::small_camera;
 using test::standing_at;
 using test::wall_image;
@@ -90,6 +94,24 @@ TEST(Perception, LeavesOutWhatShowsTheRobotItself) {
   Seeing seeing;
   for (int k = 0; k < 5; ++k) seeing.perception.image(wall_image(0.1 * k, 0.08));
   EXPECT_EQ(seeing.distance({0.08, 0.0, 1.0}), 1.0);
+}
+
+TEST(Perception, HandsOutBothPartsOfEachImageThatItTakes) {
+  std::vector<std::pair<int, int>> pixels;
+  PerceptionOptions options;
+  options.on_image = [&](const FilteredImage& image) {
+    EXPECT_EQ(image.camera.name, "eye");
+    EXPECT_NEAR(image.world_from_optical.translation().z(), 1.0, 1e-12);
+    EXPECT_EQ(image.kept.stamp_s, 0.1 * static_cast<double>(pixels.size()));
+    pixels.emplace_back(pixels_seen(image.kept), pixels_seen(image.taken));
+  };
+  Seeing seeing({}, options);
+  const std::pair all_kept(kWidth * kHeight, 0), all_taken(0, kWidth * kHeight);
+  seeing.perception.image(wall_image(0.0, 1.52));
+  seeing.perception.image(wall_image(0.1, 0.08));
+  EXPECT_NE(refusal([&] { seeing.perception.image(wall_image(0.1, 1.52)); }), "accepted");
+  seeing.perception.image(wall_image(0.2, 1.52));
+  EXPECT_EQ(pixels, (std::vector{all_kept, all_taken, all_kept}));
 }
 
 TEST(Perception, RefusesImagesThatCannotBeUsedAndStaysAsItIs) {
