@@ -124,9 +124,14 @@ export class PerceptionView {
     return this.perception.description.floor !== undefined;
   }
 
-  /** Of the slice: the middle of a layer of voxels. */
+  /** Of the layer of voxels at a height. */
+  middle(height: number): number {
+    return (layerAt(height, this.step) + 0.5) * this.step;
+  }
+
+  /** Of the slice. */
   get height(): number {
-    return (Math.floor(this.wanted / this.step + 1e-6) + 0.5) * this.step;
+    return this.middle(this.wanted);
   }
 
   setHeight(height: number): void {
@@ -234,7 +239,7 @@ export class PerceptionView {
       return;
     }
     if (this.voxels.visible && this.drawnMap !== map) this.drawVoxels(map);
-    const layer = Math.floor(this.wanted / this.step + 1e-6) - map.first[2];
+    const layer = layerAt(this.wanted, this.step) - map.first[2];
     this.plane.visible = layer >= 0 && layer < map.size[2];
     if (!this.slice.visible || !this.plane.visible) return;
     if (this.drawnSlice?.map !== map || this.drawnSlice.layer !== layer) this.drawSlice(map, layer);
@@ -292,6 +297,11 @@ export class PerceptionView {
       this.height,
     );
   }
+}
+
+/** Heights between two layers are those of the upper one, whatever was rounded. */
+function layerAt(height: number, step: number): number {
+  return Math.floor(height / step + 1e-6);
 }
 
 /** What is known is plain, what is far from everything faint. */
