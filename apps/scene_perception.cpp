@@ -205,7 +205,7 @@ void PerceptionScene::warn_of_unseen() const {
   const std::string from = short_number(time_of(file_, 0));
   const std::string to = short_number(time_of(file_, file_.plan.slots.size() - 1));
   if (perception.images() == 0) {
-    throw Error(choice_.clouds, 0,
+    throw Error((std::filesystem::path(choice_.clouds) / "clouds.csv").string(), 0,
                 refused > 0 ? eyes_.walk().last_refusal() : "no cloud until the plan ends",
                 "clouds of its time, " + from + " to " + to + " s");
   }

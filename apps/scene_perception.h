@@ -22,6 +22,8 @@ class PerceptionScene {
   /// The file must outlive it. Throws Error for a plan that does not move from one configuration to
   /// the next (stances_only), and as RefinePerception does.
   PerceptionScene(const PlanFile& file, const Judging& judging, const PerceptionChoice& choice);
+  PerceptionScene(const PerceptionScene&) = delete;
+  PerceptionScene& operator=(const PerceptionScene&) = delete;
 
   RefinePerception& eyes() { return eyes_; }
   /// The cameras and the map, before anything is seen.
