@@ -11,16 +11,15 @@
 
 #include <locograph/common/simd_level.h>
 #include <locograph/world/perception/local_map.h>
-#include <sys/resource.h>
-#include <time.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <random>
 
 #include "command_line.h"
+#include "world/measure.h"
+#include "world/octomap_insertion.h"
 #include "world/perception/room_camera.h"
 
 namespace locograph {
@@ -30,19 +29,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kCameras = 2;
 constexpr double kRate_Hz = 30.0;
-
-double processor_ms() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) * 1e-6;
-}
-
-double resident_megabytes() {
-  std::ifstream file("/proc/self/statm");
-  double size = 0.0, resident = 0.0;
-  file >> size >> resident;
-  return resident * 4096.0 / 1e6;
-}
 
 struct View {
   Eigen::Isometry3d world_from_optical;
@@ -62,34 +48,6 @@ std::vector<View> walk(const DepthCamera& camera, double seconds) {
   }
   return views;
 }
-
-class Times {
- public:
-  void add(double value) { values_.push_back(value); }
-  double mean() const {
-    double sum = 0.0;
-    for (const double value : values_) sum += value;
-    return values_.empty() ? 0.0 : sum / static_cast<double>(values_.size());
-  }
-  Json report() {
-    std::ranges::sort(values_);
-    const auto quantile = [&](double share) {
-      return values_.empty()
-                 ? 0.0
-                 : values_[std::min(
-                       values_.size() - 1,
-                       static_cast<std::size_t>(share * static_cast<double>(values_.size())))];
-    };
-    return {{"mean", mean()},
-            {"median", quantile(0.5)},
-            {"p99", quantile(0.99)},
-            {"max", quantile(1.0)},
-            {"images", values_.size()}};
-  }
-
- private:
-  std::vector<double> values_;
-};
 
 /// In the middle of the window's height the robot's waist.
 Eigen::Vector3d centre_for(const View& view) {
@@ -120,7 +78,7 @@ Json sampling(const LocalField& field) {
 
 Json at_level(const std::string& level, const LocalMapOptions& options, const DepthCamera& camera,
               const std::vector<View>& views, int rounds) {
-  Times all, still, moved, insertion, field_time;
+  std::vector<double> all, still, moved, insertion, field_time;
   LocalMap map(options, level);
   std::shared_ptr<const LocalField> field;
   std::size_t occupied = 0;
@@ -138,10 +96,10 @@ Json at_level(const std::string& level, const LocalMapOptions& options, const De
       field = map.field();
       const double end = processor_ms();
       if (round == 0 && i < 4) continue;
-      all.add(end - begin);
-      (moves ? moved : still).add(end - begin);
-      insertion.add(inserted - begin);
-      field_time.add(end - inserted);
+      all.push_back(end - begin);
+      (moves ? moved : still).push_back(end - begin);
+      insertion.push_back(inserted - begin);
+      field_time.push_back(end - inserted);
     }
   }
   const VoxelWindow& window = field->window();
@@ -149,44 +107,29 @@ Json at_level(const std::string& level, const LocalMapOptions& options, const De
     for (int y = 0; y < window.size[1]; ++y)
       for (int x = 0; x < window.size[0]; ++x)
         occupied += field->is_occupied(window.first + Eigen::Vector3i(x, y, z));
-  Json report = {{"image_to_field_ms", all.report()},
-                 {"window_still_ms", still.report()},
-                 {"window_moved_ms", moved.report()},
-                 {"insertion_ms", insertion.report()},
-                 {"field_ms", field_time.report()},
-                 {"share_of_a_core", all.mean() * kCameras * kRate_Hz / 1000.0},
-                 {"memory_MB", static_cast<double>(map.memory_bytes()) / 1e6},
-                 {"occupied_voxels", occupied},
-                 {"sample", sampling(*field)}};
-  return report;
+  const Json image_to_field = spread(all);
+  return {{"image_to_field_ms", image_to_field},
+          {"window_still_ms", spread(still)},
+          {"window_moved_ms", spread(moved)},
+          {"insertion_ms", spread(insertion)},
+          {"field_ms", spread(field_time)},
+          {"share_of_a_core", image_to_field["mean"].get<double>() * kCameras * kRate_Hz / 1000.0},
+          {"memory_MB", static_cast<double>(map.memory_bytes()) / 1e6},
+          {"occupied_voxels", occupied},
+          {"sample", sampling(*field)}};
 }
 
 Json with_octomap(const DepthCamera& camera, const std::vector<View>& views, double resolution_m,
-                  double range_m, bool discretise, int images) {
-  Times times;
+                  const OctomapInsertion& how, int images) {
+  std::vector<double> times;
   octomap::OcTree tree(resolution_m);
   for (int i = 0; i < images && i < static_cast<int>(views.size()); ++i) {
     const View& view = views[static_cast<std::size_t>(i)];
     const double begin = processor_ms();
-    octomap::Pointcloud cloud;
-    cloud.reserve(view.image.depth_mm.size());
-    for (int v = 0; v < camera.height; ++v) {
-      for (int u = 0; u < camera.width; ++u) {
-        const double depth =
-            1e-3 * view.image.depth_mm[static_cast<std::size_t>(v) * camera.width + u];
-        if (depth == 0.0) continue;
-        const Eigen::Vector3f point =
-            (view.world_from_optical * Eigen::Vector3d((u - camera.cx) / camera.fx * depth,
-                                                       (v - camera.cy) / camera.fy * depth, depth))
-                .cast<float>();
-        cloud.push_back(point.x(), point.y(), point.z());
-      }
-    }
-    const Eigen::Vector3f from = view.world_from_optical.translation().cast<float>();
-    tree.insertPointCloud(cloud, {from.x(), from.y(), from.z()}, range_m, false, discretise);
-    times.add(processor_ms() - begin);
+    insert_into(tree, camera, view.world_from_optical, view.image, how);
+    times.push_back(processor_ms() - begin);
   }
-  return times.report();
+  return spread(times);
 }
 
 /// The same short walk again and again: the field after each is the same from the third on, and
@@ -247,8 +190,9 @@ void report(double seconds, int rounds, int octomap_images, int images) {
   }
   if (octomap_images > 0) {
     for (const bool discretise : {false, true}) {
-      all["octomap"][discretise ? "discretised" : "every ray"] = with_octomap(
-          camera, views, large.resolution_m, large.range_m, discretise, octomap_images);
+      all["octomap"][discretise ? "discretised" : "every ray"] =
+          with_octomap(camera, views, large.resolution_m,
+                       {.range_m = large.range_m, .discretised = discretise}, octomap_images);
     }
   }
   if (images > 0) all["endurance"] = endurance(images);

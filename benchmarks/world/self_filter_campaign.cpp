@@ -21,14 +21,11 @@
 //   unfiltered_voxels  the same of the images as they were
 // Times are processor time in ms; take() includes casting and noise.
 #include <locograph/common/uniform.h>
-#include <locograph/world/convex_shape.h>
-#include <locograph/world/link_solid.h>
 #include <locograph/world/perception/self_filter.h>
 #include <locograph/world/perception/simulated_camera.h>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -38,6 +35,8 @@
 #include <vector>
 
 #include "command_line.h"
+#include "world/measure.h"
+#include "world/posed_robot.h"
 
 namespace locograph {
 namespace {
@@ -45,27 +44,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kVoxel_m = 0.05, kBall_m = 0.04, kApart_m = 0.05;
-
-double processor_ms() {
-  timespec time;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
-}
-
-Json times(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return {{"mean", sum / static_cast<double>(values.size())},
-          {"p50", values[values.size() / 2]},
-          {"p99", values[values.size() * 99 / 100]},
-          {"max", values.back()}};
-}
-
-Robot shipped(const std::string& name) {
-  const std::string stem = LOCOGRAPH_SOURCE_DIR "/robots/models/" + name + "/" + name;
-  return Robot::load(stem + ".urdf", stem + ".srdf");
-}
 
 /// Where a robot has its cameras, here: on a link, looking forward and down.
 struct Mount {
@@ -114,7 +92,7 @@ class Campaign {
            std::uint64_t seed)
       : subject_(subject),
         robot_(shipped(subject.name)),
-        state_(robot_),
+        posed_(robot_),
         believed_(robot_),
         filter_(robot_, options),
         joint_error_rad_(joint_error_rad),
@@ -126,10 +104,6 @@ class Campaign {
     }
     mark_limbs("legs", 1);
     mark_limbs("arms", 2);
-    for (std::size_t l = 0; l < robot_.links().size(); ++l) {
-      for (const CollisionShape& shape : robot_.links()[l].collision)
-        solids_.push_back({static_cast<int>(l), shape.link_from_shape, link_solid(robot_, shape)});
-    }
   }
 
   Json run(int configurations) {
@@ -153,16 +127,11 @@ class Campaign {
             {"floor_lost", share(floor_lost_, floor_pixels_)},
             {"voxels", voxels_.json()},
             {"unfiltered_voxels", unfiltered_.json()},
-            {"filter_ms", times(filter_ms_)},
-            {"take_ms", times(take_ms_)}};
+            {"filter_ms", spread(filter_ms_)},
+            {"take_ms", spread(take_ms_)}};
   }
 
  private:
-  struct Solid {
-    int link;
-    Eigen::Isometry3d link_from_shape;
-    ConvexShape shape;
-  };
   struct Voxels {
     int of_robot = 0, flying = 0, of_robot_any = 0;
 
@@ -185,23 +154,6 @@ class Campaign {
     }
   }
 
-  double distance(const Eigen::Vector3d& point, int* nearest_link = nullptr) const {
-    constexpr double kPoint_m = 1e-4;
-    static const ConvexShape ball = ConvexShape::sphere(kPoint_m);
-    const Eigen::Isometry3d at(Eigen::Translation3d(point.x(), point.y(), point.z()));
-    double least = std::numeric_limits<double>::infinity();
-    for (const Solid& solid : solids_) {
-      const Eigen::Isometry3d pose = state_.world_from_link(solid.link) * solid.link_from_shape;
-      if ((pose * solid.shape.center() - point).norm() - solid.shape.bounding_radius() >= least)
-        continue;
-      const double its = shape_distance(ball, at, solid.shape, pose).distance + kPoint_m;
-      if (its >= least) continue;
-      least = its;
-      if (nearest_link != nullptr) *nearest_link = solid.link;
-    }
-    return least;
-  }
-
   /// Until legs and arms are seen.
   void draw_configuration() {
     World world;
@@ -212,18 +164,10 @@ class Campaign {
       configuration_ = robot_.named_configuration("home");
       for (Eigen::Index i = 7; i < configuration_.size(); ++i)
         configuration_[i] += uniform(random_, -0.4, 0.4);
-      state_.update(configuration_.data());
-      double lowest = std::numeric_limits<double>::infinity();
-      for (const Solid& solid : solids_) {
-        const Eigen::Isometry3d pose = state_.world_from_link(solid.link) * solid.link_from_shape;
-        const Eigen::Vector3d down = -pose.linear().row(2).transpose();
-        lowest = std::min(lowest, (pose * solid.shape.support(down)).z());
-      }
-      configuration_[2] -= lowest;
-      state_.update(configuration_.data());
+      posed_.stand(configuration_, 0.0);
       int seen[3] = {0, 0, 0};
       for (const DepthCamera& camera : small_cameras_) {
-        rays.cast(camera, state_, 0.0, hits);
+        rays.cast(camera, posed_.state(), 0.0, hits);
         for (std::size_t i = 0; i < hits.shows.size(); ++i) {
           if (hits.shows[i] >= 0 && hits.depth_m[i] >= camera.range_min_m &&
               hits.shows[i] < static_cast<int>(limb_.size()))
@@ -247,7 +191,7 @@ class Campaign {
     }
     for (int trial = 0; trial < 300; ++trial) {
       const CollisionCapsule& shin = *shins[random_() % shins.size()];
-      const Capsule there = transformed(state_.world_from_link(shin.link), shin.capsule);
+      const Capsule there = transformed(posed_.state().world_from_link(shin.link), shin.capsule);
       Eigen::Vector3d out;
       for (int axis = 0; axis < 3; ++axis) out[axis] = uniform(random_, -1.0, 1.0);
       out.normalize();
@@ -256,12 +200,12 @@ class Campaign {
       double near = 0.0, far = 0.4;
       for (int halving = 0; halving < 30; ++halving) {
         const double middle = 0.5 * (near + far);
-        (distance(from + middle * out) < kBall_m + kApart_m ? near : far) = middle;
+        (posed_.distance(from + middle * out) < kBall_m + kApart_m ? near : far) = middle;
       }
       const Eigen::Vector3d at = from + far * out;
       int nearest = -1;
-      if (std::abs(distance(at, &nearest) - kBall_m - kApart_m) > 1e-3 || nearest != shin.link ||
-          at.z() < 2.0 * kBall_m)
+      if (std::abs(posed_.distance(at, &nearest) - kBall_m - kApart_m) > 1e-3 ||
+          nearest != shin.link || at.z() < 2.0 * kBall_m)
         continue;
       Obstacle ball;
       ball.shape = Obstacle::Shape::kSphere;
@@ -272,7 +216,7 @@ class Campaign {
       FirstHits hits;
       int seen = 0;
       for (const DepthCamera& camera : small_cameras_) {
-        rays.cast(camera, state_, 0.0, hits);
+        rays.cast(camera, posed_.state(), 0.0, hits);
         for (std::size_t i = 0; i < hits.shows.size(); ++i) {
           seen += hits.shows[i] == static_cast<int>(limb_.size()) &&
                   hits.depth_m[i] >= camera.range_min_m;
@@ -298,7 +242,7 @@ class Campaign {
       std::vector<std::int16_t> shows;
       double start = processor_ms();
       DepthImage image =
-          simulated.take(cameras_[c], static_cast<int>(c), state_, 0.0, seed, &shows);
+          simulated.take(cameras_[c], static_cast<int>(c), posed_.state(), 0.0, seed, &shows);
       take_ms_.push_back(processor_ms() - start);
       const DepthImage before = image;
       start = processor_ms();
@@ -330,7 +274,7 @@ class Campaign {
   void count(const World& world, const DepthCamera& camera, const DepthImage& image,
              Voxels& voxels) const {
     const Eigen::Isometry3d world_from_optical =
-        state_.world_from_link(camera.link) * camera.link_from_optical;
+        posed_.state().world_from_link(camera.link) * camera.link_from_optical;
     std::map<std::tuple<int, int, int>, int> pixels;
     for (int pixel = 0; pixel < image.width * image.height; ++pixel) {
       const double depth = 0.001 * image.depth_mm[static_cast<std::size_t>(pixel)];
@@ -351,7 +295,7 @@ class Campaign {
       const double reach =
           0.5 * std::sqrt(3.0) * kVoxel_m + 3.5 * (noise.at_zero_m + noise.per_m2 * depth * depth);
       if (std::min(centre.z(), world.obstacles[0].distance(centre, 0.0)) <= reach) continue;
-      const bool is_near = distance(centre) <= 0.5 * std::sqrt(3.0) * kVoxel_m + 0.05;
+      const bool is_near = posed_.distance(centre) <= 0.5 * std::sqrt(3.0) * kVoxel_m + 0.05;
       voxels.of_robot_any += is_near;
       if (seen < 3 || seen < 0.05 * fills) continue;
       (is_near ? voxels.of_robot : voxels.flying)++;
@@ -360,12 +304,12 @@ class Campaign {
 
   const Subject& subject_;
   Robot robot_;
-  RobotState state_, believed_;
+  PosedRobot posed_;
+  RobotState believed_;
   SelfFilter filter_;
   double joint_error_rad_;
   std::mt19937_64 random_;
   std::vector<int> limb_;  // of each link: 1 a leg, 2 an arm
-  std::vector<Solid> solids_;
   std::vector<DepthCamera> cameras_, small_cameras_;
   Eigen::VectorXd configuration_;
   std::vector<double> filter_ms_, take_ms_;
