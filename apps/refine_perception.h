@@ -46,8 +46,8 @@ struct PerceptionChoice {
 void add_perception_options(OptionParser& parser, PerceptionChoice& choice);
 
 /// Throws Error for options that do not go together, and for a save_map that is one of the inputs
-/// or cannot be written.
-void check_perception_options(const PerceptionChoice& choice,
+/// or cannot be written. After the parsing.
+void check_perception_options(const OptionParser& parser, const PerceptionChoice& choice,
                               const std::vector<std::filesystem::path>& inputs);
 
 class RefinePerception {
