@@ -183,6 +183,7 @@ RefinePerception::RefinePerception(const PlanFile& file, const Judging& judging,
 }
 
 void RefinePerception::equip(WalkOptions& options) {
+  options.planner.fallbacks = camera_fallbacks();
   options.verify = [this](const Motion& step) { return walk_->check_step(step); };
   if (choice_.unknown == "slow") {
     options.pace = [this](int executed) { return walk_->pace(executed); };

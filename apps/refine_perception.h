@@ -60,7 +60,7 @@ class RefinePerception {
   /// Of the plan and of recorded clouds: all that must not be written.
   const std::vector<std::filesystem::path>& files() const { return files_; }
 
-  /// Sets what is asked on the way: verify, and pace.
+  /// Sets what is asked on the way: fallbacks, verify, and pace.
   void equip(WalkOptions& options);
   WorldAt world_at();
 

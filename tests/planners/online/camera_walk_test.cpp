@@ -54,6 +54,7 @@ struct Drive {
 
   WalkReport walk() {
     WalkOptions options;
+    options.planner.fallbacks = camera_fallbacks();
     options.verify = [this](const Motion& step) { return eyes->check_step(step); };
     options.pace = [this](int executed) { return eyes->pace(executed); };
     return walk_plan(
@@ -75,6 +76,21 @@ TEST(CameraWalk, ArrivesWhereNothingIsInTheWay) {
   EXPECT_GT(drive.perception->images(), 200);
   EXPECT_EQ(drive.eyes->refused(), 0) << drive.eyes->last_refusal();
   EXPECT_EQ(static_cast<int>(drive.eyes->perception_s().size()), drive.perception->images());
+}
+
+// Beside each box there is 0.1 m more than the robot is wide on either side, and it is longer than
+// what is between the two.
+TEST(CameraWalk, TurnsBetweenBoxesAtOppositeWallsTheSecondOfWhichAppearsLate) {
+  if (test::kSanitized) GTEST_SKIP() << "takes long there";
+  std::vector<Obstacle> corridor = {box("right wall", {2.5, -0.85, 0.5}, {9.0, 0.2, 1.0}),
+                                    box("left wall", {2.5, 0.85, 0.5}, {9.0, 0.2, 1.0}),
+                                    box("first", {1.644, 0.583, 0.3}, {0.3, 0.333, 0.6}),
+                                    box("second", {2.681, -0.583, 0.3}, {0.3, 0.333, 0.6})};
+  corridor.back().appears_s = 13.49;
+  Drive drive(std::move(corridor), {}, 4.0);
+  const WalkReport report = drive.walk();
+  EXPECT_TRUE(report.success()) << report.reason;
+  expect_feasible(drive.check());
 }
 
 TEST(CameraWalk, StopsBeforeAWallThatOnlyTheCamerasShow) {
