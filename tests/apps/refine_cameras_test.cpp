@@ -41,18 +41,23 @@ TEST(RefineCameras, TellsWhatTheCamerasSaw) {
   EXPECT_EQ(json["success"], outcome.exit_code == 0);
   EXPECT_GT(octree_info(*load_octree(runner.folder() / "seen.bt")).occupied_leaves, 0u);
   EXPECT_EQ(runner.run("check out.g2o").exit_code, 0) << "as far as it got";
-  // The same bits again.
-  EXPECT_EQ(runner.run(command + "-o again.g2o").exit_code, outcome.exit_code);
+  // The same bits again, whether the map is saved or not.
+  const std::string without_map = command.substr(0, command.find("--save-map"));
+  EXPECT_EQ(runner.run(without_map + "-o again.g2o").exit_code, outcome.exit_code);
   EXPECT_EQ(runner.read("again.g2o"), runner.read("out.g2o"));
 }
 
 TEST(RefineCameras, ShowsRecordedCloudsAtTheirTimes) {
   const CameraRunner runner;
-  write_clouds(runner, "0.0,D435i_camera,a.pcd\n1.5,D435i_camera,a.pcd\n900,D435i_camera,a.pcd");
+  write_clouds(runner,
+               "0.0,D435i_camera,a.pcd\n1.5,D435i_camera,a.pcd\n1.6,D435i_camera,none.pcd\n"
+               "900,D435i_camera,a.pcd");
+  runner.write("clouds/none.pcd",
+               "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 0\nHEIGHT 1\nDATA ascii\n");
   const Outcome outcome = runner.run("refine plan.g2o --clouds clouds -o out.g2o --json");
   EXPECT_LE(outcome.exit_code, 1) << outcome.err;
-  EXPECT_EQ(outcome.json()["images"], 2) << "the last one comes too late";
-  EXPECT_EQ(outcome.json()["blind_images"], 0);
+  EXPECT_EQ(outcome.json()["images"], 3) << "the last one comes too late";
+  EXPECT_EQ(outcome.json()["blind_images"], 1) << "one without points";
   EXPECT_EQ(outcome.json()["refused_images"], 0);
 }
 
@@ -70,6 +75,13 @@ TEST(RefineCameras, RefuseWhatCannotBeUsedInOneLine) {
   refused("--known-map box.bt", "", "--known-map without --cameras");
   refused("--save-map seen.bt", "", "--save-map without --cameras or --clouds");
   refused("--unknown occupied", "", "--unknown without --cameras or --clouds");
+  refused("--unknown free", "", "--unknown without --cameras or --clouds");
+  refused("--voxel 0.05", "", "--voxel without --cameras or --clouds");
+  refused("--window 8", "", "--window without --cameras or --clouds");
+  refused("--seed 0", "", "--seed without --cameras");
+  refused("--camera-rate 30", "", "--camera-rate without --cameras");
+  refused("--clouds nowhere --camera-rate 3", "", "--camera-rate without --cameras");
+  refused("--clouds nowhere --seed 3", "", "--seed without --cameras");
   refused("--cameras --known-map none.bt", "none.bt", "");
   refused("--cameras --known-map box.bt --voxel 0.1", "box.bt", "those of the window");
   refused("--cameras --known-map box.bt --save-map box.bt", "", "box.bt");
@@ -81,6 +93,8 @@ TEST(RefineCameras, RefuseWhatCannotBeUsedInOneLine) {
   refused("--clouds clouds", "clouds/clouds.csv:2", "ear");
   write_clouds(runner, "0.0,D435i_camera,b.pcd");
   refused("--clouds clouds", "clouds/clouds.csv:2", "b.pcd");
+  write_clouds(runner, "900,D435i_camera,a.pcd");
+  refused("--clouds clouds", "clouds/clouds.csv", "after the end of the plan");
 }
 
 TEST(RefineCameras, WritesOntoNothingThatItReads) {

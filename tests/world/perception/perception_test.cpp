@@ -214,10 +214,35 @@ TEST(Perception, KeepsInItsMapWhatTheWindowLeaves) {
   const octomap::OcTreeNode* node = map->search(1.22, 0.01, 1.01);
   ASSERT_NE(node, nullptr);
   EXPECT_TRUE(map->isNodeOccupied(node));
-  // Back again it is known.
-  perception.configuration(21.0, standing_at(*robot, 0.0));
-  perception.image(wall_image(21.0, 0.0));
-  EXPECT_LT(perception.newest()->distance().distance({1.22, 0.0, 1.0}, 0.0), 0.0);
+}
+
+TEST(Perception, SeesTheSameWhetherItKeepsTheMapOrNot) {
+  const std::shared_ptr<const Robot> robot = camera_robot();
+  World known;
+  known.map = box_map({0.0, 1.2, 1.0}, 0.05);
+  for (const World& beforehand : {World(), known}) {
+    std::vector<double> seen;
+    for (const bool keeps_map : {false, true}) {
+      PerceptionOptions options;
+      options.keeps_map = keeps_map;
+      options.map.size_m = {3.2, 3.2, 2.0};
+      Perception perception(robot, {small_camera(*robot)}, beforehand, options);
+      double from_s = 0.0;
+      for (const double x : {0.0, 10.0, 0.0}) {  // there and back, where it does not look any more
+        perception.configuration(from_s, standing_at(*robot, x));
+        perception.configuration(from_s + 1.0, standing_at(*robot, x));
+        for (int k = 0; k < 4; ++k)
+          perception.image(wall_image(from_s + 0.1 * k, from_s == 0.0 ? 1.22 : 0.0));
+        from_s += 10.0;
+        for (double ahead = -1.5; ahead < 1.5; ahead += 0.1) {
+          for (const double y : {0.0, 1.2})
+            seen.push_back(perception.newest()->distance().distance({x + ahead, y, 1.0}, 0.0));
+        }
+      }
+    }
+    const auto half = seen.begin() + static_cast<std::ptrdiff_t>(seen.size() / 2);
+    EXPECT_TRUE(std::equal(seen.begin(), half, half, seen.end()));
+  }
 }
 
 TEST(Perception, ShowsAJudgeTheVoxelsNearARobot) {
