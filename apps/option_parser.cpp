@@ -202,6 +202,8 @@ bool OptionParser::has_option(const std::string& name) const {
   return app_->get_option_no_throw(name) != nullptr;
 }
 
+bool OptionParser::given(const std::string& name) const { return app_->count(name) > 0; }
+
 std::string OptionParser::name() const { return app_->get_name(); }
 
 }  // namespace locograph

@@ -76,6 +76,8 @@ class OptionParser {
   bool chosen() const;
   /// Whether it has this option, e.g. "--lenient".
   bool has_option(const std::string& name) const;
+  /// After parse(): whether the command line gave this option, which there must be.
+  bool given(const std::string& name) const;
   std::string name() const;
 
  private:

@@ -126,11 +126,11 @@ void replace_world(PlanFile& file, const WorldOptions& given, const World& world
   file.graph.replace_parameter(file.plan.world_number, file.plan.world);
 }
 
-ExitCode refine_plan(const CommandOptions& options) {
+ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) {
   const std::vector<std::filesystem::path> inputs = {
       options.input, options.world.map, options.world.obstacles, options.perception.known_map};
   check_output(options.output, inputs, options.json);
-  check_perception_options(options.perception, inputs);
+  check_perception_options(parser, options.perception, inputs);
   WalkOptions walk_options;
   walk_options.planner.horizon = options.horizon;
   walk_options.cycle_deadline_s = 1e-3 * options.deadline_ms;
@@ -235,7 +235,7 @@ Command add_refine(OptionParser& app) {
   add_threads_option(parser, o.threads);
   add_plugin_option(parser, o.plugins);
   parser.add_flag("--json", o.json, "Print one JSON object");
-  return {parser, [options] { return refine_plan(*options); }};
+  return {parser, [parser, options] { return refine_plan(parser, *options); }};
 }
 
 }  // namespace locograph

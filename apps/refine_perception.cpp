@@ -1,5 +1,6 @@
 #include <locograph/apps/refine_perception.h>
 #include <locograph/apps/statistics.h>
+#include <locograph/common/stop_signals.h>
 #include <locograph/world/distance_view.h>
 #include <locograph/world/octree.h>
 
@@ -69,6 +70,21 @@ std::unique_ptr<ImageSource> simulated_images(const PlanFile& file, const Judgin
                                            std::move(cameras), options);
 }
 
+/// Throws Error where not one of the clouds comes before the plan ends.
+void require_in_time(const CloudsFolder& clouds, const PlanFile& file,
+                     const PerceptionChoice& choice) {
+  const auto time_s = [&](int slot) {
+    return file.graph.vertex(VertexId<VertexConfiguration>{slot}).time_s;
+  };
+  const double begin_s = time_s(file.plan.slots.front()), end_s = time_s(file.plan.slots.back());
+  const double slower = choice.unknown == "slow" ? CameraWalkOptions().slower : 1.0;
+  const double first_s = clouds.stamp_s(0), latest_s = begin_s + slower * (end_s - begin_s);
+  if (first_s <= latest_s) return;
+  throw Error(clouds.files().front().string(), 0,
+              "the first cloud is of " + short_number(first_s) + " s, after the end of the plan",
+              "times of the plan's clock, which ends at " + short_number(latest_s) + " s");
+}
+
 Json window_json(const Perception& perception) {
   const LocalField& field = *perception.field();
   const VoxelWindow& window = field.window();
@@ -116,7 +132,7 @@ void add_perception_options(OptionParser& parser, PerceptionChoice& choice) {
   parser.add_option("--seed", choice.seed, "Of the noise of simulated cameras").show_default();
 }
 
-void check_perception_options(const PerceptionChoice& choice,
+void check_perception_options(const OptionParser& parser, const PerceptionChoice& choice,
                               const std::vector<std::filesystem::path>& inputs) {
   if (choice.cameras && !choice.clouds.empty()) {
     throw Error("both --cameras and --clouds", "one of them");
@@ -124,11 +140,13 @@ void check_perception_options(const PerceptionChoice& choice,
   if (!choice.cameras && !choice.known_map.empty()) {
     throw Error("--known-map without --cameras", "--map: with --clouds, that is known beforehand");
   }
-  if (!choice.given() && !choice.save_map.empty()) {
-    throw Error("--save-map without --cameras or --clouds", "one of them");
+  for (const std::string option : {"--save-map", "--unknown", "--voxel", "--window"}) {
+    if (choice.given() || !parser.given(option)) continue;
+    throw Error(option + " without --cameras or --clouds", "one of them");
   }
-  if (!choice.given() && choice.unknown != PerceptionChoice().unknown) {
-    throw Error("--unknown without --cameras or --clouds", "one of them");
+  for (const std::string option : {"--camera-rate", "--seed"}) {
+    if (choice.cameras || !parser.given(option)) continue;
+    throw Error(option + " without --cameras", "simulated cameras");
   }
   if (choice.save_map.empty()) return;
   if (choice.save_map == "-") throw Error("a map to standard output", "a file");
@@ -162,14 +180,18 @@ RefinePerception::RefinePerception(const PlanFile& file, const Judging& judging,
     images_ = simulated_images(file, judging, choice, cameras);
   } else {
     CloudsFolder folder(choice.clouds, cameras);
+    require_in_time(folder, file, choice);
     std::ranges::copy(folder.files(), std::back_inserter(files_));
     images_ = std::make_unique<RecordedImages>(std::move(folder));
   }
   if (!choice.save_map.empty()) check_not_input(choice.save_map, files_);
-  walk_.emplace(file.graph, judging, *perception_, *images_);
+  CameraWalkOptions walk;
+  walk.stop = &stop_flag();
+  walk_.emplace(file.graph, judging, *perception_, *images_, walk);
 }
 
 void RefinePerception::equip(WalkOptions& options) {
+  options.planner.fallbacks = camera_fallbacks();
   options.verify = [this](const Motion& step) { return walk_->check_step(step); };
   if (choice_.unknown == "slow") {
     options.pace = [this](int executed) { return walk_->pace(executed); };

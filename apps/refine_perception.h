@@ -47,8 +47,8 @@ struct PerceptionChoice {
 void add_perception_options(OptionParser& parser, PerceptionChoice& choice);
 
 /// Throws Error for options that do not go together, and for a save_map that is one of the inputs
-/// or cannot be written.
-void check_perception_options(const PerceptionChoice& choice,
+/// or cannot be written. After the parsing.
+void check_perception_options(const OptionParser& parser, const PerceptionChoice& choice,
                               const std::vector<std::filesystem::path>& inputs);
 
 /// A refined plan is a success if it is one for the judge. Where a robot went by what its cameras
@@ -72,7 +72,7 @@ class RefinePerception {
   /// Of the image that would come next; infinite: there is none.
   double next_stamp_s() const { return images_->next_stamp_s(); }
 
-  /// Sets what is asked on the way: verify, and pace.
+  /// Sets what is asked on the way: fallbacks, verify, and pace.
   void equip(WalkOptions& options);
   WorldAt world_at();
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 #include <utility>
 
 namespace locograph {
@@ -11,7 +13,7 @@ namespace {
 
 /// A page of some 4 MB, whatever the plan.
 constexpr int kMostTimes = 60;
-constexpr int kMostPoints = 800000, kMostPointsOfACloud = 20000;
+constexpr int kMostPoints = 600000, kMostPointsOfACloud = 20000;
 constexpr int kUnit_mm = 2;
 
 const PlanFile& moving(const PlanFile& file) {
@@ -29,8 +31,47 @@ std::size_t times_step(const PlanFile& file) {
   return (file.plan.slots.size() + kMostTimes - 1) / kMostTimes;
 }
 
-/// How many of n pixels in a row are shown, the first of them being number stride / 2.
-int shown_of(int n, int stride) { return (n - stride / 2 + stride - 1) / stride; }
+/// Of each square of pixels one is shown, of up to so many times so many.
+constexpr int kMostAlong = 15;
+
+int pixels_between(int square) { return (square + kMostAlong - 1) / kMostAlong; }
+
+/// Which pixels of an image are shown, and what they show.
+struct Thinned {
+  std::vector<std::uint8_t> places;
+  std::vector<std::int16_t> depths;
+};
+
+/// Of each square the pixel nearest to its middle that shows anything: clouds may be sparse.
+Thinned thinned(const DepthImage& kept, const DepthImage& taken, int square) {
+  const int between = pixels_between(square), along = (square + between - 1) / between;
+  std::vector<int> order(static_cast<std::size_t>(along * along));
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [along](int k) {
+    const int du = 2 * (k % along) - along + 1, dv = 2 * (k / along) - along + 1;
+    return du * du + dv * dv;
+  });
+  Thinned thinned;
+  for (int v = 0; v < kept.height; v += square) {
+    for (int u = 0; u < kept.width; u += square) {
+      std::uint8_t place = 0;
+      int depth_mm = 0;
+      for (const int k : order) {
+        const int column = u + between * (k % along), row = v + between * (k / along);
+        if (column >= kept.width || row >= kept.height) continue;
+        const auto at = static_cast<std::size_t>(row) * static_cast<std::size_t>(kept.width) +
+                        static_cast<std::size_t>(column);
+        depth_mm = kept.depth_mm[at] - taken.depth_mm[at];
+        if (depth_mm == 0) continue;
+        place = static_cast<std::uint8_t>(k % along + kMostAlong * (k / along));
+        break;
+      }
+      thinned.places.push_back(place);
+      thinned.depths.push_back(static_cast<std::int16_t>(depth_mm / kUnit_mm));
+    }
+  }
+  return thinned;
+}
 
 void append_varint(std::size_t number, std::vector<std::uint8_t>& bytes) {
   for (; number >= 128; number >>= 7)
@@ -84,7 +125,7 @@ PerceptionScene::PerceptionScene(const PlanFile& file, const Judging& judging,
       eyes_(file, judging, choice, [this](const FilteredImage& image) { take(image); }),
       newest_(eyes_.perception().cameras().size()) {}
 
-int PerceptionScene::stride(const DepthCamera& camera) const {
+int PerceptionScene::square(const DepthCamera& camera) const {
   const std::size_t times = (file_.plan.slots.size() - 1) / times_step(file_) + 1;
   const double clouds = static_cast<double>(times * eyes_.perception().cameras().size());
   const double points = std::min<double>(kMostPointsOfACloud, kMostPoints / clouds);
@@ -92,35 +133,23 @@ int PerceptionScene::stride(const DepthCamera& camera) const {
 }
 
 void PerceptionScene::take(const FilteredImage& image) {
-  Cloud& cloud = newest_[static_cast<std::size_t>(image.kept.camera)];
-  cloud.is_new = true;
-  cloud.stamp_s = image.kept.stamp_s;
-  cloud.world_from_optical = image.world_from_optical;
-  cloud.depths.clear();
-  const int step = stride(image.camera);
-  for (int v = step / 2; v < image.kept.height; v += step) {
-    for (int u = step / 2; u < image.kept.width; u += step) {
-      const auto at = static_cast<std::size_t>(v) * static_cast<std::size_t>(image.kept.width) +
-                      static_cast<std::size_t>(u);
-      const int depth = (image.kept.depth_mm[at] - image.taken.depth_mm[at]) / kUnit_mm;
-      cloud.depths.push_back(static_cast<std::int16_t>(depth));
-    }
-  }
+  newest_[static_cast<std::size_t>(image.kept.camera)] = {image.world_from_optical, image.kept,
+                                                          image.taken, true};
 }
 
 Json PerceptionScene::blank() const {
   const LocalMapOptions& map = eyes_.perception().options().map;
   Json cameras = Json::array();
   for (const DepthCamera& camera : eyes_.perception().cameras()) {
-    const double step = stride(camera);
-    const int first = stride(camera) / 2;
-    cameras.push_back(
-        {{"name", camera.name},
-         {"size",
-          {shown_of(camera.width, stride(camera)), shown_of(camera.height, stride(camera))}},
-         {"focal", {rounded(camera.fx / step), rounded(camera.fy / step)}},
-         {"centre", {rounded((camera.cx - first) / step), rounded((camera.cy - first) / step)}},
-         {"range", rounded(std::min(camera.range_max_m, map.range_m))}});
+    const int pixels = square(camera);
+    cameras.push_back({{"name", camera.name},
+                       {"square", pixels},
+                       {"between", pixels_between(pixels)},
+                       {"columns", (camera.width + pixels - 1) / pixels},
+                       {"rows", (camera.height + pixels - 1) / pixels},
+                       {"focal", {rounded(camera.fx), rounded(camera.fy)}},
+                       {"centre", {rounded(camera.cx), rounded(camera.cy)}},
+                       {"range", rounded(std::min(camera.range_max_m, map.range_m))}});
   }
   Json json = {{"cameras", std::move(cameras)},
                {"resolution", map.resolution_m},
@@ -136,10 +165,13 @@ Json PerceptionScene::news(double time_s) {
   for (std::size_t i = 0; i < newest_.size(); ++i) {
     Cloud& cloud = newest_[i];
     if (!std::exchange(cloud.is_new, false)) continue;
+    const Thinned points =
+        thinned(cloud.kept, cloud.taken, square(eyes_.perception().cameras()[i]));
     clouds.push_back({{"camera", i},
-                      {"stamp", rounded(cloud.stamp_s)},
+                      {"stamp", rounded(cloud.kept.stamp_s)},
                       {"pose", pose_json(cloud.world_from_optical)},
-                      {"depths", packed_shorts(cloud.depths)}});
+                      {"places", packed_bytes(points.places)},
+                      {"depths", packed_shorts(points.depths)}});
   }
   const std::shared_ptr<const LocalField>& field = eyes_.perception().field();
   if (field != shown_) maps.push_back(map_json(*field, time_s));
@@ -173,7 +205,7 @@ void PerceptionScene::warn_of_unseen() const {
   const std::string from = short_number(time_of(file_, 0));
   const std::string to = short_number(time_of(file_, file_.plan.slots.size() - 1));
   if (perception.images() == 0) {
-    throw Error(choice_.clouds, 0,
+    throw Error((std::filesystem::path(choice_.clouds) / "clouds.csv").string(), 0,
                 refused > 0 ? eyes_.walk().last_refusal() : "no cloud until the plan ends",
                 "clouds of its time, " + from + " to " + to + " s");
   }

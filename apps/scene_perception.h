@@ -11,7 +11,6 @@
 
 #include <locograph/apps/refine_perception.h>
 
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -23,6 +22,8 @@ class PerceptionScene {
   /// The file must outlive it. Throws Error for a plan that does not move from one configuration to
   /// the next (stances_only), and as RefinePerception does.
   PerceptionScene(const PlanFile& file, const Judging& judging, const PerceptionChoice& choice);
+  PerceptionScene(const PerceptionScene&) = delete;
+  PerceptionScene& operator=(const PerceptionScene&) = delete;
 
   RefinePerception& eyes() { return eyes_; }
   /// The cameras and the map, before anything is seen.
@@ -36,13 +37,12 @@ class PerceptionScene {
 
  private:
   struct Cloud {
-    double stamp_s = 0.0;
     Eigen::Isometry3d world_from_optical;
-    std::vector<std::int16_t> depths;
+    DepthImage kept, taken;
     bool is_new = false;
   };
-  /// Every how many-th pixel of a camera is shown, along both sides.
-  int stride(const DepthCamera& camera) const;
+  /// Of the squares of pixels that one is shown of, in pixels.
+  int square(const DepthCamera& camera) const;
   void take(const FilteredImage& image);
   void warn_of_unseen() const;
 

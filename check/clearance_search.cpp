@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace locograph {
@@ -72,7 +73,16 @@ ClearanceSearch::Sample ClearanceSearch::sample(int vertex, double fraction,
   CollisionWorld::Query query{.world_from_link = sample.world_from_link,
                               .time_s = time_s,
                               .touches = touches,
-                              .cutoff_m = context_.cutoff_m + further_m_};
+                              .cutoff_m = context_.cutoff_m + further_m_,
+                              .obstacles = counted_ ? &*counted_ : nullptr};
+  if (one_obstacle_) {
+    const CollisionWorld::Surroundings near = context_.exact.obstacles(query);
+    sample.distances = {near.obstacle.distance_m, std::numeric_limits<double>::infinity(),
+                        near.touched.distance_m};
+    add(0, near.obstacle, vertex, time_s);
+    if (stance != nullptr) add(2, near.touched, vertex, time_s);
+    return sample;
+  }
   CollisionWorld::Surroundings around = context_.exact.surroundings(query);
   if (keeps_from_surfaces_) keep_from_surfaces(vertex, stance, query, around.obstacle);
   sample.distances = {around.obstacle.distance_m, around.surface.distance_m,
@@ -169,7 +179,9 @@ double ClearanceSearch::path_bound(int step, const Sample& from, const Sample& t
   const double robot =
       shapes.path_bound(from.world_from_link, to.world_from_link, fraction, channel.links);
   if (&channel != &channels_[0]) return robot;  // surfaces do not move, nor what may be touched
-  return robot + obstacle_path_.bound(time_s(step, from.fraction), time_s(step, to.fraction));
+  const double from_s = time_s(step, from.fraction), to_s = time_s(step, to.fraction);
+  return robot + (one_obstacle_ ? obstacle_path_.bound(counted_->front(), from_s, to_s)
+                                : obstacle_path_.bound(from_s, to_s));
 }
 
 void ClearanceSearch::refine(int step, const JudgedStance* stance, const Sample& from,
@@ -210,19 +222,34 @@ void ClearanceSearch::run_step(int step, const JudgedStance* stance, const Sampl
   end.fraction = 1.0;
   const double begin_s = standing_ ? from_s_ : context_.motion.time_s[std::size_t(step)];
   const double end_s = standing_ ? to_s_ : context_.motion.time_s[std::size_t(step) + 1];
-  for (const double change_s : obstacle_path_.changes_s()) {
-    if (self_ || !(change_s > begin_s && change_s <= end_s)) continue;
-    const double before_s = std::exchange(earliest_s_, change_s);
-    latest_s_ = change_s;
-    Sample change = sample(step, (change_s - begin_s) / (end_s - begin_s), stance);
-    earliest_s_ = before_s;
-    refine(step, stance, begin, change);
-    earliest_s_ = change_s;
-    latest_s_ = kEver_s;
-    begin = std::move(change);
+  std::vector<std::size_t> lasting, changing;
+  for (std::size_t o = 0; !self_ && o < context_.world.obstacles.size(); ++o) {
+    const Obstacle& obstacle = context_.world.obstacles[o];
+    if (!obstacle.is_there(begin_s, end_s)) continue;
+    const bool lasts = obstacle.appears_s <= begin_s && obstacle.vanishes_s >= end_s;
+    (lasts ? lasting : changing).push_back(o);
   }
+  if (!changing.empty()) counted_ = std::move(lasting);
   refine(step, stance, begin, end);
+  for (const std::size_t o : changing) look_at_obstacle(step, stance, o, begin_s, end_s);
+  counted_.reset();
+}
+
+void ClearanceSearch::look_at_obstacle(int step, const JudgedStance* stance, std::size_t obstacle,
+                                       double begin_s, double end_s) {
+  const Obstacle& one = context_.world.obstacles[obstacle];
+  earliest_s_ = std::max(begin_s, one.appears_s);
+  latest_s_ = std::min(end_s, one.vanishes_s);
+  counted_ = {obstacle};
+  one_obstacle_ = true;
+  const auto at = [&](double time_s) {
+    return sample(step, (time_s - begin_s) / (end_s - begin_s), stance);
+  };
+  const Sample comes = at(earliest_s_);
+  if (latest_s_ > earliest_s_) refine(step, stance, comes, at(latest_s_));
+  one_obstacle_ = false;
   earliest_s_ = -kEver_s;
+  latest_s_ = kEver_s;
 }
 
 void ClearanceSearch::stand(int vertex, const JudgedStance* stance, double from_s, double to_s) {

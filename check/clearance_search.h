@@ -8,8 +8,8 @@
 ///
 /// A distance changes by no more than what the things concerned travel. If it is d0 and d1 at the
 /// ends of an interval in which they travel at most L, it is at least (d0 + d1 - L) / 2 inside.
-/// Obstacles come and go at ends of intervals only: there steps are cut, and looked at with those
-/// that are there before or after.
+/// Obstacles that come or go during a step are looked at one by one, for as long as they are there;
+/// the others are there all along it.
 /// Intervals whose bound could matter (see CheckOptions::clearance_resolution_m) are halved: for a
 /// violation, and for a new smallest distance to obstacles and of the robot to itself.
 ///
@@ -84,6 +84,9 @@ class ClearanceSearch {
   /// A contact of another stance that is not held at a vertex is in its plane there.
   bool is_near(const JudgedStance* other, int vertex);
   void run_step(int step, const JudgedStance* stance, const Sample& from, const Sample& to);
+  /// One that is not there all along the step.
+  void look_at_obstacle(int step, const JudgedStance* stance, std::size_t obstacle, double begin_s,
+                        double end_s);
   void refine(int step, const JudgedStance* stance, const Sample& from, const Sample& to);
   /// In the configuration of a vertex, while obstacles move.
   void stand(int vertex, const JudgedStance* stance, double from_s, double to_s);
@@ -100,7 +103,10 @@ class ClearanceSearch {
   ObstaclePath obstacle_path_;
   bool standing_ = false;  // fractions are of the time between these
   double from_s_ = 0.0, to_s_ = 0.0;
-  // Of samples: fractions tell times up to rounding, which obstacles come and go at exactly.
+  // Of samples: the obstacles that count; none: all that are there.
+  std::optional<std::vector<std::size_t>> counted_;
+  bool one_obstacle_ = false;  // and nothing but the one that counts
+  // Fractions tell times up to rounding, which obstacles come and go at exactly.
   double earliest_s_ = -std::numeric_limits<double>::infinity();
   double latest_s_ = std::numeric_limits<double>::infinity();
   double further_m_;

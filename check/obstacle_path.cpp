@@ -3,13 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace locograph {
+namespace {
+
+constexpr std::size_t kAtRest = std::numeric_limits<std::size_t>::max();
+
+}  // namespace
+
 ObstaclePath::ObstaclePath(std::span<const Obstacle> obstacles) {
   for (const Obstacle& obstacle : obstacles) {
-    for (const double time_s : {obstacle.appears_s, obstacle.vanishes_s}) {
-      if (std::isfinite(time_s)) changes_s_.push_back(time_s);
-    }
+    track_of_.push_back(obstacle.motion.empty() ? kAtRest : tracks_.size());
     const double appears_s = std::max(0.0, obstacle.appears_s);
     end_s_ = std::max(end_s_, appears_s);
     if (obstacle.motion.empty()) continue;
@@ -28,8 +33,6 @@ ObstaclePath::ObstaclePath(std::span<const Obstacle> obstacles) {
     end_s_ = std::max(end_s_, track.time_s.back() + (track.repeats ? appears_s : 0.0));
     tracks_.push_back(std::move(track));
   }
-  std::ranges::sort(changes_s_);
-  changes_s_.erase(std::ranges::unique(changes_s_).begin(), changes_s_.end());
 }
 
 double ObstaclePath::Track::length_until(double time) const {
@@ -48,11 +51,20 @@ double ObstaclePath::Track::length_until(double time) const {
   return length + length_m[after - 1] + share * (length_m[after] - length_m[after - 1]);
 }
 
+double ObstaclePath::Track::length_between(double from_s, double to_s) const {
+  return std::abs(length_until(to_s) - length_until(from_s));
+}
+
 double ObstaclePath::bound(double from_s, double to_s) const {
   double longest = 0.0;
   for (const Track& track : tracks_)
-    longest = std::max(longest, std::abs(track.length_until(to_s) - track.length_until(from_s)));
+    longest = std::max(longest, track.length_between(from_s, to_s));
   return longest;
+}
+
+double ObstaclePath::bound(std::size_t obstacle, double from_s, double to_s) const {
+  const std::size_t track = track_of_[obstacle];
+  return track == kAtRest ? 0.0 : tracks_[track].length_between(from_s, to_s);
 }
 
 }  // namespace locograph

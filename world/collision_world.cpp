@@ -186,7 +186,7 @@ struct CollisionWorld::Parts::Search {
     if (query.touches.size() > 64)
       throw Error(std::to_string(query.touches.size()) + " places to touch", "64 at most");
     touching.of_link.assign(parts.link_names.size(), 0);
-    touching.of_obstacle.assign(parts.solids->obstacles.size(), 0);
+    touching.of_obstacle.assign(obstacle_count(), 0);
     touching.of_plate.assign(parts.solids->plates.size(), 0);
     touching.of_rod.assign(parts.solids->rods.size(), 0);
     touching.of_block.assign(parts.solids->blocks.size(), 0);
@@ -197,6 +197,14 @@ struct CollisionWorld::Parts::Search {
     for (std::size_t b = 0; b < parts.bodies.size(); ++b)
       radius = std::max(radius,
                         (body_centre(b) - centre).norm() + parts.bodies[b].shape.bounding_radius());
+  }
+
+  std::size_t obstacle_count() const {
+    return query.obstacles != nullptr ? query.obstacles->size() : parts.solids->obstacles.size();
+  }
+  /// Of World::obstacles, the k-th one that the query may mean.
+  std::size_t obstacle_index(std::size_t k) const {
+    return query.obstacles != nullptr ? (*query.obstacles)[k] : k;
   }
 
   Eigen::Vector3d body_centre(std::size_t b) const {
@@ -210,12 +218,13 @@ struct CollisionWorld::Parts::Search {
       Eigen::Vector3d where;
       return -least_along(shape, pose, -touch.normal, where) - plane;
     };
-    for (std::size_t o = 0; o < parts.solids->obstacles.size(); ++o) {
+    for (std::size_t k = 0; k < obstacle_count(); ++k) {
+      const std::size_t o = obstacle_index(k);
       const Obstacle& obstacle = parts.solids->obstacles[o];
       if (!obstacle.motion.empty()) continue;
       if (obstacle.distance(touch.position, query.time_s) > touch.reach_m) continue;
       if (out_of_plane(parts.solids->obstacle_shapes[o], obstacle.world_from_obstacle) <= kFlush_m)
-        touching.of_obstacle[o] |= bit;
+        touching.of_obstacle[k] |= bit;
     }
     for (const int surface : touch.surfaces) {
       touching.of_plate[static_cast<std::size_t>(surface)] |= bit;
@@ -266,15 +275,17 @@ struct CollisionWorld::Parts::Search {
   }
 
   void obstacles() {
-    for (std::size_t o = 0; o < parts.solids->obstacles.size(); ++o) {
-      if (!parts.solids->obstacles[o].is_there(query.time_s)) continue;
+    for (std::size_t k = 0; k < obstacle_count(); ++k) {
+      const std::size_t o = obstacle_index(k);
+      if (query.obstacles == nullptr && !parts.solids->obstacles[o].is_there(query.time_s))
+        continue;
       const Eigen::Isometry3d world_from_obstacle =
           parts.solids->obstacles[o].pose_at(query.time_s);
       const ConvexShape& shape = parts.solids->obstacle_shapes[o];
       for (std::size_t b = 0; b < parts.bodies.size(); ++b) {
         const Body& body = parts.bodies[b];
         const Touching::Bits all =
-            touching.of_link[static_cast<std::size_t>(body.link)] & touching.of_obstacle[o];
+            touching.of_link[static_cast<std::size_t>(body.link)] & touching.of_obstacle[k];
         const Touching::Bits touches = held(all);
         const double nearest = touches != 0 ? 0.0 : found.obstacle.distance_m - allowance(all);
         if (sphere_bound(body.shape, world_from_body[b], shape, world_from_obstacle) >= nearest)
@@ -446,6 +457,12 @@ CollisionWorld::Surroundings CollisionWorld::surroundings(const Query& query) co
   search.surfaces();
   search.bars();
   search.blocks();
+  return std::move(search.found);
+}
+
+CollisionWorld::Surroundings CollisionWorld::obstacles(const Query& query) const {
+  Parts::Search search(*parts_, query);
+  search.obstacles();
   return std::move(search.found);
 }
 

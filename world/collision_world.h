@@ -84,6 +84,8 @@ class CollisionWorld {
     double cutoff_m = 0.5;  ///< as in CollisionWorldOptions
     /// The same of surfaces, bars and boxes: mostly it matters only whether links reach into them.
     double surface_cutoff_m = 0.15;
+    /// Indices of the obstacles that count, there at that time or not; null: all that are there.
+    const std::vector<std::size_t>* obstacles = nullptr;
   };
   struct Surroundings {
     Closest obstacle;  ///< of the voxels and obstacles that the link does not touch
@@ -107,6 +109,8 @@ class CollisionWorld {
 
   /// All of the world, touched or not.
   Surroundings surroundings(const Query& query) const;
+  /// Of the obstacles alone.
+  Surroundings obstacles(const Query& query) const;
 
   /// Map and obstacles. Returns early with the first distance below stop_below, if there is one.
   Closest environment_distance(std::span<const Eigen::Isometry3d> world_from_link, double time_s,

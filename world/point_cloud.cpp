@@ -32,7 +32,7 @@ struct Field {
 struct PcdHeader {
   std::array<Field, 3> xyz;
   std::size_t words = 0, bytes = 0;  ///< of one point
-  std::size_t width = 0, points = 0;
+  std::size_t width = 0, height = 0, points = 0;
   Layout layout = Layout::kText;
   std::size_t data_begin = 0;
   int data_line = 0;  ///< the last of the header
@@ -73,6 +73,7 @@ class PcdHeaderReader {
     lay_out(fields, header);
     header.points = number_of_points();
     header.width = number("WIDTH");
+    header.height = number("HEIGHT");
     return header;
   }
 
@@ -229,7 +230,6 @@ class PcdHeaderReader {
       fail(entry("POINTS").line, "POINTS is not WIDTH times HEIGHT",
            std::to_string(width * height));
     }
-    if (width * height == 0) fail(line, "an empty cloud", "points");
     return width * height;
   }
 
@@ -349,6 +349,7 @@ bool expand_lzf(std::string_view in, std::size_t size, std::string& out) {
 
 std::vector<Eigen::Vector3d> read_compressed(const std::string& file, const PcdHeader& header,
                                              std::string_view data) {
+  if (header.points == 0 && data.empty()) return {};
   std::array<std::uint32_t, 2> sizes{};  // compressed, expanded
   if (data.size() < sizeof sizes) {
     fail_truncated(file, 0, std::to_string(data.size()) + " bytes of data", header.points);
@@ -410,7 +411,7 @@ PointCloud read_pcd(const std::filesystem::path& path, bool place) {
   PointCloud cloud;
   if (place) cloud.viewpoint = reader.viewpoint();
   cloud.width = header.width;
-  cloud.height = header.points / header.width;
+  cloud.height = header.height;
   cloud.points = read_points(file, header, std::string_view(content).substr(header.data_begin));
   return cloud;
 }

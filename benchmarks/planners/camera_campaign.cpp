@@ -121,6 +121,7 @@ class Campaign {
     judging.options = check_;
     CameraWalk eyes(graph, judging, perception, images);
     WalkOptions walking;
+    walking.planner.fallbacks = camera_fallbacks();
     walking.verify = [&](const Motion& step) { return eyes.check_step(step); };
     const double before_s = processor_seconds();
     const WalkReport report = walk_plan(

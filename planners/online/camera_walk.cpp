@@ -75,7 +75,7 @@ void CameraWalk::step_to(int executed) {
   };
   Eigen::VectorXd q(perception_.robot().configuration_size());
   const int parts = std::max(1, static_cast<int>(std::ceil((to_s - from_s) / kConfigurations_s)));
-  for (int k = 1; k <= parts; ++k) {
+  for (int k = 1; k <= parts && !stopped(); ++k) {
     const double time_s = k == parts ? to_s : from_s + (to_s - from_s) * k / parts;
     where(time_s, q);
     perception_.configuration(time_s, q);
@@ -86,7 +86,7 @@ void CameraWalk::step_to(int executed) {
 void CameraWalk::show_until(double time_s,
                             const std::function<void(double, Eigen::VectorXd&)>& where) {
   Eigen::VectorXd q(perception_.robot().configuration_size());
-  while (images_.next_stamp_s() <= time_s) {
+  while (images_.next_stamp_s() <= time_s && !stopped()) {
     Stopwatch watch;
     where(images_.next_stamp_s(), q);
     state_.update(q.data());

@@ -17,6 +17,7 @@
 #include <locograph/world/perception/image_source.h>
 #include <locograph/world/perception/perception.h>
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
@@ -28,6 +29,8 @@ struct CameraWalkOptions {
   /// With UnknownSpace::kSlow: how many times as long steps take while, within so many seconds, a
   /// collision sphere of the robot touches what was never seen.
   double slower = 2.0, ahead_s = 2.0;
+  /// When it is set no more images are shown: walk_plan() is to end by the same flag. May be null.
+  const std::atomic<bool>* stop = nullptr;
 
   void validate() const;
 };
@@ -57,6 +60,7 @@ class CameraWalk {
 
  private:
   const VertexConfiguration& vertex(int i) const;
+  bool stopped() const { return options_.stop != nullptr && *options_.stop; }
   void stand();
   void step_to(int executed);
   /// where: fills in the robot's configuration at a time.

@@ -3,7 +3,7 @@
 /// from which the graph optimiser reaches a detour.
 ///
 ///     DetourSearch search(robot, options);
-///     std::vector<double> offsets = search.find(first, window, times, world, offset, slope);
+///     std::vector<Detour> detours = search.find(first, window, times, world, {.offset_m = 0.1});
 ///
 /// A local optimiser cannot tell left from right when an obstacle lies square across the plan.
 /// Here the whole window is moved sideways as it is, legs and heading as planned, by an offset for
@@ -12,6 +12,11 @@
 ///   Σ w_lateral o² + w_step (Δo)² + w_turn (Δ²o)² + w_obstacle Σ_spheres max(0, margin + r − d)²
 /// on a grid, Δ²o at most one grid step: the global optimum of that one-dimensional problem, left
 /// and right alike.
+///
+/// With DetourOptions::most_yaw the configurations are turned about the vertical through their base
+/// as well, by a yaw ψ that changes by one grid step at most, for
+///   Σ w_yaw ψ² + w_turning (Δψ)²
+/// more: a long robot gets slantwise between two obstacles that it does not get between head on.
 
 #include <locograph/common/termination.h>
 #include <locograph/plugins/configuration/robot_parameters.h>
@@ -24,6 +29,12 @@
 
 namespace locograph {
 
+/// How a configuration is moved from where it was planned.
+struct Detour {
+  double offset_m = 0.0;  ///< to the left
+  double yaw_rad = 0.0;   ///< counter-clockwise
+};
+
 struct DetourOptions {
   double grid_m = 0.02;
   double largest_offset_m = 1.6;
@@ -31,21 +42,24 @@ struct DetourOptions {
   double lateral_weight = 0.5, step_weight = 50.0, turn_weight = 300.0;
   double obstacle_weight = 1e4;
   double margin_m = 0.05;
+  double yaw_grid_rad = 0.06;
+  int most_yaw = 0;  ///< to either side, in grid steps; 0: heading as planned
+  double yaw_weight = 0.5, turning_weight = 20.0;
 };
 
 class DetourSearch {
  public:
   DetourSearch(std::shared_ptr<const RobotParameter> robot, const DetourOptions& options);
 
-  /// plan: the configurations of the window as planned. start_offset and start_slope: how far the
-  /// executed configuration is to the left of its place in the plan, and how much that changed in
-  /// the last step [m]. first: index in the plan of the window's first configuration. Returns an
-  /// offset for each configuration; none when the termination ends it. The costs of obstacles that
-  /// have been worked out by then are kept for the next call, by index in the plan: every call
-  /// works out those of at least one more configuration.
-  std::vector<double> find(int first, const std::vector<const double*>& plan,
+  /// plan: the configurations of the window as planned. start and start_slope_m: where the executed
+  /// configuration is, and how much its offset changed in the last step. first: index in the plan
+  /// of the window's first configuration. Returns a detour for each configuration; none when the
+  /// termination ends it. The costs of obstacles that have been worked out by then are kept for the
+  /// next call, by index in the plan: every call works out those of at least one more
+  /// configuration.
+  std::vector<Detour> find(int first, const std::vector<const double*>& plan,
                            const std::vector<double>& time_s, const WorldDistance& world,
-                           double start_offset, double start_slope,
+                           const Detour& start = {}, double start_slope_m = 0.0,
                            const Termination& termination = {});
 
   /// The world or the plan has changed: the costs that were kept do not hold any more.
@@ -54,8 +68,11 @@ class DetourSearch {
  private:
   double obstacle_cost(const WorldDistance& world, double time_s,
                        const Eigen::Vector3d& shift) const;
-  void fill_obstacle_costs(const double* configuration, const WorldDistance& world, double time_s,
-                           double* costs);
+  /// Of every offset, with the configuration as it is.
+  void fill_obstacle_costs(const Eigen::VectorXd& configuration, const Eigen::Vector3d& side,
+                           const WorldDistance& world, double time_s, double* costs);
+  int offsets() const { return 2 * half_ + 1; }
+  int yaws() const { return 2 * options_.most_yaw + 1; }
 
   std::shared_ptr<const RobotParameter> robot_;
   DetourOptions options_;
@@ -64,8 +81,8 @@ class DetourSearch {
   int slopes_ = 0;  ///< 2 · steepest + 1
   std::vector<Eigen::Vector3d> centres_, bound_centres_;
   std::vector<double> cost_, next_;
-  std::map<int, std::vector<double>> obstacle_;  ///< of every offset, by index in the plan
-  std::vector<std::int8_t> choice_;
+  std::map<int, std::vector<double>> obstacle_;  ///< [yaw][offset], by index in the plan
+  std::vector<std::int8_t> choice_;              ///< how the slope changed + 3 · how the yaw did
 };
 
 }  // namespace locograph

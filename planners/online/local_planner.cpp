@@ -25,7 +25,8 @@ LocalPlanner::LocalPlanner(Graph& graph, const LocalPlannerOptions& options)
       window_(plan_, horizon_of(options)),
       warm_start_(plan_),
       solver_(options.solver),
-      proposals_(options.proposals, plan_, options.proposal_pause) {
+      proposals_(options.proposals, plan_, options.proposal_pause),
+      fallbacks_(options.fallbacks, plan_, 0) {
   options.validate();
   // Memory, the lists of edges and the order of elimination now rather than in the first cycle.
   if (plan_.size() < 2) return;
@@ -52,6 +53,7 @@ void LocalPlanner::take_shown() {
   if (!world) return;
   plan_.show(std::move(world));
   proposals_.world_changed();
+  fallbacks_.world_changed();
 }
 
 CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
@@ -119,6 +121,9 @@ bool LocalPlanner::improve(CycleReport& report, const Termination& termination) 
     cut_short = solver_.raise_constraints(incumbent_, termination, report.statistics).cut_short;
     proposals_.pause_after(report.executed);
   }
+  if (!cut_short && !best.feasible() && !termination.ended(iterations)) {
+    cut_short = try_fallbacks(report, termination);
+  }
   return cut_short;
 }
 
@@ -144,12 +149,7 @@ bool LocalPlanner::wants_proposals(bool continued) const {
 bool LocalPlanner::try_proposals(CycleReport& report, const Termination& termination) {
   bool better = false;
   for (int asked = 0; asked < proposals_.size(); ++asked) {
-    report.detour = true;
-    const Stopwatch watch;
-    const Proposal::Answer answer = proposals_.ask(plan_, window_, termination, candidate_);
-    if (answer == Proposal::Answer::kFound) plan_.overwrite(window_.first(), candidate_);
-    solver_.load_state();
-    report.statistics.proposals_s += watch.seconds();
+    const Proposal::Answer answer = ask(proposals_, report, termination);
     if (answer == Proposal::Answer::kUnfinished) return true;
     if (answer == Proposal::Answer::kNone) continue;
     const WindowSolver::Run run = solver_.optimise(WindowSolver::Start::kCandidate, incumbent_,
@@ -162,6 +162,38 @@ bool LocalPlanner::try_proposals(CycleReport& report, const Termination& termina
   }
   if (!better) proposals_.pause_after(report.executed);
   return false;
+}
+
+/// One after the other, until a window is feasible. Returns whether the termination cut one of them
+/// short.
+bool LocalPlanner::try_fallbacks(CycleReport& report, const Termination& termination) {
+  for (int asked = 0; asked < fallbacks_.size(); ++asked) {
+    const Proposal::Answer answer = ask(fallbacks_, report, termination);
+    if (answer == Proposal::Answer::kUnfinished) return true;
+    if (answer == Proposal::Answer::kNone) continue;
+    beside_.clear();
+    WindowSolver::Run run =
+        solver_.optimise(WindowSolver::Start::kCandidate, beside_, termination, report.statistics);
+    if (!run.cut_short && !beside_.best().quality.feasible() && options_.solver.max_rounds > 0) {
+      run = solver_.raise_constraints(beside_, termination, report.statistics);
+    }
+    incumbent_.offer(beside_.best().quality, beside_.best().state);
+    if (run.cut_short) return true;
+    if (incumbent_.best().quality.feasible()) break;
+  }
+  return false;
+}
+
+/// Loads the candidate that one of them finds into the solver.
+Proposal::Answer LocalPlanner::ask(ProposalSchedule& proposals, CycleReport& report,
+                                   const Termination& termination) {
+  report.detour = true;
+  const Stopwatch watch;
+  const Proposal::Answer answer = proposals.ask(plan_, window_, termination, candidate_);
+  if (answer == Proposal::Answer::kFound) plan_.overwrite(window_.first(), candidate_);
+  solver_.load_state();
+  report.statistics.proposals_s += watch.seconds();
+  return answer;
 }
 
 void LocalPlanner::keep_unfinished(bool cut_short) {

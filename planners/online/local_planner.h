@@ -11,7 +11,8 @@
 /// A cycle moves the window (window.h) to the H configurations after the executed one, initialises
 /// those that enter it (warm_start.h) and optimises it (window_solver.h). If constraints are still
 /// violated, or the window falls behind the plan, it asks proposals (proposal.h), such as a detour,
-/// and optimises from what they find. Constraints that are violated after that are raised.
+/// and optimises from what they find. Constraints that are violated after that are raised. Where
+/// they are violated still, each of LocalPlannerOptions::fallbacks has a try of its own.
 ///
 /// Constraints are whatever the edges of the graph say (core/violations.h), those of plug-ins too.
 /// The graph is only given a window that is better than the one it had (incumbent.h), also when the
@@ -37,6 +38,9 @@ struct LocalPlannerOptions {
   double horizon_s = 0.0;  ///< above 0 it counts instead, see Horizon::seconds
   WindowSolverOptions solver;
   std::vector<ProposalFactory> proposals = standard_proposals();
+  /// Proposals too, asked one after the other in cycles that have found no feasible window. Their
+  /// constraints are raised from where each of them leads.
+  std::vector<ProposalFactory> fallbacks = {};
   double blocked_m = 0.05;  ///< behind the plan at the end of the window: ask proposals
   int proposal_pause = 4;   ///< cycles to wait after proposals that did not help at once
 
@@ -73,6 +77,9 @@ class LocalPlanner {
   bool load_unfinished();
   bool wants_proposals(bool continued) const;
   bool try_proposals(CycleReport& report, const Termination& termination);
+  bool try_fallbacks(CycleReport& report, const Termination& termination);
+  Proposal::Answer ask(ProposalSchedule& proposals, CycleReport& report,
+                       const Termination& termination);
   void keep_unfinished(bool cut_short);
   void hand_out_best();
   void describe_best(CycleReport& report) const;
@@ -83,7 +90,8 @@ class LocalPlanner {
   WarmStart warm_start_;
   WindowSolver solver_;
   Incumbent incumbent_;
-  ProposalSchedule proposals_;
+  Incumbent beside_;  ///< what a fallback has led to
+  ProposalSchedule proposals_, fallbacks_;
   std::vector<Eigen::VectorXd> candidate_;  ///< a proposal's
   std::mutex showing_;
   std::shared_ptr<const WorldSnapshot> shown_;  ///< since the last cycle began; null: none

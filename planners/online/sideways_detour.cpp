@@ -3,6 +3,7 @@
 #include <locograph/planners/online/sideways_detour.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace locograph {
 namespace {
@@ -10,43 +11,49 @@ namespace {
 class SidewaysDetour final : public Proposal {
  public:
   SidewaysDetour(const OnlinePlan& plan, const DetourOptions& options)
-      : search_(plan.plan().robot, options) {}
+      : search_(plan.plan().robot, options), turns_(options.most_yaw > 0) {}
 
   Answer search(const OnlinePlan& plan, const Window& window, const Termination& termination,
                 std::vector<Eigen::VectorXd>& candidate) override {
-    const std::vector<double> offsets = find_offsets(plan, window, termination);
-    if (offsets.empty()) return Answer::kUnfinished;
-    move_sideways(plan, window, offsets, candidate);
-    roll_wheels(plan, window, candidate);
+    Detour start = detour_of(plan, window.executed());
+    if (!turns_) start.yaw_rad = 0.0;
+    const std::vector<Detour> detours = find_detours(plan, window, start, termination);
+    if (detours.empty()) return Answer::kUnfinished;
+    move(plan, window, detours, candidate);
+    roll_wheels(plan, window, start, detours, candidate);
     return Answer::kFound;
   }
 
   void world_changed() override { search_.forget(); }
 
  private:
-  std::vector<double> find_offsets(const OnlinePlan& plan, const Window& window,
-                                   const Termination& termination) {
+  /// Where a configuration is, beside its place in the plan.
+  static Detour detour_of(const OnlinePlan& plan, int i) {
+    const Eigen::VectorXd& planned = plan.planned()[static_cast<std::size_t>(i)];
+    const Eigen::VectorXd now = plan.configuration(i);
+    const Eigen::Vector3d left = left_of(planned.data()), left_now = left_of(now.data());
+    return {(now.head<3>() - planned.head<3>()).dot(left),
+            std::atan2(left.cross(left_now).z(), left.dot(left_now))};
+  }
+
+  std::vector<Detour> find_detours(const OnlinePlan& plan, const Window& window,
+                                   const Detour& start, const Termination& termination) {
     std::vector<const double*> planned;
     std::vector<double> times;
     for (int i = window.first(); i < window.end(); ++i) {
       planned.push_back(plan.planned()[static_cast<std::size_t>(i)].data());
       times.push_back(plan.time_s(i));
     }
-    const auto offset_of = [&](int i) {
-      const Eigen::VectorXd& q = plan.planned()[static_cast<std::size_t>(i)];
-      return (plan.configuration(i).head<3>() - q.head<3>()).dot(left_of(q.data()));
-    };
     const int executed = window.executed();
-    const double start = offset_of(executed);
-    const double slope = executed > 0 ? start - offset_of(executed - 1) : 0.0;
+    const double slope =
+        executed > 0 ? start.offset_m - detour_of(plan, executed - 1).offset_m : 0.0;
     return search_.find(window.first(), planned, times, plan.world().distance(), start, slope,
                         termination);
   }
 
-  static void move_sideways(const OnlinePlan& plan, const Window& window,
-                            const std::vector<double>& offsets,
-                            std::vector<Eigen::VectorXd>& candidate) {
-    candidate.resize(offsets.size());
+  static void move(const OnlinePlan& plan, const Window& window, const std::vector<Detour>& detours,
+                   std::vector<Eigen::VectorXd>& candidate) {
+    candidate.resize(detours.size());
     for (std::size_t k = 0; k < candidate.size(); ++k) {
       const int i = window.first() + static_cast<int>(k);
       if (plan.is_fixed(i)) {
@@ -54,30 +61,38 @@ class SidewaysDetour final : public Proposal {
         continue;
       }
       const Eigen::VectorXd& planned = plan.planned()[static_cast<std::size_t>(i)];
-      candidate[k] = planned;
-      candidate[k].head<3>() += offsets[k] * left_of(planned.data());
+      candidate[k] = turned(planned, detours[k].yaw_rad);
+      candidate[k].head<3>() += detours[k].offset_m * left_of(planned.data());
     }
   }
 
-  static void roll_wheels(const OnlinePlan& plan, const Window& window,
+  static void roll_wheels(const OnlinePlan& plan, const Window& window, const Detour& start,
+                          const std::vector<Detour>& detours,
                           std::vector<Eigen::VectorXd>& candidate) {
     const auto executed = static_cast<std::size_t>(window.executed());
     WheelMotion wheels(plan.robot(), plan.plan().stance_from[executed]->stance);
     Eigen::VectorXd before = plan.configuration(window.executed());
+    double yaw_before = start.yaw_rad;
     for (std::size_t k = 0; k < candidate.size(); ++k) {
       Eigen::VectorXd q = candidate[k];
-      const Eigen::VectorXd& after = candidate[std::min(k + 1, candidate.size() - 1)];
-      const Eigen::Vector3d way = (after - before).head<3>();
+      const std::size_t next = std::min(k + 1, candidate.size() - 1);
+      const Eigen::Vector3d way = (candidate[next] - before).head<3>();
+      const double turn = detours[next].yaw_rad - yaw_before;
       if (way.norm() > 1e-3) {
-        for (int w = 0; w < wheels.wheels(); ++w) wheels.steer(q, w, way);
+        for (int w = 0; w < wheels.wheels(); ++w) {
+          const Eigen::Vector3d arm = wheels.pose(q, w).centre - q.head<3>();
+          wheels.steer(q, w, way + turn * Eigen::Vector3d::UnitZ().cross(arm));
+        }
       }
       wheels.roll(before, q);
       if (!plan.is_fixed(window.first() + static_cast<int>(k))) candidate[k] = q;
       before = candidate[k];
+      yaw_before = detours[k].yaw_rad;
     }
   }
 
   DetourSearch search_;
+  bool turns_;
 };
 
 }  // namespace

@@ -1,11 +1,13 @@
 #include <locograph/check/limits.h>
 #include <locograph/check/motion_curve.h>
 #include <locograph/common/check_option.h>
+#include <locograph/common/ranges.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/online/window_cause.h>
 #include <locograph/planners/plan/slope_limits.h>
 
 #include <algorithm>
+#include <iomanip>
 #include <sstream>
 
 namespace locograph {
@@ -71,20 +73,27 @@ class Walk {
   /// Whether every step could be taken.
   bool walk(const WorldAt& world_at) {
     for (int executed = 0; executed + 1 < planner_.plan_size(); ++executed) {
-      if (const auto end = end_by(options_.termination, executed)) {
-        end_at(executed, *end);
-        return false;
-      }
-      if (!step(executed, world_at)) return false;
+      if (ends_at(executed) || !step(executed, world_at)) return false;
     }
     return true;
+  }
+
+  /// Whether the termination ends the walk, which then is where the robot is.
+  bool ends_at(int executed) {
+    const auto end = end_by(options_.termination, executed);
+    if (end) end_at(executed, *end);
+    return end.has_value();
   }
 
   bool step(int executed, const WorldAt& world_at) {
     const Stopwatch watch;
     if (auto world = world_at ? world_at(executed) : nullptr) planner_.show(std::move(world));
     report_.map_update_s.push_back(watch.seconds());
-    if (options_.pace) go_at(executed, options_.pace(executed));
+    if (ends_at(executed)) return false;  // meanwhile: to show the world takes its time
+    if (options_.pace) {
+      go_at(executed, options_.pace(executed));
+      if (ends_too_late(executed)) return false;
+    }
     const CycleReport cycle =
         planner_.cycle(executed, {.deadline = Deadline::of_limit(options_.cycle_deadline_s)});
     report_.cycles.push_back(cycle);
@@ -136,6 +145,17 @@ class Walk {
     pace_ = pace;
   }
 
+  /// Whether the walk ends because steps that are this slow end later than any file may say.
+  bool ends_too_late(int executed) {
+    const double end_s = vertex(planner_.plan_size() - 1).time_s;
+    if (end_s <= ranges::kTime_s) return false;
+    std::ostringstream text;
+    text << std::setprecision(10) << "as slow as it goes now, the plan would end at " << end_s
+         << " s, which is later than " << ranges::kTime_s << " s";
+    end_at(executed, {PlannerStatus::kNotFound, text.str()});
+    return true;
+  }
+
   /// Decides how fast the robot passes a configuration: as fast as fits the window after it, and as
   /// fast as the plan did where nothing has moved. Later cycles change the window, but not this.
   void pass_through(int i) {
@@ -170,8 +190,9 @@ class Walk {
       for (int steps = 1; steps <= std::min(last, kMostBrakingSteps); ++steps) {
         const Motion moving = motion_of(graph_, planner_.plan(), last - steps, last);
         brake(last, steps);
-        if (!options_.verify ||
-            options_.verify(motion_of(graph_, planner_.plan(), last - steps, last)).feasible) {
+        if (vertex(last).time_s <= ranges::kTime_s &&
+            (!options_.verify ||
+             options_.verify(motion_of(graph_, planner_.plan(), last - steps, last)).feasible)) {
           return last;
         }
         for (int i = 0; i <= steps; ++i) {

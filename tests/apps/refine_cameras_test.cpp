@@ -1,5 +1,5 @@
 // `refine --cameras` and `refine --clouds`, as a user runs them.
-#include <apps/command_runner.h>
+#include <apps/recorded_clouds.h>
 #include <locograph/world/octree.h>
 
 namespace locograph {
@@ -17,21 +17,6 @@ class CameraRunner : public CommandRunner {
     box.world_from_box.translation() = Eigen::Vector3d(2.0, 3.0, 0.25);
     box.size.setConstant(0.5);
     save_octree(*octree_from_boxes({&box, 1}, 0.05), folder() / name);
-  }
-  /// A cloud of a square metre, two metres ahead of the camera, listed with this line.
-  void write_clouds(const std::string& line) const {
-    std::filesystem::create_directory(folder() / "clouds");
-    std::string points;
-    for (int i = -20; i <= 20; ++i) {
-      for (int k = -20; k <= 20; ++k) {
-        points += std::to_string(0.025 * i) + ' ' + std::to_string(0.025 * k) + " 2\n";
-      }
-    }
-    const std::string count = std::to_string(41 * 41);
-    write("clouds/a.pcd", "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " +
-                              count + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + count +
-                              "\nDATA ascii\n" + points);
-    write("clouds/clouds.csv", "time_s,camera,file\n" + line + '\n');
   }
 };
 
@@ -56,18 +41,23 @@ TEST(RefineCameras, TellsWhatTheCamerasSaw) {
   EXPECT_EQ(json["success"], outcome.exit_code == 0);
   EXPECT_GT(octree_info(*load_octree(runner.folder() / "seen.bt")).occupied_leaves, 0u);
   EXPECT_EQ(runner.run("check out.g2o").exit_code, 0) << "as far as it got";
-  // The same bits again.
-  EXPECT_EQ(runner.run(command + "-o again.g2o").exit_code, outcome.exit_code);
+  // The same bits again, whether the map is saved or not.
+  const std::string without_map = command.substr(0, command.find("--save-map"));
+  EXPECT_EQ(runner.run(without_map + "-o again.g2o").exit_code, outcome.exit_code);
   EXPECT_EQ(runner.read("again.g2o"), runner.read("out.g2o"));
 }
 
 TEST(RefineCameras, ShowsRecordedCloudsAtTheirTimes) {
   const CameraRunner runner;
-  runner.write_clouds("0.0,D435i_camera,a.pcd\n1.5,D435i_camera,a.pcd\n900,D435i_camera,a.pcd");
+  write_clouds(runner,
+               "0.0,D435i_camera,a.pcd\n1.5,D435i_camera,a.pcd\n1.6,D435i_camera,none.pcd\n"
+               "900,D435i_camera,a.pcd");
+  runner.write("clouds/none.pcd",
+               "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 0\nHEIGHT 1\nDATA ascii\n");
   const Outcome outcome = runner.run("refine plan.g2o --clouds clouds -o out.g2o --json");
   EXPECT_LE(outcome.exit_code, 1) << outcome.err;
-  EXPECT_EQ(outcome.json()["images"], 2) << "the last one comes too late";
-  EXPECT_EQ(outcome.json()["blind_images"], 0);
+  EXPECT_EQ(outcome.json()["images"], 3) << "the last one comes too late";
+  EXPECT_EQ(outcome.json()["blind_images"], 1) << "one without points";
   EXPECT_EQ(outcome.json()["refused_images"], 0);
 }
 
@@ -85,6 +75,13 @@ TEST(RefineCameras, RefuseWhatCannotBeUsedInOneLine) {
   refused("--known-map box.bt", "", "--known-map without --cameras");
   refused("--save-map seen.bt", "", "--save-map without --cameras or --clouds");
   refused("--unknown occupied", "", "--unknown without --cameras or --clouds");
+  refused("--unknown free", "", "--unknown without --cameras or --clouds");
+  refused("--voxel 0.05", "", "--voxel without --cameras or --clouds");
+  refused("--window 8", "", "--window without --cameras or --clouds");
+  refused("--seed 0", "", "--seed without --cameras");
+  refused("--camera-rate 30", "", "--camera-rate without --cameras");
+  refused("--clouds nowhere --camera-rate 3", "", "--camera-rate without --cameras");
+  refused("--clouds nowhere --seed 3", "", "--seed without --cameras");
   refused("--cameras --known-map none.bt", "none.bt", "");
   refused("--cameras --known-map box.bt --voxel 0.1", "box.bt", "those of the window");
   refused("--cameras --known-map box.bt --save-map box.bt", "", "box.bt");
@@ -92,15 +89,17 @@ TEST(RefineCameras, RefuseWhatCannotBeUsedInOneLine) {
   refused("--cameras --unknown perhaps", "", "unknown");
   refused("--cameras --camera-rate 0", "", "camera-rate");
   refused("--cameras --save-map none/seen.bt", "", "none/seen.bt");
-  runner.write_clouds("0.0,ear,a.pcd");
+  write_clouds(runner, "0.0,ear,a.pcd");
   refused("--clouds clouds", "clouds/clouds.csv:2", "ear");
-  runner.write_clouds("0.0,D435i_camera,b.pcd");
+  write_clouds(runner, "0.0,D435i_camera,b.pcd");
   refused("--clouds clouds", "clouds/clouds.csv:2", "b.pcd");
+  write_clouds(runner, "900,D435i_camera,a.pcd");
+  refused("--clouds clouds", "clouds/clouds.csv", "after the end of the plan");
 }
 
 TEST(RefineCameras, WritesOntoNothingThatItReads) {
   const CameraRunner runner;
-  runner.write_clouds("0.0,D435i_camera,a.pcd");
+  write_clouds(runner, "0.0,D435i_camera,a.pcd");
   runner.write("box.xml",
                "<obstacles version=\"1\"><box center=\"2 3 1\" size=\"1 1 1\"/></obstacles>\n");
   ASSERT_EQ(runner.run("refine plan.g2o --obstacles box.xml -o with_box.g2o").exit_code, 0);

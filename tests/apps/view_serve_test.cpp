@@ -143,6 +143,32 @@ TEST_F(Live, EveryCycleArrivesAndTheEndIsTold) {
   EXPECT_EQ(cycles, 49);
 }
 
+TEST_F(Live, TellsWhatCamerasSawSinceTheLastCycle) {
+  runner.write("aside.xml",
+               "<obstacles version=\"1\">\n"
+               "<box name=\"aside\" center=\"2 1.2 0.25\" size=\"0.4 0.4 0.5\"/>\n</obstacles>\n");
+  Served served(runner, "--speed 1000 --obstacles aside.xml --cameras --camera-rate 3");
+  ASSERT_GT(served.port, 0);
+  const std::string host = "127.0.0.1:" + std::to_string(served.port);
+  const nlohmann::json blank = scene_of(get(served.port, "/", host).body())["perception"];
+  EXPECT_EQ(blank["cameras"].size(), 2u);
+  EXPECT_TRUE(blank["clouds"].empty()) << "they come with the run";
+  const auto stream = connect_live(served.port);
+  EXPECT_EQ(receive(*stream)["type"], "start");
+  double last_s = -1.0;
+  nlohmann::json message;
+  for (message = receive(*stream); message["type"] == "cycle"; message = receive(*stream)) {
+    const nlohmann::json& seen = message["perception"];
+    ASSERT_EQ(seen["clouds"].size(), 2u);
+    ASSERT_EQ(seen["maps"].size(), 1u);
+    EXPECT_GT(seen["clouds"][0]["stamp"], last_s);
+    EXPECT_GE(seen["maps"][0]["time"], seen["clouds"][0]["stamp"]);
+    last_s = seen["clouds"][0]["stamp"];
+  }
+  EXPECT_EQ(message["type"], "end");
+  EXPECT_TRUE(message["success"]) << message;
+}
+
 TEST_F(Live, InterruptEndsARunningSession) {
   Served served(runner, "--speed 0.01");
   ASSERT_GT(served.port, 0);

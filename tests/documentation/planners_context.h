@@ -444,7 +444,6 @@ struct Context : DriveContext {
   std::vector<const double*> window;
   std::vector<double> times;
   const WorldDistance world = distance_view(small_room());
-  const double offset = 0.0, slope = 0.0;
   const int first = 1;
   Context() : DriveContext(1.6, 21) {
     for (int i = first; i < static_cast<int>(planned.size()); ++i) {

@@ -178,7 +178,7 @@ TEST(PointCloud, FilesWithoutAPointAndForeignOnesAreErrors) {
   has("", "is empty");
   has("solid", "not a PCD file");
   has("VERSION 0.7\nFIELDS x y z\n", "truncated in the header");
-  has(header("x y z", "4 4 4", "F F F", 0, "ascii"), "an empty cloud");
+  has(header("x y z", "4 4 4", "F F F", 0, "ascii"), "holds no finite point");
   has(header("x y z", "4 4 4", "F F F", 1, "ascii") + "nan nan nan\n", "holds no finite point");
   EXPECT_NE(error_text(folder.file("none.pcd")).find("cannot be opened"), std::string::npos);
 }
@@ -207,6 +207,16 @@ TEST(PointCloud, ACloudOfHolesIsReadAndHasNoPoints) {
       folder.write("a.pcd", header("x y z", "4 4 4", "F F F", 1, "ascii") + "nan nan nan\n");
   EXPECT_EQ(read_point_cloud(file).points.size(), 1u);
   EXPECT_THROW(load_point_cloud(file), Error);
+}
+
+TEST(PointCloud, ACloudWithoutPointsIsReadAndHasNone) {
+  const TemporaryFolder folder;
+  for (const char* data : {"ascii", "binary", "binary_compressed"}) {
+    const std::string text = header("x y z", "4 4 4", "F F F", 0, data);
+    EXPECT_TRUE(read_point_cloud(folder.write("a.pcd", text)).points.empty()) << data;
+  }
+  const std::string text = header("x y z", "4 4 4", "F F F", 0, "ascii") + "1 2 3\n";
+  EXPECT_THROW(read_point_cloud(folder.write("a.pcd", text)), Error) << "more than it says";
 }
 
 TEST(PointCloud, TheViewpointIsReadWhereItIsAskedFor) {

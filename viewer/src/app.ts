@@ -130,15 +130,16 @@ export class App implements PageActions {
     });
   }
 
-  private addSliceHeight(parent: HTMLElement, { lowest, highest, step }: PerceptionView): void {
+  private addSliceHeight(parent: HTMLElement, perception: PerceptionView): void {
     const label = element('label', 'switch slice', parent);
     element('span', '', label).textContent = 'Height of the slice';
     const input = element('input', '', label);
     input.type = 'range';
     input.id = 'slice';
-    input.min = String(lowest);
-    input.max = String(highest);
-    input.step = String(step);
+    // Middles of layers.
+    input.min = String(perception.middle(perception.lowest));
+    input.max = String(perception.highest);
+    input.step = String(perception.step);
     this.sliceText = element('output', '', label);
     input.addEventListener('input', () => {
       this.setSlice(Number(input.value));

@@ -33,12 +33,15 @@ import {
   LocalMapDescription,
   PerceptionDescription,
   SeenDescription,
+  unpackBytes,
   unpackShorts,
 } from './scene_format';
 import { FIELD_COLOURS, SEEN_COLOURS, Theme } from './theme';
 import { heightMaterial, voxelGeometry } from './voxel_view';
 
 const DEPTH_UNIT_M = 0.002;
+/** Pixels of a square that may be shown, along its sides: how their places are numbered. */
+const PLACES_ALONG = 15;
 const POINT_PIXELS = 3;
 /** Points and things that were seen shine through their voxels. */
 const VOXEL_OPACITY = 0.45;
@@ -121,9 +124,14 @@ export class PerceptionView {
     return this.perception.description.floor !== undefined;
   }
 
-  /** Of the slice: the middle of a layer of voxels. */
+  /** Of the layer of voxels at a height. */
+  middle(height: number): number {
+    return (layerAt(height, this.step) + 0.5) * this.step;
+  }
+
+  /** Of the slice. */
   get height(): number {
-    return (Math.floor(this.wanted / this.step + 1e-6) + 0.5) * this.step;
+    return this.middle(this.wanted);
   }
 
   setHeight(height: number): void {
@@ -192,10 +200,12 @@ export class PerceptionView {
     for (const points of all) points.end();
   }
 
-  private addCloud({ camera, pose, depths }: CloudDescription): void {
+  private addCloud(cloud: CloudDescription): void {
     const { cameras, floor } = this.perception.description;
-    const { name, size, focal, centre, range } = cameras[camera];
-    const numbers = unpackShorts(depths, size[0] * size[1], `a cloud of ${name}`);
+    const { name, square, between, columns, rows, focal, centre, range } = cameras[cloud.camera];
+    const { pose } = cloud;
+    const numbers = unpackShorts(cloud.depths, columns * rows, `a cloud of ${name}`);
+    const places = unpackBytes(cloud.places, `a cloud of ${name}`);
     const world = new Matrix4().compose(
       new Vector3(pose[0], pose[1], pose[2]),
       new Quaternion(pose[3], pose[4], pose[5], pose[6]),
@@ -205,7 +215,8 @@ export class PerceptionView {
     numbers.forEach((number, i) => {
       if (number === 0) return;
       const depth = Math.abs(number) * DEPTH_UNIT_M;
-      const [u, v] = [i % size[0], Math.floor(i / size[0])];
+      const u = square * (i % columns) + between * (places[i] % PLACES_ALONG);
+      const v = square * Math.floor(i / columns) + between * Math.floor(places[i] / PLACES_ALONG);
       point.set(((u - centre[0]) / focal[0]) * depth, ((v - centre[1]) / focal[1]) * depth, depth);
       point.applyMatrix4(world);
       if (number < 0) {
@@ -228,7 +239,7 @@ export class PerceptionView {
       return;
     }
     if (this.voxels.visible && this.drawnMap !== map) this.drawVoxels(map);
-    const layer = Math.floor(this.wanted / this.step + 1e-6) - map.first[2];
+    const layer = layerAt(this.wanted, this.step) - map.first[2];
     this.plane.visible = layer >= 0 && layer < map.size[2];
     if (!this.slice.visible || !this.plane.visible) return;
     if (this.drawnSlice?.map !== map || this.drawnSlice.layer !== layer) this.drawSlice(map, layer);
@@ -286,6 +297,11 @@ export class PerceptionView {
       this.height,
     );
   }
+}
+
+/** Heights between two layers are those of the upper one, whatever was rounded. */
+function layerAt(height: number, step: number): number {
+  return Math.floor(height / step + 1e-6);
 }
 
 /** What is known is plain, what is far from everything faint. */

@@ -119,8 +119,6 @@ export interface CheckReport {
   violations?: Violation[];
   /** What was taken on trust. */
   trusted?: string[];
-  /** How far from falling the motion is. */
-  robustness?: Record<string, unknown>;
   [figure: string]: unknown;
 }
 
@@ -174,7 +172,9 @@ export interface CloudDescription {
   stamp: number;
   /** Of the optical frame. */
   pose: Pose;
-  /** Packed int16, row by row: depth in units of 2 mm, negative: taken by the self-filter; 0: none. */
+  /** For each square of pixels, row by row. Packed bytes: which of its pixels is shown. */
+  places: string;
+  /** Packed int16: its depth in units of 2 mm, negative: taken by the self-filter; 0: none. */
   depths: string;
 }
 
@@ -197,8 +197,14 @@ export interface SeenDescription {
 export interface PerceptionDescription extends SeenDescription {
   cameras: {
     name: string;
-    /** Columns and rows of its clouds. */
-    size: [number, number];
+    /** Pixels along the sides of the squares of which a cloud has one each. */
+    square: number;
+    /** Pixels from one that may be shown to the next. */
+    between: number;
+    /** Of squares. */
+    columns: number;
+    rows: number;
+    /** In pixels. */
     focal: [number, number];
     centre: [number, number];
     /** Depth beyond which nothing goes into the map. */

@@ -93,6 +93,7 @@ export class SceneViews {
     if (scene.perception) {
       this.perception = new PerceptionView(scene.perception);
       drawing.add(...this.perception.objects);
+      this.world.fadeObstacles();
     }
     this.violations = new ViolationView(scene.check?.violations ?? [], this.plan, overlay);
     drawing.add(this.violations.group);

@@ -26,6 +26,7 @@ import { Theme } from './theme';
 const NORMAL_LENGTH = 0.15;
 /** Surfaces are drawn above themselves, so that those in the ground are seen. */
 const LIFT_M = 0.002;
+const FADED_OPACITY = 0.4;
 
 interface KeyFrame {
   time: number;
@@ -91,6 +92,15 @@ export class WorldView {
     for (const obstacle of obstacles) this.addObstacle(obstacle);
     for (const surface of surfaces) this.addSurface(surface);
     for (const bar of bars) this.addBar(bar);
+  }
+
+  /** From now on what is in obstacles, and beyond them, shines through. */
+  fadeObstacles(): void {
+    for (const material of [this.resting, this.mobile]) {
+      material.transparent = true;
+      material.opacity = FADED_OPACITY;
+      material.depthWrite = false;
+    }
   }
 
   get hasMoving(): boolean {

@@ -338,6 +338,64 @@ export function stancesTree(count = 5) {
   return { centres: pack(centres), parents: pack(parents, Int32Array), states: pack(states, Int32Array) };
 }
 
+/** The map around the robot, as doc/scene_format.md packs it. */
+export function localMap(time, first, size, states) {
+  const bytes = [];
+  for (let at = 0, end = 0; at < states.length; at = end) {
+    while (end < states.length && states[end] === states[at]) ++end;
+    let run = 3 * (end - at) + states[at];
+    for (; run > 127; run = Math.floor(run / 128)) bytes.push((run % 128) | 128);
+    bytes.push(run);
+  }
+  return { time, first, size, states: pack(bytes, Uint8Array) };
+}
+
+/**
+ * The drive with a camera that looks down from 3 m above its start, 4 × 2 squares of 1 pixel, and
+ * another one that never shows anything. At -0.1 s the first row shows the floor, the second one, in
+ * this order, two pixels of the robot 2 m below the camera, one beyond the range and one of a thing;
+ * at 9.9 s all of them show the floor. In a map of 4 × 4 × 2 m a column of voxels of 0.1 m is occupied
+ * at x = 1.25 m, y = 0.65 m; from 10 s on it is gone.
+ */
+export function perceptionScene() {
+  const down = [0, 0, 3, 1, 0, 0, 0]; // half a turn about x
+  const camera = (name) => ({
+    name,
+    square: 1,
+    between: 1,
+    columns: 4,
+    rows: 2,
+    focal: [2, 2],
+    centre: [1.5, 0.5],
+    range: 4,
+  });
+  const cloud = (stamp, depths) => ({
+    camera: 0,
+    stamp,
+    pose: down,
+    places: pack(Array(8).fill(0), Uint8Array),
+    depths: pack(depths, Int16Array),
+  });
+  const size = [40, 40, 20];
+  const states = Array(size[0] * size[1] * size[2]).fill(1);
+  const free = [...states];
+  for (let k = 0; k < size[2]; ++k) states[(k * size[1] + 26) * size[0] + 22] = 2;
+  return {
+    ...planScene({ voxels: 0 }),
+    perception: {
+      cameras: [camera('above'), camera('covered')],
+      resolution: 0.1,
+      unknown: 'free',
+      floor: 0.05,
+      clouds: [
+        cloud(-0.1, [1500, 1500, 1500, 1500, -1000, -1000, 2500, 1000]),
+        cloud(9.9, Array(8).fill(1500)),
+      ],
+      maps: [localMap(0, [-10, -20, 0], size, states), localMap(10, [-10, -20, 0], size, free)],
+    },
+  };
+}
+
 /** Poses on a spiral over a sphere, with loop closures between its rounds. */
 export function sphereGraph({ rounds = 25, each = 50, radius = 50 } = {}) {
   const vertices = [];

@@ -10,6 +10,7 @@ import {
   mimicScene,
   pack,
   page as pageText,
+  perceptionScene,
   planScene,
   rollingScene,
   SPEED,
@@ -561,6 +562,87 @@ describe('viewer', () => {
     await shown({ version, kind, title, map }, {}, async ({ page }) => {
       assert.equal(await page.locator('#scrubber').count(), 0);
     });
+  });
+
+  it('shows what the cameras saw last, and the map around the robot as it was then', () =>
+    shown(perceptionScene(), {}, async ({ page, state }) => {
+      const seenAt = (time) =>
+        page.evaluate((t) => {
+          window.locograph.setTime(t);
+          return window.locograph.state().seen;
+        }, time);
+      const { slice, ...first } = await seenAt(0);
+      assert.ok(Math.abs(slice - 0.35) < 1e-9);
+      assert.deepEqual(first, {
+        kept: 5,
+        taken: 2,
+        beyond: 1,
+        occupied: 20,
+        mapTime: 0,
+        clouds: 2,
+        maps: 2,
+      });
+      await page.waitForFunction(() =>
+        /above5 points, 2 the robot's, 0.10 s ago/.test(document.body.textContent),
+      );
+      assert.match(await page.textContent('#panel'), /coverednothing yet/);
+      assert.match(await page.textContent('.legend'), /taken by the self-filter.*distance: 0 m.*1 m/s);
+      const later = await seenAt(12);
+      assert.deepEqual([later.kept, later.taken, later.beyond], [8, 0, 0]);
+      assert.deepEqual([later.occupied, later.mapTime], [0, 10]);
+      for (const [key, layer, on] of [
+        ['k', 'clouds', false],
+        ['j', 'taken', false],
+        ['q', 'beyond', true],
+        ['w', 'seen', false],
+        ['z', 'field', false],
+      ]) {
+        await page.keyboard.press(key);
+        assert.equal((await state()).layers[layer], on);
+      }
+    }));
+
+  it('cuts the distance field at the height that is chosen, red at what is occupied', () =>
+    shown(
+      perceptionScene(),
+      { hash: '#t=0&view=top&slice=0.72&hide=contacts,com,forces,dots,base,reference,seen,clouds,taken,violations' },
+      async ({ page, state }) => {
+        assert.ok(Math.abs((await state()).seen.slice - 0.75) < 1e-9);
+        const clip = await page.locator('#view').boundingBox();
+        const warm = (r, g, b) => r > 150 && r > b + 80;
+        const shares = async () => share(await browser.pixels(page, clip), [0, 0, 1, 1], warm);
+        const there = await shares();
+        assert.ok(there > 0.002, `${there}`);
+        await page.evaluate(() => window.locograph.setTime(12));
+        const later = await shares();
+        assert.ok(later < 0.1 * there, `nothing is near any more: ${later} after ${there}`);
+        await page.evaluate(() => window.locograph.setTime(0));
+        await page.locator('#slice').fill('1.25');
+        assert.ok(Math.abs((await state()).seen.slice - 1.25) < 1e-9);
+        assert.match(await page.textContent('.switch.slice'), /1.25 m/);
+      },
+    ));
+
+  it('adds what the cameras of a running refinement see', async () => {
+    const { perception, ...plan } = perceptionScene();
+    const [{ clouds, maps }, live] = [perception, '/live'];
+    const server = await serveLive(pageText({ ...plan, perception, live }));
+    try {
+      await shown(null, { url: server.address }, async ({ page }) => {
+        await server.connection;
+        const seen = () => window.locograph.state().seen;
+        server.send({ type: 'start', count: 41 });
+        await page.waitForFunction(() => window.locograph.state().seen.clouds === 0);
+        assert.deepEqual((await page.evaluate(seen)).kept, 0);
+        const news = { clouds: clouds.slice(0, 1), maps: maps.slice(0, 1) };
+        server.send({ type: 'cycle', configurations: {}, executed: 1, window: 1, perception: news });
+        await page.waitForFunction(() => window.locograph.state().seen.occupied === 20);
+        const { kept, taken, maps: count } = await page.evaluate(seen);
+        assert.deepEqual([kept, taken, count], [5, 2, 1]);
+      });
+    } finally {
+      await server.close();
+    }
   });
 
   it('takes over what a running refinement sends', async () => {

@@ -34,17 +34,22 @@ PerceptionOptions usable(const PerceptionOptions& options) {
   return options;
 }
 
-std::shared_ptr<octomap::OcTree> known_map(const World& known, const PerceptionOptions& options) {
+std::shared_ptr<const octomap::OcTree> known_map(const World& known,
+                                                 const PerceptionOptions& options) {
+  if (!known.map) return nullptr;
   const double voxel_m = options.map.resolution_m;
-  if (!known.map) {
-    return options.keeps_map ? std::make_shared<octomap::OcTree>(voxel_m) : nullptr;
-  }
   const double theirs_m = known.map->getResolution();
   if (std::abs(theirs_m - voxel_m) > 1e-9 * voxel_m) {
     throw Error("the map that is known beforehand has voxels of " + std::to_string(theirs_m) + " m",
                 "those of the window, " + std::to_string(voxel_m) + " m");
   }
-  return std::make_shared<octomap::OcTree>(*known.map);
+  return known.map;
+}
+
+/// Null: an empty one.
+std::shared_ptr<octomap::OcTree> copy_of(const std::shared_ptr<const octomap::OcTree>& map,
+                                         double voxel_m) {
+  return map ? std::make_shared<octomap::OcTree>(*map) : std::make_shared<octomap::OcTree>(voxel_m);
 }
 
 constexpr int kKeyOffset = 1 << 15;  // OctoMap: key = index + 2^15
@@ -94,6 +99,7 @@ Perception::Perception(std::shared_ptr<const Robot> robot, std::vector<DepthCame
       last_stamp_s_(cameras_.size(), -std::numeric_limits<double>::infinity()) {
   known_.map = nullptr;
   if (beforehand_) map_.load(*beforehand_);
+  if (options_.keeps_map) kept_ = copy_of(beforehand_, options_.map.resolution_m);
   publish();
 }
 
@@ -175,9 +181,9 @@ std::shared_ptr<const WorldSnapshot> Perception::image(DepthImage image) {
 void Perception::follow_robot() {
   const Eigen::Vector3i before = map_.window().first;
   map_.move_to(state_.world_from_link(robot_->root_link()).translation());
-  if (!beforehand_ || map_.window().first == before) return;
-  if (options_.keeps_map && field_) field_->merge_into(*beforehand_);
-  map_.load(*beforehand_);
+  if (map_.window().first == before) return;
+  if (kept_ && field_) field_->merge_into(*kept_);
+  if (beforehand_) map_.load(*beforehand_);
 }
 
 void Perception::publish() {
@@ -202,8 +208,8 @@ World Perception::seen_near(const Eigen::AlignedBox3d& box) const {
 }
 
 std::shared_ptr<const octomap::OcTree> Perception::map() const {
-  if (!beforehand_) return nullptr;
-  auto map = std::make_shared<octomap::OcTree>(*beforehand_);
+  if (!kept_ && !beforehand_) return nullptr;
+  const auto map = copy_of(kept_ ? kept_ : beforehand_, options_.map.resolution_m);
   map_.merge_into(*map);
   return map;
 }

@@ -46,12 +46,13 @@ struct FilteredImage {
 struct PerceptionOptions {
   LocalMapOptions map;
   SelfFilterOptions filter;
-  double kept_s = 5.0;     ///< configurations, before the newest
-  double around_m = 0.3;   ///< what is free around the robot where it stands: see stand()
-  bool keeps_map = false;  ///< what the window leaves: see map()
+  double kept_s = 5.0;    ///< configurations, before the newest
+  double around_m = 0.3;  ///< what is free around the robot where it stands: see stand()
   /// Called with each image that is taken in, after newest() has it; may be empty. It throws
   /// nothing.
   std::function<void(const FilteredImage&)> on_image = {};
+  /// What the window leaves is kept for map(); it does not come back into the window.
+  bool keeps_map = false;
 
   void validate() const;
 };
@@ -100,8 +101,9 @@ class Perception {
   std::shared_ptr<const Robot> robot_;
   std::vector<DepthCamera> cameras_;
   PerceptionOptions options_;
-  World known_;                                  // without its map
-  std::shared_ptr<octomap::OcTree> beforehand_;  // null: none
+  World known_;                                        // without its map
+  std::shared_ptr<const octomap::OcTree> beforehand_;  // null: none
+  std::shared_ptr<octomap::OcTree> kept_;  // and what the window has left; null: it is not kept
   ConfigurationBuffer configurations_;
   SelfFilter filter_;
   LocalMap map_;

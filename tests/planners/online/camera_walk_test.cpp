@@ -3,6 +3,7 @@
 #include <locograph/planners/online/camera_walk.h>
 #include <locograph/planners/online/walk_plan.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "common/sanitized.h"
@@ -34,7 +35,8 @@ struct Drive {
 
   Drive(std::vector<Obstacle> obstacles, const PerceptionOptions& options = {},
         double distance_m = 2.4)
-      : graph(planned_drive(centauro_drive(distance_m, 0.0, 31))),
+      : graph(planned_drive(
+            centauro_drive(distance_m, 0.0, 1 + static_cast<int>(std::lround(distance_m / 0.08))))),
         truth(world_of(std::move(obstacles))) {
     judging.robot = plan_of(graph).robot->robot;
     judging.world = std::make_shared<const WorldSnapshot>(truth);
@@ -52,6 +54,7 @@ struct Drive {
 
   WalkReport walk() {
     WalkOptions options;
+    options.planner.fallbacks = camera_fallbacks();
     options.verify = [this](const Motion& step) { return eyes->check_step(step); };
     options.pace = [this](int executed) { return eyes->pace(executed); };
     return walk_plan(
@@ -73,6 +76,21 @@ TEST(CameraWalk, ArrivesWhereNothingIsInTheWay) {
   EXPECT_GT(drive.perception->images(), 200);
   EXPECT_EQ(drive.eyes->refused(), 0) << drive.eyes->last_refusal();
   EXPECT_EQ(static_cast<int>(drive.eyes->perception_s().size()), drive.perception->images());
+}
+
+// Beside each box there is 0.1 m more than the robot is wide on either side, and it is longer than
+// what is between the two.
+TEST(CameraWalk, TurnsBetweenBoxesAtOppositeWallsTheSecondOfWhichAppearsLate) {
+  if (test::kSanitized) GTEST_SKIP() << "takes long there";
+  std::vector<Obstacle> corridor = {box("right wall", {2.5, -0.85, 0.5}, {9.0, 0.2, 1.0}),
+                                    box("left wall", {2.5, 0.85, 0.5}, {9.0, 0.2, 1.0}),
+                                    box("first", {1.644, 0.583, 0.3}, {0.3, 0.333, 0.6}),
+                                    box("second", {2.681, -0.583, 0.3}, {0.3, 0.333, 0.6})};
+  corridor.back().appears_s = 13.49;
+  Drive drive(std::move(corridor), {}, 4.0);
+  const WalkReport report = drive.walk();
+  EXPECT_TRUE(report.success()) << report.reason;
+  expect_feasible(drive.check());
 }
 
 TEST(CameraWalk, StopsBeforeAWallThatOnlyTheCamerasShow) {
@@ -123,6 +141,40 @@ TEST(CameraWalk, SeesAllImagesOfAStepThatTakesLongerThanConfigurationsAreKept) {
   drive.eyes->world_at(1);
   EXPECT_EQ(drive.eyes->refused(), 0) << drive.eyes->last_refusal();
   EXPECT_GE(drive.perception->images(), static_cast<int>(2 * 5.0 * step.time_s[1]));
+}
+
+/// Images of another source; with the k-th one somebody asks the walk to stop.
+class StopsWithAnImage final : public ImageSource {
+ public:
+  StopsWithAnImage(ImageSource& images, int k) : images_(images), left_(k) {}
+
+  double next_stamp_s() const override { return images_.next_stamp_s(); }
+  DepthImage take(const RobotState& state) override {
+    if (--left_ == 0) stop = true;
+    return images_.take(state);
+  }
+
+  std::atomic<bool> stop = false;
+
+ private:
+  ImageSource& images_;
+  int left_;
+};
+
+TEST(CameraWalk, StopsBetweenTwoImages) {
+  for (const int images : {3, 40}) {  // standing, and on the way to a configuration
+    Drive drive({});
+    StopsWithAnImage source(*drive.images, images);
+    CameraWalk eyes(drive.graph, drive.judging, *drive.perception, source, {.stop = &source.stop});
+    WalkOptions options;
+    options.termination.stop = &source.stop;
+    const WalkReport report = walk_plan(
+        drive.graph, [&](int executed) { return eyes.world_at(executed); }, options);
+    EXPECT_EQ(report.status, PlannerStatus::kStopped);
+    EXPECT_EQ(drive.perception->images(), images);
+    EXPECT_EQ(report.cycles.size() > 0, images == 40);
+    expect_feasible(drive.check());
+  }
 }
 
 TEST(CameraWalk, TakesItsTimeWhereItHasNotSeen) {

@@ -1,4 +1,5 @@
 #include <locograph/planners/online/detour_search.h>
+#include <locograph/planners/online/heading.h>
 
 #include "planners/planned_drive.h"
 
@@ -22,7 +23,10 @@ class Search : public testing::Test {
     WorldDistance world;
     world.obstacles = obstacles;
     DetourSearch search(plan_.robot, options_);
-    return search.find(0, window_, times_, world, offset, slope);
+    std::vector<double> offsets;
+    for (const Detour& detour : search.find(0, window_, times_, world, {offset}, slope))
+      offsets.push_back(detour.offset_m);
+    return offsets;
   }
   static double farthest(const std::vector<double>& offsets) {
     double result = 0.0;
@@ -109,6 +113,59 @@ TEST_F(Search, SeesMovingObstaclesAtTheTimeOfEachConfiguration) {
   away.pose.translation() = Eigen::Vector3d(2.0, 9.0, 0.4);
   gone.motion = {away};
   EXPECT_EQ(find({gone}), std::vector<double>(45, 0.0));
+}
+
+/// How deep the robot's spheres are in obstacles, at most, where it is moved along the detours.
+double deepest(const Plan& plan, const std::vector<const double*>& window,
+               const std::vector<Detour>& detours, const WorldDistance& world) {
+  RobotState state(*plan.robot->robot);
+  double depth = -1.0;
+  for (std::size_t k = 0; k < window.size(); ++k) {
+    const Eigen::Map<const Eigen::VectorXd> planned(window[k],
+                                                    plan.robot->robot->configuration_size());
+    Eigen::VectorXd q = turned(planned, detours[k].yaw_rad);
+    q.head<3>() += detours[k].offset_m * left_of(window[k]);
+    state.update(q.data());
+    for (const CollisionSphere& sphere : plan.robot->spheres) {
+      const Eigen::Vector3d centre = state.world_from_link(sphere.link) * sphere.center;
+      depth = std::max(depth, sphere.radius - world.distance(centre, 0.0));
+    }
+  }
+  return depth;
+}
+
+TEST_F(Search, TurnsBetweenObstaclesThatItDoesNotGetBetweenHeadOn) {
+  take(1, 45);
+  WorldDistance world;
+  world.obstacles = {box("right", {1.5, -0.9, 0.3}, {0.3, 1.0, 0.6}),
+                     box("left", {2.5, 0.9, 0.3}, {0.3, 1.0, 0.6}),
+                     box("right wall", {2.5, -0.85, 0.5}, {9.0, 0.1, 1.0}),
+                     box("left wall", {2.5, 0.85, 0.5}, {9.0, 0.1, 1.0})};
+  const auto find = [&] {
+    return DetourSearch(plan_.robot, options_).find(0, window_, times_, world, {.yaw_rad = 0.06});
+  };
+  const double head_on = deepest(plan_, window_, find(), world);
+  options_.most_yaw = 8;
+  const std::vector<Detour> slantwise = find();
+  EXPECT_LT(deepest(plan_, window_, slantwise, world), head_on - 0.03);
+  double before = 0.06, most = 0.0;
+  for (const Detour& detour : slantwise) {
+    EXPECT_LE(std::abs(detour.yaw_rad - before), options_.yaw_grid_rad + 1e-9);
+    before = detour.yaw_rad;
+    most = std::max(most, std::abs(before));
+  }
+  EXPECT_GT(most, 0.1);
+  EXPECT_LE(most, options_.most_yaw * options_.yaw_grid_rad + 1e-9);
+}
+
+TEST_F(Search, KeepsItsHeadingUnlessItIsTold) {
+  take(1, 45);
+  WorldDistance world;
+  world.obstacles = {box("b", {2.0, 0.3, 0.4}, {0.4, 0.8, 0.8})};
+  for (const Detour& detour :
+       DetourSearch(plan_.robot, options_)
+           .find(0, window_, times_, world, {.offset_m = 0.1, .yaw_rad = 0.3}))
+    EXPECT_EQ(detour.yaw_rad, 0.0);
 }
 
 /// Every path over the grid, costed as the header says.

@@ -126,6 +126,27 @@ TEST(Proposals, ThatAreUnfinishedComeFirstInTheNextCycle) {
   EXPECT_EQ(script.asked, (Indices{0, 1}));
 }
 
+TEST(Fallbacks, AreAskedWhereNoWindowIsFeasible) {
+  Script first, second;
+  LocalPlannerOptions options;
+  options.proposals = {};
+  options.fallbacks = {scripted(first), scripted(second)};
+  Graph graph = drive();
+  LocalPlanner planner(graph, options);
+  std::vector<CycleReport> reports = {planner.cycle(0)};
+  planner.show(seeing({box_ahead()}));
+  for (int executed = 1; executed < 15; ++executed) reports.push_back(planner.cycle(executed));
+  Indices infeasible;
+  for (const CycleReport& report : reports) {
+    EXPECT_EQ(report.detour, !report.success());
+    if (!report.success()) infeasible.push_back(report.executed);
+  }
+  EXPECT_FALSE(infeasible.empty());
+  EXPECT_EQ(first.asked, infeasible);
+  EXPECT_EQ(second.asked, infeasible);
+  EXPECT_EQ(first.worlds, 1);
+}
+
 TEST(Proposals, HearOfANewWorld) {
   Script script;
   Graph graph = drive();

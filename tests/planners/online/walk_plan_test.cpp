@@ -1,4 +1,5 @@
 #include <locograph/common/error.h>
+#include <locograph/common/ranges.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/world/octree.h>
@@ -178,6 +179,43 @@ TEST_P(WalkWithHorizon, NeverHandsOutAnInfeasiblePlan) {
 }
 
 INSTANTIATE_TEST_SUITE_P(WalkPlan, WalkWithHorizon, testing::Values(1, 5, 20, 200));
+
+void start_at(Graph& graph, double time_s) {
+  for (const int slot : plan_of(graph).slots)
+    graph.vertex(VertexId<VertexConfiguration>{slot}).time_s += time_s;
+}
+
+double end_s(const Graph& graph) { return motion_of(graph, plan_of(graph)).time_s.back(); }
+
+TEST(WalkPlan, EndsWhereSlowStepsWouldTakeLongerThanAFileMaySay) {
+  Graph graph = planned_drive(centauro_drive(0.8, 0.0, 11));
+  start_at(graph, ranges::kTime_s - 1.5 * end_s(graph));
+  WalkOptions options;
+  options.pace = [](int executed) { return executed < 3 ? 1.0 : 3.0; };
+  const WalkReport report = walk_plan(graph, nullptr, options);
+  EXPECT_EQ(report.status, PlannerStatus::kNotFound);
+  EXPECT_NE(report.reason.find("later than 1000000 s"), std::string::npos) << report.reason;
+  EXPECT_EQ(report.configurations, 4);
+  EXPECT_LE(end_s(graph), ranges::kTime_s);
+}
+
+TEST(WalkPlan, ComesToRestBeforeTheLastTimeThatAFileMaySay) {
+  WalkOptions options;
+  options.verify = [](const Motion& motion) {
+    CheckReport report;
+    report.feasible = motion.configurations.back()[0] < 0.5;
+    return report;
+  };
+  const auto planned = [] { return planned_drive(centauro_drive(0.8, 0.0, 11)); };
+  Graph graph = planned();
+  const int stopped = walk_plan(graph, nullptr, options).configurations - 1;
+  const double planned_s = motion_of(planned(), plan_of(planned()), 0, stopped).time_s.back();
+  ASSERT_GT(end_s(graph), planned_s) << "it brakes";
+  Graph late = planned();
+  start_at(late, ranges::kTime_s - planned_s);
+  EXPECT_LE(walk_plan(late, nullptr, options).configurations, stopped) << "it brakes earlier";
+  EXPECT_LE(end_s(late), ranges::kTime_s);
+}
 
 TEST(WalkPlan, RefusesAHorizonOfNothingAndANegativeDeadline) {
   Graph graph = drive();

@@ -61,6 +61,15 @@ TEST(CloudsFolder, ACloudOfHolesIsAnImageThatSeesNothing) {
   EXPECT_EQ(pixels_seen(image), 0);
 }
 
+TEST(CloudsFolder, ACloudWithoutPointsIsAnImageThatSeesNothing) {
+  const TemporaryFolder folder;
+  write_clouds(folder, kList);
+  folder.write("holes.pcd", pcd_text(0, 1, ""));
+  const DepthImage image = CloudsFolder(folder.path(), two_cameras()).load(2);
+  EXPECT_EQ(image.depth_mm.size(), 2u);
+  EXPECT_EQ(pixels_seen(image), 0);
+}
+
 TEST(CloudsFolder, TheFirstLineEmptyLinesAndBlanksMayBeThereOrNot) {
   const TemporaryFolder folder;
   write_clouds(folder, "\r\n 0 , head , a.pcd \r\n\n1e-1,pelvis,./images/../images/b.png");

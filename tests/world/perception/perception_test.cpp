@@ -7,6 +7,8 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "world/perception/small_camera_robot.h"
 
@@ -14,6 +16,8 @@ namespace locograph {
 namespace {
 
 using test::camera_robot;
+using test::kHeight;
+using test::kWidth;
 using test::small_camera;
 using test::standing_at;
 using test::wall_image;
@@ -90,6 +94,24 @@ TEST(Perception, LeavesOutWhatShowsTheRobotItself) {
   Seeing seeing;
   for (int k = 0; k < 5; ++k) seeing.perception.image(wall_image(0.1 * k, 0.08));
   EXPECT_EQ(seeing.distance({0.08, 0.0, 1.0}), 1.0);
+}
+
+TEST(Perception, HandsOutBothPartsOfEachImageThatItTakes) {
+  std::vector<std::pair<int, int>> pixels;
+  PerceptionOptions options;
+  options.on_image = [&](const FilteredImage& image) {
+    EXPECT_EQ(image.camera.name, "eye");
+    EXPECT_NEAR(image.world_from_optical.translation().z(), 1.0, 1e-12);
+    EXPECT_EQ(image.kept.stamp_s, 0.1 * static_cast<double>(pixels.size()));
+    pixels.emplace_back(pixels_seen(image.kept), pixels_seen(image.taken));
+  };
+  Seeing seeing({}, options);
+  const std::pair all_kept(kWidth * kHeight, 0), all_taken(0, kWidth * kHeight);
+  seeing.perception.image(wall_image(0.0, 1.52));
+  seeing.perception.image(wall_image(0.1, 0.08));
+  EXPECT_NE(refusal([&] { seeing.perception.image(wall_image(0.1, 1.52)); }), "accepted");
+  seeing.perception.image(wall_image(0.2, 1.52));
+  EXPECT_EQ(pixels, (std::vector{all_kept, all_taken, all_kept}));
 }
 
 TEST(Perception, RefusesImagesThatCannotBeUsedAndStaysAsItIs) {
@@ -192,10 +214,35 @@ TEST(Perception, KeepsInItsMapWhatTheWindowLeaves) {
   const octomap::OcTreeNode* node = map->search(1.22, 0.01, 1.01);
   ASSERT_NE(node, nullptr);
   EXPECT_TRUE(map->isNodeOccupied(node));
-  // Back again it is known.
-  perception.configuration(21.0, standing_at(*robot, 0.0));
-  perception.image(wall_image(21.0, 0.0));
-  EXPECT_LT(perception.newest()->distance().distance({1.22, 0.0, 1.0}, 0.0), 0.0);
+}
+
+TEST(Perception, SeesTheSameWhetherItKeepsTheMapOrNot) {
+  const std::shared_ptr<const Robot> robot = camera_robot();
+  World known;
+  known.map = box_map({0.0, 1.2, 1.0}, 0.05);
+  for (const World& beforehand : {World(), known}) {
+    std::vector<double> seen;
+    for (const bool keeps_map : {false, true}) {
+      PerceptionOptions options;
+      options.keeps_map = keeps_map;
+      options.map.size_m = {3.2, 3.2, 2.0};
+      Perception perception(robot, {small_camera(*robot)}, beforehand, options);
+      double from_s = 0.0;
+      for (const double x : {0.0, 10.0, 0.0}) {  // there and back, where it does not look any more
+        perception.configuration(from_s, standing_at(*robot, x));
+        perception.configuration(from_s + 1.0, standing_at(*robot, x));
+        for (int k = 0; k < 4; ++k)
+          perception.image(wall_image(from_s + 0.1 * k, from_s == 0.0 ? 1.22 : 0.0));
+        from_s += 10.0;
+        for (double ahead = -1.5; ahead < 1.5; ahead += 0.1) {
+          for (const double y : {0.0, 1.2})
+            seen.push_back(perception.newest()->distance().distance({x + ahead, y, 1.0}, 0.0));
+        }
+      }
+    }
+    const auto half = seen.begin() + static_cast<std::ptrdiff_t>(seen.size() / 2);
+    EXPECT_TRUE(std::equal(seen.begin(), half, half, seen.end()));
+  }
 }
 
 TEST(Perception, ShowsAJudgeTheVoxelsNearARobot) {
