@@ -141,7 +141,7 @@ void check_perception_options(const OptionParser& parser, const PerceptionChoice
     throw Error("--known-map without --cameras", "--map: with --clouds, that is known beforehand");
   }
   for (const std::string option : {"--save-map", "--unknown", "--voxel", "--window"}) {
-    if (choice.given() || !parser.given(option)) continue;
+    if (choice.given() || !parser.has_option(option) || !parser.given(option)) continue;
     throw Error(option + " without --cameras or --clouds", "one of them");
   }
   for (const std::string option : {"--camera-rate", "--seed"}) {
