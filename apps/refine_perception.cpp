@@ -12,6 +12,8 @@
 namespace locograph {
 namespace {
 
+constexpr double kMostDistance_voxels = 98.0;  // a window's field reaches no further
+
 UnknownSpace unknown_space(const std::string& name) {
   if (name == "occupied") return UnknownSpace::kOccupied;
   return name == "slow" ? UnknownSpace::kSlow : UnknownSpace::kFree;
@@ -34,24 +36,52 @@ PerceptionOptions options_of(const PlanFile& file, const World& world,
   PerceptionOptions options;
   options.map.resolution_m = choice.voxel_m;
   options.map.size_m.head<2>().setConstant(choice.window_m);
+  options.map.max_distance_m =
+      std::min(options.map.max_distance_m, kMostDistance_voxels * choice.voxel_m);
   options.map.unknown = unknown_space(choice.unknown);
   options.map.floor_z_m = floor_of(file, world);
   options.keeps_map = !choice.save_map.empty();
   return options;
 }
 
-World known_beforehand(const World& world, const PerceptionChoice& choice) {
-  World known = world;
-  if (!choice.cameras) return known;
-  known.map = nullptr;
-  known.obstacles.clear();
-  if (choice.known_map.empty()) return known;
-  known.map = load_octree(choice.known_map);
+/// A map says nothing about its frame; that of another one is mostly somewhere else.
+void require_on_the_way(const octomap::OcTree& map, const std::string& name, const PlanFile& file,
+                        const Robot& robot, const LocalMapOptions& window) {
+  const Eigen::AlignedBox3d known = octree_info(map).known_bounds;
+  if (known.isEmpty()) return;
+  RobotState state(robot);
+  Eigen::AlignedBox3d reach;
+  for (const int slot : file.plan.slots) {
+    state.update(file.graph.vertex(VertexId<VertexConfiguration>{slot}).state.data());
+    const Eigen::Vector3d base = state.world_from_link(robot.root_link()).translation();
+    reach.extend(Eigen::Vector3d(base - 0.5 * window.size_m));
+    reach.extend(Eigen::Vector3d(base + 0.5 * window.size_m));
+  }
+  if (reach.intersects(known)) return;
+  const Eigen::Vector3d middle = known.center();
+  throw Error(name, 0,
+              "nothing of this map is near the robot's way; its middle is at " +
+                  short_number(middle.x()) + ' ' + short_number(middle.y()) + ' ' +
+                  short_number(middle.z()),
+              "a map in the plan's frame");
+}
+
+World known_beforehand(const PlanFile& file, const Judging& judging, const PerceptionChoice& choice,
+                       const LocalMapOptions& window) {
+  World known = judging.world->world();
+  if (choice.cameras) {
+    known.map = choice.known_map.empty() ? nullptr : load_octree(choice.known_map);
+    known.obstacles.clear();
+  }
+  if (!known.map) return known;
+  const std::string given = choice.cameras ? choice.known_map : judging.world->files().map.string();
+  const std::string& name = given.empty() ? file.name : given;
   const double voxel_m = known.map->getResolution();
   if (std::abs(voxel_m - choice.voxel_m) > 1e-9 * voxel_m) {
-    throw Error(choice.known_map, 0, "voxels of " + short_number(voxel_m) + " m",
+    throw Error(name, 0, "a map with voxels of " + short_number(voxel_m) + " m",
                 "those of the window, --voxel " + short_number(choice.voxel_m));
   }
+  require_on_the_way(*known.map, name, file, *judging.robot, window);
   return known;
 }
 
@@ -141,7 +171,7 @@ void check_perception_options(const OptionParser& parser, const PerceptionChoice
     throw Error("--known-map without --cameras", "--map: with --clouds, that is known beforehand");
   }
   for (const std::string option : {"--save-map", "--unknown", "--voxel", "--window"}) {
-    if (choice.given() || !parser.given(option)) continue;
+    if (choice.given() || !parser.has_option(option) || !parser.given(option)) continue;
     throw Error(option + " without --cameras or --clouds", "one of them");
   }
   for (const std::string option : {"--camera-rate", "--seed"}) {
@@ -173,8 +203,8 @@ RefinePerception::RefinePerception(const PlanFile& file, const Judging& judging,
       judging.task ? judging.task->cameras : cameras_of(*judging.robot);
   PerceptionOptions options = options_of(file, world, choice);
   options.on_image = std::move(on_image);
-  perception_ = std::make_unique<Perception>(judging.robot, cameras,
-                                             known_beforehand(world, choice), options);
+  perception_ = std::make_unique<Perception>(
+      judging.robot, cameras, known_beforehand(file, judging, choice, options.map), options);
   files_ = files_of(file);
   if (choice.cameras) {
     images_ = simulated_images(file, judging, choice, cameras);
@@ -182,6 +212,7 @@ RefinePerception::RefinePerception(const PlanFile& file, const Judging& judging,
     CloudsFolder folder(choice.clouds, cameras);
     require_in_time(folder, file, choice);
     std::ranges::copy(folder.files(), std::back_inserter(files_));
+    recorded_ = folder.size();
     images_ = std::make_unique<RecordedImages>(std::move(folder));
   }
   if (!choice.save_map.empty()) check_not_input(choice.save_map, files_);
@@ -209,11 +240,17 @@ void RefinePerception::tell(Json& result) const {
   result["images"] = perception_->images();
   result["blind_images"] = perception_->blind();
   result["refused_images"] = walk_->refused();
+  if (!choice_.clouds.empty()) result["images_not_shown"] = not_shown();
   result["perception_time"] = statistics_json(walk_->perception_s());
   result["camera_time_s"] = walk_->images_s();
   result["map"] = window_json(*perception_);
   if (walk_->refused() > 0) result["refused_because"] = walk_->last_refusal();
   if (!choice_.save_map.empty()) result["map"]["file"] = choice_.save_map;
+}
+
+/// Of recorded images those of times at which the robot did not walk any more.
+int RefinePerception::not_shown() const {
+  return recorded_ == 0 ? 0 : recorded_ - perception_->images() - walk_->refused();
 }
 
 std::string RefinePerception::text() const {
@@ -228,6 +265,9 @@ std::string RefinePerception::text() const {
   }
   if (walk_->refused() > 0) {
     text += ", " + std::to_string(walk_->refused()) + " refused: " + walk_->last_refusal();
+  }
+  if (not_shown() > 0) {
+    text += ", " + std::to_string(not_shown()) + " not shown: of later times than the walk's";
   }
   return text + '\n';
 }

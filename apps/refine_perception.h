@@ -58,8 +58,8 @@ void take_verdict(const CheckReport& check, WalkReport& report);
 class RefinePerception {
  public:
   /// The file must outlive it. Throws Error for files that cannot be used, a robot without cameras,
-  /// a map of other voxels than the window's, a window that is too large, and a save_map that is
-  /// one of files().
+  /// a map of other voxels than the window's or all of it out of its reach, a window that is too
+  /// large, and a save_map that is one of files().
   /// on_image: see PerceptionOptions.
   RefinePerception(const PlanFile& file, const Judging& judging, const PerceptionChoice& choice,
                    std::function<void(const FilteredImage&)> on_image = {});
@@ -84,10 +84,13 @@ class RefinePerception {
   void save_map() const;
 
  private:
+  int not_shown() const;
+
   PerceptionChoice choice_;
   std::vector<std::filesystem::path> files_;
   std::unique_ptr<Perception> perception_;
   std::unique_ptr<ImageSource> images_;
+  int recorded_ = 0;  // images of the folder of clouds
   std::optional<CameraWalk> walk_;
 };
 

@@ -96,7 +96,7 @@ std::vector<std::filesystem::path> outputs_of(const CommandOptions& options) {
   return files;
 }
 
-ExitCode view(const CommandOptions& options) {
+ExitCode view(const OptionParser& parser, const CommandOptions& options) {
   const bool serving = options.port >= 0;
   if (options.output.empty() && options.png.empty() && !serving) {
     throw Error("nothing to write", "-o OUT.html, --png FILE or --serve PORT");
@@ -106,7 +106,7 @@ ExitCode view(const CommandOptions& options) {
                                                      given.obstacles, given.tree,
                                                      given.srdf,      given.perception.known_map};
   for (const std::filesystem::path& file : given.outputs) check_output(file, inputs, options.json);
-  check_perception_options(given.perception, inputs);
+  check_perception_options(parser, given.perception, inputs);
   if (given.perception.given() && given.perception.unknown == "slow") {
     throw Error("--unknown slow", "free or occupied: a page has the times of the plan");
   }
@@ -176,11 +176,11 @@ Command add_view(OptionParser& app) {
   parser.add_flag("--capsules", o.scene.capsules,
                   "Robots: draw the capsules that self-collision edges see");
   parser.add_flag("--json", o.json, "Print one JSON object");
-  return {parser, [options] {
+  return {parser, [parser, options] {
             options->scene.check = !options->no_check;
             options->scene.outputs = outputs_of(*options);
             options->scene.live = options->port >= 0 && options->scene.outputs.empty();
-            return view(*options);
+            return view(parser, *options);
           }};
 }
 

@@ -194,7 +194,8 @@ Judging judging_of(const Graph& graph, const Plan& plan, const JudgingRequest& r
     World world = judging.world->world(), instead = load_world(request.map, request.obstacles);
     world.map = std::move(instead.map);
     world.obstacles = std::move(instead.obstacles);
-    judging.world = std::make_shared<const WorldSnapshot>(std::move(world));
+    judging.world = std::make_shared<const WorldSnapshot>(
+        std::move(world), 0.0, WorldFiles{.map = request.map, .obstacles = request.obstacles});
   } else if (plan.world && !other) {
     judging.world = with_plan_world(judging.world, *plan.world);
   }

@@ -12,9 +12,9 @@ class CameraRunner : public CommandRunner {
     const Outcome outcome = run("plan centauro_drive -o plan.g2o");
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   }
-  void write_map(const std::string& name) const {
+  void write_map(const std::string& name, double x_m = 2.0) const {
     Box box;
-    box.world_from_box.translation() = Eigen::Vector3d(2.0, 3.0, 0.25);
+    box.world_from_box.translation() = Eigen::Vector3d(x_m, 3.0, 0.25);
     box.size.setConstant(0.5);
     save_octree(*octree_from_boxes({&box, 1}, 0.05), folder() / name);
   }
@@ -58,7 +58,12 @@ TEST(RefineCameras, ShowsRecordedCloudsAtTheirTimes) {
   EXPECT_LE(outcome.exit_code, 1) << outcome.err;
   EXPECT_EQ(outcome.json()["images"], 3) << "the last one comes too late";
   EXPECT_EQ(outcome.json()["blind_images"], 1) << "one without points";
+  EXPECT_EQ(outcome.json()["images_not_shown"], 1);
   EXPECT_EQ(outcome.json()["refused_images"], 0);
+  // A window of the smallest voxels, whose distances do not reach as far.
+  EXPECT_EQ(
+      runner.run("refine plan.g2o --clouds clouds --voxel 0.01 --window 1 -o fine.g2o").exit_code,
+      outcome.exit_code);
 }
 
 TEST(RefineCameras, RefuseWhatCannotBeUsedInOneLine) {
@@ -85,10 +90,15 @@ TEST(RefineCameras, RefuseWhatCannotBeUsedInOneLine) {
   refused("--cameras --known-map none.bt", "none.bt", "");
   refused("--cameras --known-map box.bt --voxel 0.1", "box.bt", "those of the window");
   refused("--cameras --known-map box.bt --save-map box.bt", "", "box.bt");
-  refused("--cameras --window 1000", "", "");
+  refused("--cameras --window 1000", "", "a window of 20000 x 20000 x 60 voxels");
   refused("--cameras --unknown perhaps", "", "unknown");
   refused("--cameras --camera-rate 0", "", "camera-rate");
   refused("--cameras --save-map none/seen.bt", "", "none/seen.bt");
+  runner.write_map("elsewhere.bt", 1000.0);
+  refused("--cameras --known-map elsewhere.bt", "elsewhere.bt", "the plan's frame");
+  write_clouds(runner, "0.0,D435i_camera,a.pcd");
+  refused("--clouds clouds --map elsewhere.bt", "elsewhere.bt", "the plan's frame");
+  refused("--clouds clouds --map box.bt --voxel 0.1", "box.bt", "those of the window");
   write_clouds(runner, "0.0,ear,a.pcd");
   refused("--clouds clouds", "clouds/clouds.csv:2", "ear");
   write_clouds(runner, "0.0,D435i_camera,b.pcd");

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 namespace locograph {
 namespace {
@@ -59,8 +61,10 @@ void LocalMapOptions::validate() const {
   const Eigen::Array3d voxels = (size_m / resolution_m).array();
   if (voxels.maxCoeff() > kFarthestIndex || voxels.prod() > kMostWindowVoxels ||
       static_cast<double>(size_in_voxels(*this).cast<double>().prod()) > kMostWindowVoxels) {
-    throw Error("a window of " + std::to_string(voxels.prod()) + " voxels",
-                "at most 2^25; a smaller one, or larger voxels");
+    std::ostringstream size;
+    size << std::setprecision(10) << "a window of " << std::ceil(voxels[0]) << " x "
+         << std::ceil(voxels[1]) << " x " << std::ceil(voxels[2]) << " voxels";
+    throw Error(size.str(), "at most 2^25; a smaller one, or larger voxels");
   }
   require(max_distance_m / resolution_m + kNodeOffset <= kMostCap,
           "max_distance_m is more than 98 voxels", "less, or larger voxels");

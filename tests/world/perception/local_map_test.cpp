@@ -455,7 +455,7 @@ TEST(LocalMap, OptionsOutOfRangeAreRefused) {
   };
   EXPECT_NE(refused([](auto& o) {
               o.size_m = {800.0, 800.0, 3.0};
-            }).find("2^25"),
+            }).find("16000 x 16000 x 60 voxels, expected at most 2^25"),
             std::string::npos);
   EXPECT_NE(refused([](auto& o) { o.size_m = {1e300, 1.0, 1.0}; }).find("2^25"), std::string::npos);
   EXPECT_NE(refused([](auto& o) { o.resolution_m = 0.0; }), "");
