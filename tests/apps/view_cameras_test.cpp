@@ -161,7 +161,7 @@ TEST_F(ViewPlan, RefusesCamerasAndCloudsThatItCannotShowInOneLine) {
   write_clouds(runner, "0.0,D435i_camera,b.pcd");
   refused("p.g2o --clouds clouds", "clouds/clouds.csv:2", "b.pcd");
   write_clouds(runner, "100,D435i_camera,a.pcd");
-  refused("p.g2o --clouds clouds", "clouds/clouds.csv", "no cloud until the plan ends");
+  refused("p.g2o --clouds clouds", "clouds/clouds.csv", "after the end of the plan");
   runner.write("pose.g2o", "VERTEX_SE2 0 0 0 0\n");
   refused("pose.g2o --cameras", "pose.g2o", "--cameras has no plan to go with");
   refused("'" LOCOGRAPH_SOURCE_DIR "/robots/models/centauro/centauro.urdf' --clouds clouds",
