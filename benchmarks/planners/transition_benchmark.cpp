@@ -101,11 +101,10 @@ class Replayer {
       result.reason = transition_failure_name(found.failure);
     } else if (judge_ != nullptr) {
       const Eigen::VectorXd& q = found.configuration;
-      const CheckReport report =
-          judge_->check(stances_motion({space_->rolled_stance(from, from, q),
-                                        space_->rolled_stance(to, from, q)},
-                                       {q, q}),
-                        task_.check);
+      const CheckReport report = judge_->check(
+          stances_motion({space_->rolled_stance(from, from, q), space_->rolled_stance(to, from, q)},
+                         {q, q}),
+          task_.check);
       result.accepted = report.feasible;
       if (!report.feasible) result.reason = "judge: " + report.worst().constraint;
     }

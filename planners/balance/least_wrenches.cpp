@@ -102,8 +102,8 @@ bool LeastWrenches::solve(const RobotState& state, const Eigen::VectorXd& asked)
     const Eigen::Matrix3d& turned = turned_[ray.contact];
     PointWrench wrench;
     wrench.link = links_[ray.contact];
-    wrench.point = state.world_from_link(wrench.link).inverse() *
-                   (touching_[ray.contact] + turned * ray.at);
+    wrench.point =
+        state.world_from_link(wrench.link).inverse() * (touching_[ray.contact] + turned * ray.at);
     wrench.force = weight_N_ * (turned * ray.force);
     wrench.moment = weight_N_ * (turned * ray.moment);
     torques_.setZero();

@@ -81,8 +81,8 @@ TransitionResult TaskSolver::solve(const TransitionTask& task) {
   return result;
 }
 
-/// The polygons are those of the touch-down places, worked out once for all: where they will not do,
-/// those of the places rolled to take their place.
+/// The polygons are those of the touch-down places, worked out once for all: where they will not
+/// do, those of the places rolled to take their place.
 void TaskSolver::balance_all(const TransitionTask& task, bool rolls, TransitionProblem& problem,
                              TransitionResult& result) {
   const double mass_kg = state_.robot().total_mass();

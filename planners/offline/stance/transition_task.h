@@ -72,7 +72,7 @@ class TaskSolver {
   BalanceRegions& regions_;
   TransitionSolver solver_;
   RobotState state_;
-  BalanceRegion region_;         ///< of balance_all()
+  BalanceRegion region_;       ///< of balance_all()
   Eigen::VectorXd preferred_;  ///< where the task starts, within the joint margin
 };
 
