@@ -119,6 +119,8 @@ export interface CheckReport {
   violations?: Violation[];
   /** What was taken on trust. */
   trusted?: string[];
+  /** How far from falling the motion is. */
+  robustness?: Record<string, unknown>;
   [figure: string]: unknown;
 }
 
