@@ -31,7 +31,6 @@ constexpr double kRoomAtEnds_m = 2e-3;
 /// Segments whose forces change too fast are slowed down so often, at first only in places.
 constexpr int kMostEased = 12, kMostEasedInPlaces = 5;
 constexpr double kDwellStep_s = 0.1;
-const std::string kDwell = "dwell";  ///< in the place of a segment planner, at the end
 
 /// What one segment came to be, to be looked up when the stance planner comes back to it.
 struct TriedSegment {

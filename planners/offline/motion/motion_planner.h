@@ -23,6 +23,9 @@
 
 namespace locograph {
 
+/// In the place of a segment planner: the robot stands at its goal while forces go over.
+inline constexpr char kDwell[] = "dwell";
+
 /// What became of one stance of the plan.
 struct SegmentRecord {
   int stance = 0;           ///< of Motion::stances

@@ -286,6 +286,7 @@ TEST(PostureSolver, SavesAPlanThatIsJudgedAsThePostureWas) {
   EXPECT_TRUE(report.feasible) << violation_text(report.worst());
   ASSERT_EQ(report.violations.size(), result.report.violations.size() + kOfWholePlans);
   for (std::size_t i = 0; i < result.report.violations.size(); ++i) {
+    if (report.violations[i].constraint == "plan_wrenches") continue;  // only a plan states them
     EXPECT_EQ(report.violations[i].worst, result.report.violations[i].worst)
         << report.violations[i].constraint;
   }
