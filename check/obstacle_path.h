@@ -3,7 +3,7 @@
 ///
 ///     locograph::ObstaclePath path(obstacles);
 ///     double at_most_m = path.bound(2.0, 2.5);  // no point of any obstacle travels further
-///     double second_m = path.bound(1, 2.0, 2.5);  // nor any point of the second one
+///     double first_m = path.bound(0, 2.0, 2.5);  // nor any point of the first one
 ///
 /// By world/obstacle_way.h, added up along the key frames.
 
@@ -20,7 +20,7 @@ class ObstaclePath {
 
   /// Path length [m] between two times, in either order: the largest of all obstacles.
   double bound(double from_s, double to_s) const;
-  /// Of one obstacle.
+  /// Of one obstacle, by its place in the list.
   double bound(std::size_t obstacle, double from_s, double to_s) const;
   /// After so long, from any time that is not negative, every obstacle has been wherever it gets to
   /// from then on; 0: none moves or appears.
