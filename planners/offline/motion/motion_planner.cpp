@@ -30,6 +30,8 @@ constexpr double kRoomAtEnds_m = 2e-3;
 
 /// Segments whose forces change too fast are slowed down so often, at first only in places.
 constexpr int kMostEased = 12, kMostEasedInPlaces = 5;
+/// Until they take so many times as long; at each time speeds fall to half at most.
+constexpr double kMostLonger = 4.0, kMostRatio = 8.0;
 constexpr double kDwellStep_s = 0.1;
 
 /// What one segment came to be, to be looked up when the stance planner comes back to it.
@@ -259,7 +261,8 @@ class MotionSearch {
     const auto around = static_cast<std::ptrdiff_t>(
         std::ceil(0.5 * smoothing_s_ / way.duration_s * static_cast<double>(last)));
     for (std::ptrdiff_t i = 0; i < last; ++i) {
-      const double ratio = loads.rates[static_cast<std::size_t>(i)] / kFastestLoad;
+      const double ratio =
+          std::min(kMostRatio, loads.rates[static_cast<std::size_t>(i)] / kFastestLoad);
       if (ratio <= 1.0) continue;
       const std::ptrdiff_t from = std::max<std::ptrdiff_t>(0, i - around);
       const std::ptrdiff_t to = std::min(last, i + 1 + around);
@@ -286,16 +289,23 @@ class MotionSearch {
     const std::vector<BearingContact> bearing = space_.bearing_contacts(tried.held);
     ExecutionMargin margin = tried.margin;
     std::size_t share = 0;
+    const double most_s = kMostLonger * tried.motion.duration_s;
     for (int attempt = 0;; ++attempt) {
+      if (const auto end = end_by(stances_.termination)) {
+        static_cast<PlannerAnswer&>(tried.motion) = *end;
+        return false;
+      }
       auto found =
           loads_.along(counted(bearing, margin), effort_scale(margin), as_motion(tried.motion));
       if (found && found->fastest <= kFastestLoad) {
         tried.wrenches = std::move(found->wrenches);
         return true;
       }
-      if (attempt < kMostEased) {
+      if (attempt < kMostEased && tried.motion.duration_s < most_s) {
         if (!found || attempt >= kMostEasedInPlaces) {
-          tried.pace.slower *= found ? 1.03 * std::cbrt(found->fastest / kFastestLoad) : kSlower;
+          tried.pace.slower *=
+              found ? 1.03 * std::cbrt(std::min(kMostRatio, found->fastest / kFastestLoad))
+                    : kSlower;
         }
         if (found && !tried.motion.speed.empty()) slow_where_forces_change(*found, tried);
         tried.judged = false;
