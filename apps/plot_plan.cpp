@@ -2,6 +2,7 @@
 #include <locograph/apps/plan_file.h>
 #include <locograph/apps/plot.h>
 #include <locograph/check/motion_curve.h>
+#include <locograph/robots/statics.h>
 
 #include <algorithm>
 #include <cmath>
@@ -101,6 +102,25 @@ std::vector<Series> jerks(const MotionCurve& curve) {
   return all;
 }
 
+/// |force| at each contact that the plan states wrenches of, over the robot's weight; 0: not held.
+std::vector<Series> forces(const Robot& robot, const Motion& motion) {
+  const double weight_N = robot.total_mass() * standard_gravity().norm();
+  std::vector<Series> all;
+  for (std::size_t i = 0; i < motion.wrenches.size(); ++i) {
+    for (std::size_t c = 0; c < motion.wrenches[i].size(); ++c) {
+      const Stance& stance = motion.stances[static_cast<std::size_t>(motion.stance_from[i])];
+      const std::string& name = stance.contacts[c].name();
+      auto found = std::ranges::find(all, name, &Series::name);
+      if (found == all.end()) {
+        found = all.insert(all.end(), {name, std::vector<double>(motion.wrenches.size(), 0.0)});
+      }
+      found->values[i] = motion.wrenches[i][c].head<3>().norm() / weight_N;
+      found->peak = std::max(found->peak, found->values[i]);
+    }
+  }
+  return all;
+}
+
 double highest(const std::vector<Series>& all, double at_least) {
   for (const Series& series : all) at_least = std::max(at_least, series.peak);
   return at_least;
@@ -160,7 +180,8 @@ PlotScript plot_plan(const std::filesystem::path& file, const std::vector<std::s
   }
   require_increasing_times(plan);
   const bool base = robot.floating_base(), moves = !motion.stances_only;
-  const int panels = 1 + (moves ? 2 : 0) + (base ? 1 : 0);
+  const std::vector<Series> bears = forces(robot, motion);
+  const int panels = 1 + (moves ? 2 : 0) + (bears.empty() ? 0 : 1) + (base ? 1 : 0);
   PlotScript plot(1000, 340 * panels + (base ? 0 : 40));
   plot.line("set multiplot layout " + std::to_string(panels) + ",1 title " +
             PlotScript::label(file.filename().string() + ": " + robot.name() +
@@ -193,6 +214,12 @@ PlotScript plot_plan(const std::filesystem::path& file, const std::vector<std::s
     add_lines(plot, "jerk", motion.time_s, jerky);
   }
   plot.line("unset arrow 2");
+  if (!bears.empty()) {
+    plot.line("set title 'contact forces that the plan states'");
+    plot.line("set ylabel '|force| / weight'");
+    plot.line("set yrange [0:" + short_number(1.1 * highest(bears, 1e-6)) + "]");
+    add_lines(plot, "force", motion.time_s, bears);
+  }
   for (const int tag : changes) plot.line("unset arrow " + std::to_string(tag));
   if (base) add_base_path(plot, motion);
   plot.line("unset multiplot");

@@ -21,6 +21,7 @@
 #include <locograph/plugins/static_balance/edge_moving_balance.h>
 #include <locograph/plugins/static_balance/edge_torque_limits.h>
 #include <locograph/plugins/static_balance/edge_wrench_norm.h>
+#include <locograph/plugins/static_balance/edge_wrench_tracking.h>
 #include <locograph/plugins/surface_distance/edge_surface_distance.h>
 #include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
 #include <locograph/plugins/time_step/edge_duration.h>
@@ -78,6 +79,7 @@ void add_robot_types(TypeRegistry& types) {
   types.add_edge<EdgeVelocityLimitsTimedSigned>();
   types.add_edge<EdgeVelocityTracking>();
   types.add_edge<EdgeWrenchNorm>();
+  types.add_edge<EdgeWrenchTracking>();
   for (const char* tag : {"PARAMS_WHEELS", "EDGE_WHEEL_CONTACT"}) {
     types.retire(tag, "a plan of format version 3, which has contacts and stances: make it again");
   }

@@ -13,7 +13,7 @@
 #include <locograph/plugins/static_balance/edge_contact_wrench.h>
 #include <locograph/plugins/static_balance/edge_moving_balance.h>
 #include <locograph/plugins/static_balance/edge_torque_limits.h>
-#include <locograph/plugins/static_balance/edge_wrench_norm.h>
+#include <locograph/plugins/static_balance/edge_wrench_tracking.h>
 #include <locograph/plugins/surface_distance/edge_surface_distance.h>
 #include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
 #include <locograph/plugins/velocity_limits/edge_velocity_limits.h>
@@ -330,8 +330,8 @@ class PlanEdges {
     const double balance = options_.balance_weight * unit;
     add_balance_edge(i, forces, balance);
     add_contact_wrench_edge(forces, options_.friction_weight * unit);
-    graph_.add_edge(EdgeWrenchNorm(graph_.vertex(forces), options_.wrench_norm_weight * unit),
-                    forces);
+    graph_.add_edge(
+        EdgeWrenchTracking(graph_.vertex(forces), options_.wrench_tracking_weight * unit), forces);
     if (!options_.torque_limits) return;
     EdgeTorqueLimits torques(robot_, options_.effort_scale, 0.0);
     for (int j = 0; j < robot_.active_joint_count(); ++j) {

@@ -11,7 +11,7 @@
 /// to each other and, where the plan has a PARAMS_PLACES, to what they do not touch; each step
 /// tracking of its length, velocity limits, rolling where it has wheels and distances to the world
 /// on the way; each two steps acceleration limits; each configuration whose wrenches are known
-/// balance, friction, the least wrenches and, where they are enforced, torque limits. A plan of
+/// balance, friction, the plan's wrenches and, where they are enforced, torque limits. A plan of
 /// stances has no edges of steps but those of balls. A posture, a plan of one configuration, has
 /// its distances to the world there.
 ///
@@ -32,13 +32,13 @@ namespace locograph {
 /// wants bends constraints by micrometres only. Limits are what the edges keep, not what the judge
 /// allows.
 struct PlanEdgeOptions {
-  double constraint_weight = 1e5;    ///< contacts, rolling
-  double limit_weight = 1e4;         ///< joints, velocities, obstacles, the robot itself
-  double acceleration_weight = 1e2;  ///< per (rad/s²)²
-  double balance_weight = 1e4;       ///< forces and moments (N, N m over the robot's weight)
-  double friction_weight = 1e3;      ///< what contacts can bear, likewise
-  double torque_weight = 1e2;        ///< per share of a joint's effort limit
-  double wrench_norm_weight = 1e-4;  ///< the least of all wrenches that balance
+  double constraint_weight = 1e5;        ///< contacts, rolling
+  double limit_weight = 1e4;             ///< joints, velocities, obstacles, the robot itself
+  double acceleration_weight = 1e2;      ///< per (rad/s²)²
+  double balance_weight = 1e4;           ///< forces and moments (N, N m over the robot's weight)
+  double friction_weight = 1e3;          ///< what contacts can bear, likewise
+  double torque_weight = 1e2;            ///< per share of a joint's effort limit
+  double wrench_tracking_weight = 1e-4;  ///< the plan's, of all wrenches that balance
 
   double obstacle_margin_m = 0.05;
   int swept_samples = 4;  ///< between two configurations, see edge_swept_obstacle_distance.h

@@ -81,6 +81,7 @@ TEST(Plot, ConstraintsOfACheckAndAPlanAgainstItsLimits) {
   EXPECT_TRUE(contains(lines, "joint velocities"));
   EXPECT_TRUE(contains(lines, "joint jerk"));
   EXPECT_TRUE(contains(lines, "base path"));
+  EXPECT_FALSE(contains(lines, "contact forces")) << "a drive states none";
 }
 
 TEST(Plot, APlanOfStancesHasNoVelocities) {
@@ -90,6 +91,8 @@ TEST(Plot, APlanOfStancesHasNoVelocities) {
   const std::string svg = plot(runner, "s.g2o");
   EXPECT_TRUE(contains(svg, "joint positions"));
   EXPECT_TRUE(contains(svg, "base path"));
+  EXPECT_TRUE(contains(svg, "contact forces that the plan states"));
+  EXPECT_TRUE(contains(svg, "right_hand"));
   EXPECT_FALSE(contains(svg, "joint velocities"));
   EXPECT_FALSE(contains(svg, "joint jerk"));
 }

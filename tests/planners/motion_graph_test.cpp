@@ -16,7 +16,7 @@
 #include <locograph/plugins/static_balance/edge_balance.h>
 #include <locograph/plugins/static_balance/edge_contact_wrench.h>
 #include <locograph/plugins/static_balance/edge_moving_balance.h>
-#include <locograph/plugins/static_balance/edge_wrench_norm.h>
+#include <locograph/plugins/static_balance/edge_wrench_tracking.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
 #include <locograph/plugins/surface_distance/edge_surface_distance.h>
 #include <locograph/plugins/swept_obstacle_distance/edge_swept_obstacle_distance.h>
@@ -155,7 +155,7 @@ TEST_F(MotionGraph, HasEveryConstraintAndEveryCost) {
   EXPECT_EQ(graph.edges_of<EdgeBalance>().size(), 2u);
   EXPECT_EQ(graph.edges_of<EdgeMovingBalance>().size(), count - 2);
   EXPECT_EQ(graph.edges_of<EdgeContactWrench>().size(), count);
-  EXPECT_EQ(graph.edges_of<EdgeWrenchNorm>().size(), count);
+  EXPECT_EQ(graph.edges_of<EdgeWrenchTracking>().size(), count);
   EXPECT_EQ(graph.edges_of<EdgeAccelerationTracking>().size(), count - 2);
   EXPECT_GE(graph.edges_of<EdgeVelocityTracking>().size(), 2u);  // next to rest
   EXPECT_EQ(graph.edges_of<EdgeVelocityLimits>().size(), count - 1);

@@ -143,6 +143,7 @@ TEST_F(RowLabels, OfWrenchesTellForcesFromMoments) {
   EXPECT_EQ(norm[8], "lift wrench z [N]");
   EXPECT_EQ(norm[12], "grip wrench about x [N m]");
   EXPECT_EQ(norm[13], "grip wrench about z [N m]") << "a rung bears no moment about y";
+  EXPECT_EQ(labels("EDGE_WRENCH_TRACKING 20 14 1 2 3 4 5 6 7 8 9 10 11 12 13 14 scalar 1"), norm);
   const Labels limits = labels("EDGE_CONTACT_WRENCH 20 26 scalar 1");
   ASSERT_EQ(limits.size(), 26u);
   EXPECT_EQ(limits[0], "arm pull [N]");

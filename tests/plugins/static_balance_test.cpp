@@ -270,6 +270,9 @@ TEST_P(StaticBalance, HasContactLimitsWithTheJacobianOfNumericDifferences) {
     standing.graph.add_edge(EdgeContactWrench(standing.contacts(), 1.0), standing.w[i]);
     standing.graph.add_edge(EdgeWrenchNorm(standing.graph.vertex(standing.w[i]), 1.0),
                             standing.w[i]);
+    EdgeWrenchTracking tracking(standing.graph.vertex(standing.w[i]), 1.0);
+    tracking.reference *= 0.75;
+    standing.graph.add_edge(tracking, standing.w[i]);
   }
   Evaluated evaluated(standing.graph);
   Compared limits, norm;
@@ -277,6 +280,8 @@ TEST_P(StaticBalance, HasContactLimitsWithTheJacobianOfNumericDifferences) {
     compare(evaluated, k, 0, kEverywhere, limits);
     EXPECT_TRUE(evaluated.jacobian(k, 0, false, 1).isIdentity(0.0));
     EXPECT_EQ(evaluated.error(k, 1), standing.graph.vertex(standing.w[k]).state);
+    EXPECT_TRUE(evaluated.jacobian(k, 0, false, 2).isIdentity(0.0));
+    EXPECT_TRUE(evaluated.error(k, 2).isApprox(0.25 * evaluated.error(k, 1), 1e-14));
   }
   EXPECT_GT(limits.nonzero, 9 * kStates);
   EXPECT_GT(limits.zero, 9 * kStates);
@@ -299,6 +304,7 @@ TEST_P(StaticBalance, IsInABatchWhatItIsEdgeByEdge) {
     graph.add_edge(dress(EdgeTorqueLimits(robot.model(), 0.01, 1.0)), q, w);
     graph.add_edge(dress(EdgeContactWrench(standing.contacts(), 1.0)), w);
     graph.add_edge(dress(EdgeWrenchNorm(graph.vertex(w), 1.0)), w);
+    graph.add_edge(dress(EdgeWrenchTracking(graph.vertex(w), 1.0)), w);
   }
   Loaded loaded(graph);
   const long before = allocation_count();
@@ -324,6 +330,7 @@ TEST_P(StaticBalance, KeepsEveryBitInAFile) {
     limits.weights = random.weights(limits.weights.size());
     graph.add_edge(limits, standing.w[i]);
     graph.add_edge(EdgeWrenchNorm(graph.vertex(standing.w[i]), 1e-17), standing.w[i]);
+    graph.add_edge(EdgeWrenchTracking(graph.vertex(standing.w[i]), 0.1), standing.w[i]);
   }
   const TemporaryFolder folder;
   write_graph(graph, folder.path() / "balance.g2o");

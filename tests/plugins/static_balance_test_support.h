@@ -10,6 +10,7 @@
 #include <locograph/plugins/static_balance/edge_moving_balance.h>
 #include <locograph/plugins/static_balance/edge_torque_limits.h>
 #include <locograph/plugins/static_balance/edge_wrench_norm.h>
+#include <locograph/plugins/static_balance/edge_wrench_tracking.h>
 
 #include "plugins/plugin_test_support.h"
 
