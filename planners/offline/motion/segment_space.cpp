@@ -46,6 +46,7 @@ Contact contact_in_air(const Robot& robot, const Contact& contact, const Eigen::
   Contact held = contact;
   held.position = link * effector.point;
   held.locked = false;
+  held.bar.reset();
   if (with_axes && contact_kind_entry(effector.kind).holds_normal) {
     const Eigen::Matrix3d axes = link.linear() * axes_in_link(effector);
     held.normal = axes.col(2);
