@@ -86,7 +86,10 @@ class MotionSearch {
     for (bool whole = false;; whole = true) {
       for (std::size_t j = first; j < count; ++j) {
         if (!found_at(way, j) && !move_postures(way, first, j)) return refuse(j);
-        if (bears_on() && !load(*ways_[j])) return refuse(j);
+        // The one before, too: it may have been moved.
+        for (std::size_t i = std::max(first + 1, j) - 1; bears_on() && i <= j; ++i) {
+          if (!load(*ways_[i])) return refuse(i);
+        }
       }
       assemble(way);
       plan_.report = judged(plan_.motion);
@@ -118,7 +121,10 @@ class MotionSearch {
     plan_.segments.clear();
     time_s_ = 0.0;
     std::size_t done = 0;
-    while (done < ways_.size() && ways_[done]->motion.success()) ++done;
+    while (done < ways_.size() && ways_[done]->motion.success() &&
+           !(bears_on() && ways_[done]->wrenches.empty())) {
+      ++done;
+    }
     StanceWrenches at_end;
     if (bears_on()) at_end = at_rest(path.footings[done], path.configurations[done]);
     for (std::size_t j = 0; j < done; ++j) {
