@@ -65,6 +65,20 @@ bool simply_in_cones(const EndEffector& surface, const std::vector<Eigen::Vector
   return true;
 }
 
+/// Where a bar touches a sole is known as exactly as contacts close: of a wrench in a line that is
+/// no further aside, in the line.
+Eigen::Matrix<double, 6, 1> moved_into(const std::vector<Eigen::Vector2d>& area,
+                                       Eigen::Matrix<double, 6, 1> wrench) {
+  if (area.size() != 2 || !(wrench[2] > 0.0)) return wrench;
+  const Eigen::Vector2d way = (area[1] - area[0]).normalized(), across(-way.y(), way.x());
+  const Eigen::Vector2d centre(-wrench[4] / wrench[2], wrench[3] / wrench[2]);
+  const double aside = across.dot(centre - area[0]);
+  if (!(std::abs(aside) <= limits::kClosed_m)) return wrench;
+  wrench[3] -= wrench[2] * aside * across.y();
+  wrench[4] += wrench[2] * aside * across.x();
+  return wrench;
+}
+
 /// A point, in a cone: by how much of the weight it would have to be pressed more.
 double outside_cone(double friction, const Eigen::Vector3d& force, double weight_N) {
   return std::max({0.0, force.head<2>().norm() / friction - force.z(), -force.z()}) / weight_N;
@@ -78,7 +92,8 @@ double as_ratio(double used, double outside) {
 }  // namespace
 
 double outside_cones(const EndEffector& surface, const std::vector<Eigen::Vector2d>& area,
-                     const Eigen::Matrix<double, 6, 1>& wrench, double weight_N) {
+                     const Eigen::Matrix<double, 6, 1>& stated, double weight_N) {
+  const Eigen::Matrix<double, 6, 1> wrench = moved_into(area, stated);
   if (simply_in_cones(surface, area, wrench)) return 0.0;
   const std::vector<Eigen::Vector2d> corners = corners_of(surface, area);
   const auto count = static_cast<Eigen::Index>(corners.size());

@@ -231,7 +231,17 @@ TEST(OutsideCones, AreThoseOfForcesAtTheCorners) {
   // A line bears no moment about itself.
   Wrench tips = Wrench::Unit(2);
   tips[4] = 1e-3;
-  EXPECT_GT(outside_cones(sole, {{0.0, -0.05}, {0.0, 0.05}}, tips, 1.0), 1.0);
+  const std::vector<Eigen::Vector2d> line = {{0.0, -0.05}, {0.0, 0.05}};
+  EXPECT_GT(outside_cones(sole, line, tips, 1.0), 1.0);
+  // It is known to a tenth of a millimetre where the line is.
+  tips[4] = 0.99e-4;
+  EXPECT_LT(outside_cones(sole, line, tips, 1.0), 1e-8);
+  tips[4] = 1.01e-4;
+  EXPECT_GT(outside_cones(sole, line, tips, 1.0), 1.0);
+  const std::vector<Eigen::Vector2d> slanted = {{0.03, -0.04}, {0.07, 0.02}};
+  Wrench beside = Wrench::Unit(2);
+  beside.tail<3>() = Vector3d(0.05 + 5e-5, -0.01, 0.0).cross(Vector3d::UnitZ());
+  EXPECT_LT(outside_cones(sole, slanted, beside, 1.0), 1e-8);
 }
 
 }  // namespace
