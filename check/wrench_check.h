@@ -18,8 +18,8 @@
 ///                ends. Torques are those of the acceleration that fits best
 ///   changes      how fast the force of each contact goes from vertex to vertex, in the world:
 ///                2.5 W per second; nothing of plans of stances, which have no time
-///   opens        a contact that closes or opens carries nothing at the vertex where it does: 1e-3 W
-///                and W 1 m of what is stated there, and in "changes" it counts as nothing
+///   opens        a contact that closes or opens carries nothing at the vertex where it does: of
+///                what is stated there 1e-3 W and W 1 m; in "changes" it counts as nothing
 ///   cone         Coulomb's own of points and wheels, |f_t| <= mu f_z. Of a surface contact: of
 ///                forces at the corners of what of it lies on surfaces and bars, so that the centre
 ///                of pressure and yaw are judged, too, the former to 0.1 mm beside the line where a
