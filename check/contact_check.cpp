@@ -204,7 +204,11 @@ void ContactCheck::check_relabelled(int vertex) {
   for (const JudgedContact& contact : after->contacts) {
     for (const JudgedContact& held : before->contacts) {
       if (!same_effector(held, contact) || !contact.is_held() || !held.is_held()) continue;
-      if (same_place(held.contact, contact.contact)) continue;
+      // Also after many small steps.
+      const auto track = std::ranges::find(tracks_, &held, &Track::contact);
+      const JudgedContact& first = track == tracks_.end() ? held : *track->label;
+      if (same_place(held.contact, contact.contact) && same_place(first.contact, contact.contact))
+        continue;
       ++changed;
       what = contact.name() + " is held at two places";
     }
@@ -226,7 +230,7 @@ void ContactCheck::begin(const JudgedStance* stance, const Sample& sample) {
   for (const JudgedContact& contact : stance->contacts) {
     const Eigen::Vector3d at = touching_point(contact, sample.poses);
     Track track;
-    track.contact = &contact;
+    track.contact = track.label = &contact;
     track.last = at;
     track.first = sample.poses[std::size_t(held_link(context_.robot, contact))].linear();
     // Of several contacts of the body: the nearest one.
@@ -234,6 +238,8 @@ void ContactCheck::begin(const JudgedStance* stance, const Sample& sample) {
     double least = 0.0;
     for (const Track& candidate : old) {
       if (candidate.contact->body != contact.body) continue;
+      if (same_effector(*candidate.contact, contact) && candidate.contact->is_held())
+        track.label = candidate.label;
       const double apart = (touching_point(*candidate.contact, sample.poses) - at).norm();
       if (nearest != nullptr && apart >= least) continue;
       nearest = &candidate;

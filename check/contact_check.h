@@ -39,6 +39,7 @@ class ContactCheck {
   /// A contact of the present stance, and what it has done since it began.
   struct Track {
     const JudgedContact* contact = nullptr;
+    const JudgedContact* label = nullptr;  // what it was called when it began to be held
     // What of the way was covered with other points of the body, and where it all has led.
     Eigen::Vector3d offset = Eigen::Vector3d::Zero(), last = Eigen::Vector3d::Zero();
     Eigen::Matrix3d first = Eigen::Matrix3d::Identity();  // of its link; a wheel's: of the carrier

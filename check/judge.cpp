@@ -251,7 +251,7 @@ std::optional<CheckReport> Judge::check(const Motion& motion, const CheckOptions
 CheckReport Judge::check(const Eigen::VectorXd& configuration, const Stance& stance,
                          const CheckOptions& options, const StanceWrenches& wrenches) const {
   Motion motion;
-  motion.wrenches = {wrenches};
+  if (!wrenches.empty()) motion.wrenches = {wrenches};
   motion.time_s = {0.0};
   motion.configurations = {configuration};
   motion.stances = {stance};

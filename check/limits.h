@@ -21,6 +21,9 @@ inline constexpr double kAtRest = 1e-6;
 // Wrenches that are stated: what is left over of the weight, and how fast the force of a contact
 // changes [weights per second].
 inline constexpr double kWrenchLeftOver = 1e-3, kForceRate = 2.5;
+// How far what motion and gravity ask of all contacts may jump at a vertex [weights]: as far as the
+// force of a contact may change in 20 ms.
+inline constexpr double kForceJump = 0.02 * kForceRate;
 // For rounding: of a depth, and of what linear programmes balance.
 inline constexpr double kDepthRounding_m = 1e-6, kBalanceRounding = 1e-6;
 

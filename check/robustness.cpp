@@ -112,7 +112,12 @@ class StretchWorker {
       if (change == kArea && !has_area_) continue;
       if (change == kTorque && !has_torque_) continue;
       double& least = least_[std::size_t(std::min(change, int(kPush)))];
-      if (least == 0.0 || holds(change, least)) continue;
+      if (least == 0.0) continue;
+      if (holds(change, least)) {
+        // More mass may balance what falls without it.
+        if (change == kMass && !holds(change, 0.0)) least = 0.0;
+        continue;
+      }
       double low = 0.0, high = least;
       for (int i = 0; i < kBisections; ++i) {
         const double middle = 0.5 * (low + high);

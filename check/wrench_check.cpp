@@ -131,9 +131,7 @@ WrenchCheck::WrenchCheck(CheckContext& context)
 std::string WrenchCheck::why_not() const {
   if (!context_.robot.floating_base()) return "the base is fixed to the world";
   if (!(weight_ > 0.0)) return "no link has a mass";
-  if (std::ranges::all_of(context_.motion.wrenches,
-                          [](const StanceWrenches& some) { return some.empty(); }))
-    return "no wrenches are stated";
+  if (context_.motion.wrenches.empty()) return "no wrenches are stated";
   if (!context_.options.starts_at_rest || !context_.options.ends_at_rest)
     return "it is a part of a motion";
   return "";
@@ -165,7 +163,8 @@ void WrenchCheck::judge_vertex(int vertex) {
   const StanceWrenches& wrenches = context_.motion.wrenches[static_cast<std::size_t>(vertex)];
   if (wrenches.size() != stance.contacts.size()) {
     add(vertex, kBeyond,
-        wrenches.empty() ? "none are stated" : "they are stated at other contacts than it has");
+        wrenches.empty() ? "none are stated, or not of each contact that bears it"
+                         : "they are stated at other contacts than it has");
     return;
   }
   if (!std::ranges::all_of(wrenches, [](const Wrench& wrench) { return wrench.allFinite(); })) {
@@ -231,6 +230,9 @@ void WrenchCheck::judge_balance(int vertex, const std::vector<LoadedContact>& co
                        1.0, borne);
   const Eigen::VectorXd jump = after - before;
   const double length = jump.head<6>().squaredNorm();
+  const double jumps = std::sqrt(length) / weight_;
+  add(vertex, jumps / limits::kForceJump,
+      told("", "forces would have to jump by %.4g of the weight", jumps));
   const double share =
       length > 0.0 ? std::clamp((borne - before).head<6>().dot(jump.head<6>()) / length, 0.0, 1.0)
                    : 0.0;

@@ -16,6 +16,8 @@
 ///                that is between those at the end of the step before and at the beginning of the
 ///                one after; at rest counts as the step before a whole motion begins, and after it
 ///                ends. Torques are those of the acceleration that fits best
+///   jumps        what is asked of the base before and after a vertex differs by 0.05 W at most, as
+///                above in norm
 ///   changes      how fast the force of each contact goes from vertex to vertex, in the world:
 ///                2.5 W per second; nothing of plans of stances, which have no time
 ///   opens        a contact that closes or opens carries nothing at the vertex where it does: of

@@ -40,6 +40,12 @@ void require_wrenches_of_stances(const Graph& graph, const Plan& plan) {
            std::ranges::count(plan.stance_from[step]->contact_numbers, contact) > 0;
   };
   for (std::size_t i = 0; i < plan.slots.size(); ++i) {
+    if (plan.index.wrenches[i].size() > 1) {
+      throw Error("", graph.vertex_record(plan.index.wrenches[i][1]).line,
+                  "configuration " + std::to_string(graph.vertex_record(plan.slots[i]).id) +
+                      " has wrenches twice",
+                  "them once");
+    }
     for (const int slot : plan.index.wrenches[i]) {
       const VertexWrenches& given = graph.vertex(VertexId<VertexWrenches>{slot});
       Eigen::Index at = 0;

@@ -131,6 +131,13 @@ TEST(LyingMotion, WrenchesActWhereNoStanceIs) {
                               "EDGE_BALANCE 7 20 scalar 1\n");
   expect_refusal(runner.run("check lie.g2o"), "lie.g2o:" + std::to_string(lines + 1),
                  "configuration 7 has wrenches at contact 5, which no stance of it has");
+  runner.write("twice.g2o", plan.text() +
+                                "VERTEX_WRENCHES 20 1 4 0 0 0 0 0 0\n"
+                                "VERTEX_WRENCHES 21 1 4 0 0 0 0 0 0\n"
+                                "EDGE_BALANCE 7 20 scalar 1\n"
+                                "EDGE_BALANCE 7 21 scalar 1\n");
+  expect_refusal(runner.run("check twice.g2o"), "twice.g2o:" + std::to_string(lines + 2),
+                 "configuration 7 has wrenches twice");
 }
 
 TEST(LyingMotion, NamesAScenarioThatIsNone) {

@@ -280,5 +280,17 @@ TEST_F(Ball, ANewPlaceInTheNextStanceIsALie) {
   EXPECT_NEAR(slip(report), 0.02, 1e-9);
 }
 
+TEST_F(Ball, APlaceThatWalksInSmallStepsIsALie) {
+  Motion stands = on_the_floor(0.0, Vector3d::Zero());
+  for (std::size_t i = 1; i < stands.configurations.size(); ++i) {
+    stands.stances.push_back(stands.stances.back());
+    stands.stances.back().contacts[0].position.x() += 9e-5;
+    stands.stance_from[i] = int(i);
+  }
+  const CheckReport report = check(stands, floor());
+  EXPECT_EQ(violated(report), Names{"contact_relabelled"});
+  EXPECT_EQ(report.constraint("contact_relabelled").at_vertex, 2);
+}
+
 }  // namespace
 }  // namespace locograph

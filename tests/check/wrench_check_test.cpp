@@ -123,6 +123,10 @@ TEST_F(Stated, ThatAreNotFiniteOrAtOtherContactsAreRefused) {
   expect_refused(lies, 1, kInfinity, "none are stated");
   lies.wrenches.pop_back();
   EXPECT_THROW(judged(lies), Error);
+  // Stated in the file, but nowhere whole.
+  lies = motion();
+  for (StanceWrenches& wrenches : lies.wrenches) wrenches.clear();
+  expect_refused(lies, 4, kInfinity, "none are stated");
 }
 
 TEST_F(Stated, ForcesThatJumpAreRefused) {
@@ -206,6 +210,21 @@ TEST_F(Stated, InertiaCountsOnBothSidesOfAVertex) {
   moves.wrenches[2] = {pressing(1.0 - share)};
   moves.wrenches[3] = {pressing(1.0 - 2e-3)};
   EXPECT_NEAR(judge().worst, 2.0, 1e-6);
+}
+
+// Wrenches between what both sides of a vertex ask would hide that no force follows.
+TEST_F(Stated, MotionsThatAskForJumpsOfForcesAreRefused) {
+  Motion jerks = motion();
+  jerks.stance_from.assign(5, 1);
+  jerks.slopes.assign(5, Eigen::VectorXd::Zero(6));
+  const double up = 0.01, share = 6.0 * up / (0.25 * 0.25) / 9.81;
+  jerks.configurations[2][2] = up;
+  jerks.wrenches = {{pressing(1.0)},
+                    {pressing(1.0 + 0.5 * share)},
+                    {pressing(1.0 - share)},
+                    {pressing(1.0 + 0.5 * share)},
+                    {pressing(1.0)}};
+  expect_refused(jerks, 1, share / 0.05, "forces would have to jump by");
 }
 
 TEST(OutsideCones, AreThoseOfForcesAtTheCorners) {

@@ -161,16 +161,20 @@ def _kept(report, plan, curve, contact, effector, part, first, last):
 
 
 def check_relabelled(report, plan):
-    """A held contact has one place as long as it lasts."""
+    """A held contact has one place as long as it lasts, also after many small steps."""
+    first = {}
     for vertex in range(1, len(plan.q)):
         before, after = plan.stance[vertex - 1], plan.stance[vertex]
         if before == after or before is None or after is None:
             continue
         off = 0
-        for a in plan.stances[before]:
-            for b in plan.stances[after]:
+        held = {b.name for b in plan.stances[after] if b.held}
+        first = {name: a for name, a in first.items() if name in held}
+        for b in plan.stances[after]:
+            for a in plan.stances[before]:
                 if a.name != b.name or not (a.held and b.held):
                     continue
+                a = first.setdefault(a.name, a)
                 moved = np.linalg.norm(a.position - b.position) > CLOSED_M
                 tilted = angle_between(a.normal, b.normal) > CLOSED_RAD
                 turned = (a.forward is not None and b.forward is not None and angle_between(

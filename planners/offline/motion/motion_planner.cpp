@@ -1,9 +1,7 @@
 #include <locograph/check/judge.h>
-#include <locograph/planners/balance/least_wrenches.h>
 #include <locograph/planners/balance/margin_contacts.h>
-#include <locograph/planners/offline/motion/motion_loads.h>
+#include <locograph/planners/offline/motion/motion_assembly.h>
 #include <locograph/planners/offline/motion/motion_planner.h>
-#include <locograph/planners/offline/motion/segment_motion.h>
 #include <locograph/planners/offline/stance/stance_planners.h>
 #include <locograph/planners/offline/stance/standing_wheels.h>
 
@@ -32,10 +30,9 @@ constexpr double kRoomAtEnds_m = 2e-3;
 constexpr int kMostEased = 12, kMostEasedInPlaces = 5;
 /// Until they take so many times as long; at each time speeds fall to half at most.
 constexpr double kMostLonger = 4.0, kMostRatio = 8.0;
-constexpr double kDwellStep_s = 0.1;
 
 /// What one segment came to be, to be looked up when the stance planner comes back to it.
-struct TriedSegment {
+struct TriedSegment : LoadedSegment {
   Footing before, held, after;  ///< before: empty where the motion begins
   Eigen::VectorXd from, to;
   std::size_t planner = 0;  ///< the first one that has not been refused
@@ -43,8 +40,6 @@ struct TriedSegment {
   int slowed = 0;
   bool judged = false;     ///< and found feasible, by itself
   ExecutionMargin margin;  ///< what its ends, which are given, leave of the task's
-  SegmentMotion motion;
-  std::vector<StanceWrenches> wrenches;  ///< along it, once they were found
 };
 
 /// Of the joint that is nearest to a limit; 0: at it, or beyond.
@@ -75,6 +70,7 @@ class MotionSearch {
         judge_(task_.robot->robot, task_.world),
         state_(*task_.robot->robot),
         loads_(*task_.robot->robot),
+        assembly_(space),
         smoothing_s_(options.loaded_smoothing_s) {}
 
   /// Moves along a way through stances. 0: it does, maybe between other configurations than the
@@ -87,7 +83,7 @@ class MotionSearch {
       for (std::size_t j = first; j < count; ++j) {
         if (!found_at(way, j) && !move_postures(way, first, j)) return refuse(j);
         // The one before, too: it may have been moved.
-        for (std::size_t i = std::max(first + 1, j) - 1; bears_on() && i <= j; ++i) {
+        for (std::size_t i = std::max(first + 1, j) - 1; assembly_.bears_on() && i <= j; ++i) {
           if (!load(*ways_[i])) return refuse(i);
         }
       }
@@ -116,73 +112,8 @@ class MotionSearch {
 
   /// Without success: as far as segments were found.
   void assemble(const StancePath& path) {
-    Motion& motion = plan_.motion;
-    motion = {};
-    plan_.segments.clear();
-    time_s_ = 0.0;
-    std::size_t done = 0;
-    while (done < ways_.size() && ways_[done]->motion.success() &&
-           !(bears_on() && ways_[done]->wrenches.empty())) {
-      ++done;
-    }
-    StanceWrenches at_end;
-    if (bears_on()) at_end = at_rest(path.footings[done], path.configurations[done]);
-    for (std::size_t j = 0; j < done; ++j) {
-      const TriedSegment& tried = *ways_[j];
-      const SegmentMotion& way = tried.motion;
-      SegmentRecord record;
-      record.stance = static_cast<int>(j);
-      record.first = static_cast<int>(motion.configurations.size());
-      record.duration_s = way.duration_s;
-      if (bears_on() && j > 0 && gains(path, j - 1)) {
-        record.duration_s +=
-            dwell(record.stance, way.configurations.front(),
-                  carried(ways_[j - 1]->wrenches.back(), path.footings[j - 1], path.footings[j]),
-                  tried.wrenches.front());
-      }
-      const std::size_t steps = way.configurations.size() - 1;
-      for (std::size_t i = 0; i < steps; ++i) {
-        append(record.stance, way.configurations[i], way.slopes[i]);
-        if (bears_on()) motion.wrenches.push_back(tried.wrenches[i]);
-        motion.time_s.push_back(time_s_ + way.duration_s * static_cast<double>(i) /
-                                              static_cast<double>(steps));
-      }
-      time_s_ += way.duration_s;
-      if (bears_on() && !gains(path, j)) {
-        const StanceWrenches& next = j + 1 < done ? ways_[j + 1]->wrenches.front() : at_end;
-        record.duration_s += dwell(record.stance, way.configurations.back(), tried.wrenches.back(),
-                                   carried(next, path.footings[j + 1], path.footings[j]));
-      }
-      record.last = static_cast<int>(motion.configurations.size());
-      record.planner = way.planner;
-      record.path_s = way.statistics.path_s;
-      record.timing_s = way.statistics.timing_s;
-      record.length = way.length;
-      record.straight = way.straight;
-      record.clear_m = way.clear_m;
-      plan_.segments.push_back(std::move(record));
-    }
-    for (std::size_t j = 0; j <= done; ++j) {
-      motion.stances.push_back(space_.stance(path.footings[j]));
-    }
-    if (bears_on() && done > 0) {
-      SegmentRecord record;
-      record.stance = static_cast<int>(done);
-      record.first = static_cast<int>(motion.configurations.size());
-      record.planner = kDwell;
-      const bool gained = gains(path, done - 1);
-      record.duration_s = dwell(record.stance, path.configurations[done],
-                                gained ? carried(ways_[done - 1]->wrenches.back(),
-                                                 path.footings[done - 1], path.footings[done])
-                                       : at_end,
-                                at_end);
-      record.last = static_cast<int>(motion.configurations.size());
-      plan_.segments.push_back(std::move(record));
-    }
-    append(static_cast<int>(done), path.configurations[done],
-           Eigen::VectorXd::Zero(task_.robot->robot->tangent_size()));
-    motion.time_s.push_back(time_s_);
-    if (bears_on()) motion.wrenches.push_back(std::move(at_end));
+    const std::vector<const LoadedSegment*> segments(ways_.begin(), ways_.end());
+    assembly_.assemble(path, segments, plan_);
   }
 
   /// Why the last one was refused; empty: none was.
@@ -195,61 +126,6 @@ class MotionSearch {
     ++plan_.statistics.refused_segments;
     refused_reason_ = ways_[segment]->motion.reason;
     return segment + 1;
-  }
-
-  /// Forces go over between stances, and follow the motion.
-  bool bears_on() const { return task_.margin.dwell_s > 0.0; }
-
-  /// Whether the stance after segment j has one contact more than its own.
-  static bool gains(const StancePath& path, std::size_t j) {
-    return contacts_of(path.footings[j + 1]) > contacts_of(path.footings[j]);
-  }
-
-  void append(int stance, const Eigen::VectorXd& q, Eigen::VectorXd slope) {
-    plan_.motion.configurations.push_back(q);
-    plan_.motion.slopes.push_back(std::move(slope));
-    plan_.motion.stance_from.push_back(stance);
-  }
-
-  /// Stands while forces go over, for as long as the margin says, or longer where they need it.
-  double dwell(int stance, const Eigen::VectorXd& q, const StanceWrenches& from,
-               const StanceWrenches& to) {
-    const double duration_s =
-        std::max(task_.margin.dwell_s, loads_.change(from, to) / kFastestLoad);
-    const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / kDwellStep_s - 1e-9)));
-    for (int i = 0; i < steps; ++i) {
-      const double share = static_cast<double>(i) / steps;
-      append(stance, q, Eigen::VectorXd::Zero(task_.robot->robot->tangent_size()));
-      plan_.motion.time_s.push_back(time_s_ + share * duration_s);
-      StanceWrenches& now = plan_.motion.wrenches.emplace_back(from);
-      for (std::size_t c = 0; c < now.size(); ++c) now[c] += share * (to[c] - from[c]);
-    }
-    time_s_ += duration_s;
-    return duration_s;
-  }
-
-  /// The wrenches of one footing at the contacts of another: none where it has no contact.
-  static StanceWrenches carried(const StanceWrenches& wrenches, const Footing& of,
-                                const Footing& to) {
-    StanceWrenches result;
-    std::size_t at = 0;
-    for (std::size_t e = 0; e < of.size(); ++e) {
-      if (to[e] != kFree) result.push_back(StanceWrenches::value_type::Zero());
-      if (to[e] != kFree && of[e] != kFree) result.back() = wrenches[at];
-      if (of[e] != kFree) ++at;
-    }
-    return result;
-  }
-
-  StanceWrenches at_rest(const Footing& footing, const Eigen::VectorXd& q) {
-    const std::vector<BearingContact> bearing = space_.bearing_contacts(footing);
-    state_.update(q.data());
-    return wrenches_at_rest(state_, bearing, task_.margin, effort_scale({.torque = 1.0}))
-        .value_or(StanceWrenches(bearing.size(), StanceWrenches::value_type::Zero()));
-  }
-
-  double effort_scale(const ExecutionMargin& margin) const {
-    return task_.check.enforce_torque_limits ? task_.check.effort_scale * margin.torque : 0.0;
   }
 
   /// Makes forces change less fast: slower where they do, as they change by the third power of
@@ -301,8 +177,8 @@ class MotionSearch {
         static_cast<PlannerAnswer&>(tried.motion) = *end;
         return false;
       }
-      auto found =
-          loads_.along(counted(bearing, margin), effort_scale(margin), as_motion(tried.motion));
+      auto found = loads_.along(counted(bearing, margin), assembly_.effort_scale(margin),
+                                as_motion(tried.motion));
       if (found && found->fastest <= kFastestLoad) {
         tried.wrenches = std::move(found->wrenches);
         return true;
@@ -637,8 +513,8 @@ class MotionSearch {
   Judge judge_;
   RobotState state_;
   MotionLoads loads_;
+  MotionAssembly assembly_;
   double smoothing_s_;
-  double time_s_ = 0.0;  ///< where assemble() has got to
   std::vector<std::unique_ptr<TriedSegment>> known_;
   std::vector<TriedSegment*> ways_;
   std::string refused_reason_;
