@@ -44,6 +44,10 @@ class Contact:
             self.forward = np.array(take(3))
         self.bears_load = "unloaded" not in words
         self.locked = "locked" in words
+        self.stated_bar = None  # radius and axis
+        if "bar" in words:
+            at = words.index("bar") + 1
+            self.stated_bar = float(words[at]), np.array([float(w) for w in words[at + 1:at + 4]])
         self.round = None       # the bar that it rolls round, see support.py
 
     @property

@@ -8,6 +8,7 @@
 import numpy as np
 
 from rotations import angle_between
+from scenario_file import Bar
 
 CLOSED_M, CLOSED_RAD, HELD_M = 1e-4, 1e-3, 1e-3
 
@@ -101,8 +102,13 @@ def _line_in_sole(bar, contact, half, axes, touching):
 
 def bar_under_ball(contact, effector, scenario):
     """The bar that a ball rolls round; None: it rolls on the plane of the place where it touched down,
-    as it does wherever that is within the border of a surface."""
+    as it does wherever that is within the border of a surface. What a scan holds is not known here:
+    there the plan's word is taken, as for the place."""
     surfaces, bars = places_of(contact, effector, scenario)
+    if not surfaces and not bars and scenario.scans and contact.stated_bar:
+        radius, axis = contact.stated_bar
+        foot = contact.position - radius * contact.normal
+        bars = [Bar("scan", foot - axis, foot + axis, radius, None)]
     if not bars or not contact.is_ball(effector):
         return None
     if any(_beyond(s, contact.position) <= CLOSED_M for s in surfaces):
