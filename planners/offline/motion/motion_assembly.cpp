@@ -52,11 +52,11 @@ double MotionAssembly::effort_scale(const ExecutionMargin& margin) const {
 }
 
 void MotionAssembly::assemble(const StancePath& path,
-                              std::span<const LoadedSegment* const> segments, MotionPlan& plan) {
-  Motion& motion = plan.motion;
+                              std::span<const LoadedSegment* const> segments, Motion& motion,
+                              std::vector<SegmentRecord>& records) {
   motion = {};
   motion_ = &motion;
-  plan.segments.clear();
+  records.clear();
   time_s_ = 0.0;
   std::size_t done = 0;
   while (done < segments.size() && segments[done]->motion.success() &&
@@ -72,7 +72,7 @@ void MotionAssembly::assemble(const StancePath& path,
   };
   const auto end_record = [&](SegmentRecord& record) {
     record.last = static_cast<int>(motion.configurations.size());
-    plan.segments.push_back(std::move(record));
+    records.push_back(std::move(record));
   };
   // What is borne when the segment before ends, at the contacts of the one that begins.
   const auto borne_before = [&](std::size_t j) {

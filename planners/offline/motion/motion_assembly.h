@@ -7,8 +7,8 @@
 /// is loaded after. It lasts longer where forces need longer (kFastestLoad).
 
 #include <locograph/planners/offline/motion/motion_loads.h>
-#include <locograph/planners/offline/motion/motion_planner.h>
 #include <locograph/planners/offline/motion/segment_motion.h>
+#include <locograph/planners/offline/motion/segment_record.h>
 #include <locograph/planners/offline/stance/stance_path.h>
 
 #include <Eigen/Core>
@@ -32,9 +32,9 @@ class MotionAssembly {
   /// Of the URDF's efforts, what a margin leaves of what the task allows; 0: no limits.
   double effort_scale(const ExecutionMargin& margin) const;
 
-  /// Fills plan.motion and plan.segments, as far as segments were found and loaded.
+  /// Fills motion and records, as far as segments were found and loaded.
   void assemble(const StancePath& path, std::span<const LoadedSegment* const> segments,
-                MotionPlan& plan);
+                Motion& motion, std::vector<SegmentRecord>& records);
 
  private:
   void append(int stance, const Eigen::VectorXd& q, Eigen::VectorXd slope);

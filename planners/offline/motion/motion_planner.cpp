@@ -113,7 +113,7 @@ class MotionSearch {
   /// Without success: as far as segments were found.
   void assemble(const StancePath& path) {
     const std::vector<const LoadedSegment*> segments(ways_.begin(), ways_.end());
-    assembly_.assemble(path, segments, plan_);
+    assembly_.assemble(path, segments, plan_.motion, plan_.segments);
   }
 
   /// Why the last one was refused; empty: none was.
