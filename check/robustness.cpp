@@ -107,6 +107,7 @@ class StretchWorker {
     bearing_.clear();
     for (const JudgedContact& contact : stance_->contacts)
       bearing_.push_back(bearing_at(contact, context_.world, poses_));
+    bool as_is = false;  // it is known to hold unchanged
     for (int change = 0; change < kChanges; ++change) {
       if (change == kFriction && !has_friction_) continue;
       if (change == kArea && !has_area_) continue;
@@ -114,8 +115,12 @@ class StretchWorker {
       double& least = least_[std::size_t(std::min(change, int(kPush)))];
       if (least == 0.0) continue;
       if (holds(change, least)) {
-        // More mass may balance what falls without it.
-        if (change == kMass && !holds(change, 0.0)) least = 0.0;
+        // More mass may balance what falls without it; less of the others does not.
+        if (change != kMass) {
+          as_is = true;
+        } else if (!as_is && !holds(kMass, 0.0)) {
+          least = 0.0;
+        }
         continue;
       }
       double low = 0.0, high = least;

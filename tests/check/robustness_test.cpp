@@ -114,6 +114,20 @@ TEST_F(Falling, WhatDoesNotHoldHasNothingLeft) {
     EXPECT_EQ(share.value(), 0.0);
 }
 
+/// Its centre of mass is beyond the sole, over whose middle mass is added.
+class FallingToTheSide : public Falling {
+ protected:
+  FallingToTheSide() : Falling(0.06) {}
+};
+
+TEST_F(FallingToTheSide, MassThatWouldBalanceItIsNoneThatItBears) {
+  Motion motion = standing({sole()});
+  motion.stances[0].contacts[0].effector.max_force_N = 1000.0;
+  const CheckReport report = check(motion);
+  EXPECT_FALSE(report.feasible);
+  EXPECT_EQ(report.robustness->least.mass.value(), 0.0);
+}
+
 TEST(Robustness, ChangesNothingElseAndDependsOnNoThreads) {
   const Motion motion = test::standing().motion(5);
   const CheckReport plain = test::standing().check(motion);
