@@ -82,8 +82,8 @@ class MotionSearch {
     for (bool whole = false;; whole = true) {
       for (std::size_t j = first; j < count; ++j) {
         if (!found_at(way, j) && !move_postures(way, first, j)) return refuse(j);
-        // The one before, too: it may have been moved.
-        for (std::size_t i = std::max(first + 1, j) - 1; assembly_.bears_on() && i <= j; ++i) {
+        // Those before, too: one of them may have been moved.
+        for (std::size_t i = first; assembly_.bears_on() && i <= j; ++i) {
           if (!load(*ways_[i])) return refuse(i);
         }
       }
