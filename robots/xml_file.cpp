@@ -112,6 +112,11 @@ void XmlFile::allow(const Element& element, const std::set<std::string>& attribu
       throw error(child, "unknown element <" + std::string(child.Name()) + ">", one_of(children));
     }
   }
+  for (const tinyxml2::XMLNode* n = element.FirstChild(); n != nullptr; n = n->NextSibling()) {
+    if (n->ToText() == nullptr) continue;
+    throw Error(file_, n->GetLineNum(), "text in <" + std::string(element.Name()) + ">",
+                children.empty() ? "attributes alone" : "elements alone");
+  }
 }
 
 Error XmlFile::error(const Element& element, const std::string& what,

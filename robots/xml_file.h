@@ -42,7 +42,8 @@ class XmlFile {
   double number(const Element& element, const char* name) const;
   /// One number > 0.
   double positive(const Element& element, const char* name) const;
-  /// Throws Error for an attribute or a child that is not named here: most likely a misspelling.
+  /// Throws Error for an attribute or a child that is not named here, most likely a misspelling,
+  /// and for text, which nobody would read.
   void allow(const Element& element, const std::set<std::string>& attributes,
              const std::set<std::string>& children) const;
   Error error(const Element& element, const std::string& what, const std::string& expected) const;

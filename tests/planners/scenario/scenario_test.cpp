@@ -200,6 +200,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"UnknownMargin", "<environment/>", "<execution mass=\"0.1\"/>", 6, "'mass'"},
         Mistake{"TwoMargins", "<environment/>", "<execution/><execution/>", 6,
                 "a second <execution>"},
+        Mistake{"TextThatNobodyReads", "<environment/>", "<execution>dwell 0.5</execution>", 6,
+                "text in <execution>, expected attributes alone"},
         Mistake{"SomethingUnknownInTheEnvironment", "<environment/>",
                 "<environment><pond name=\"p\"/></environment>", 6, "unknown element <pond>"},
         Mistake{"UnknownAttributeOfAWheel", "radius=", "width=\"1\" radius=", 4, "'width'"},
