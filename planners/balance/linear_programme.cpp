@@ -39,6 +39,11 @@ LinearProgramme::LinearProgramme(LinearProgramme&&) noexcept = default;
 
 void LinearProgramme::load(const LinearColumns& columns, const std::vector<double>& lower,
                            const std::vector<double>& upper) {
+  corner_.clear();
+  if (simplex_->statusExists() && simplex_->isProvenOptimal()) {
+    const unsigned char* status = simplex_->statusArray();
+    corner_.assign(status, status + simplex_->numberColumns() + simplex_->numberRows());
+  }
   simplex_->loadProblem(static_cast<int>(columns.costs_.size()), static_cast<int>(lower.size()),
                         columns.starts_.data(), columns.rows_.data(), columns.entries_.data(),
                         columns.lower_.data(), columns.upper_.data(), columns.costs_.data(),
@@ -60,6 +65,14 @@ LinearAnswer LinearProgramme::primal() {
 
 LinearAnswer LinearProgramme::dual() {
   simplex_->allSlackBasis(true);
+  simplex_->dual();
+  return answer_of(*simplex_);
+}
+
+LinearAnswer LinearProgramme::dual_from_before() {
+  const int size = simplex_->numberColumns() + simplex_->numberRows();
+  if (static_cast<int>(corner_.size()) != size) return dual();
+  simplex_->copyinStatus(corner_.data());
   simplex_->dual();
   return answer_of(*simplex_);
 }

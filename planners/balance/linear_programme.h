@@ -64,6 +64,8 @@ class LinearProgramme {
 
   LinearAnswer primal();  ///< from the last corner
   LinearAnswer dual();    ///< from the corner where all rows are free
+  /// From the corner that was the best one of the programme before, if that was as large.
+  LinearAnswer dual_from_before();
   /// Of the last run.
   double value() const;
   std::span<const double> solution() const;  ///< of each column
@@ -71,6 +73,7 @@ class LinearProgramme {
 
  private:
   std::unique_ptr<ClpSimplex> simplex_;
+  std::vector<unsigned char> corner_;  ///< of the programme before; empty: none
 };
 
 }  // namespace locograph

@@ -96,7 +96,7 @@ double TorqueProgramme::solve(const RobotState& state, Eigen::VectorXd& gradient
     if (least > 0.0) row_lower[row] = least;
   }
   programme_.load(columns, row_lower, row_upper);
-  LinearAnswer answer = programme_.dual();
+  LinearAnswer answer = programme_.dual_from_before();
   if (answer == LinearAnswer::kUnsolved) answer = programme_.primal();
   if (answer != LinearAnswer::kOptimal) return std::numeric_limits<double>::infinity();
 

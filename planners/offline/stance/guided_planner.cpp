@@ -60,8 +60,7 @@ class GuidedSearch final : public StanceSearch {
       choose_manner(tree++, path.configurations.back());
       const int budget = static_cast<int>(look_around_ ? kLookAroundLonger * most : most);
       grow_until_ = space_.transitions + std::min(budget, space_.transitions_left());
-      const bool found = grow(path.footings.back(), path.configurations.back());
-      if (found) {
+      if (grow(path.footings.back(), path.configurations.back())) {
         trace(path);
         return true;
       }
@@ -94,7 +93,7 @@ class GuidedSearch final : public StanceSearch {
     own_->known.emplace(footing, number);
     own_->nodes.push_back({std::move(footing), std::move(configuration), parent, stances, start_,
                            std::vector<int>(effectors, 0), std::vector<Eigen::VectorXd>(effectors),
-                           std::vector<signed char>(effectors, 0)});
+                           std::vector<signed char>(effectors, 0), false});
     Node& node = own_->nodes.back();
     if (own_->backwards && !from_both_ends_) return number;  // the goal, which others aim at
     ++result_.statistics.vertices_in_tree;
@@ -112,6 +111,7 @@ class GuidedSearch final : public StanceSearch {
     const Node* nearest = nullptr;
     double least = std::numeric_limits<double>::infinity();
     for (const Node& there : other_->nodes) {
+      if (there.cut) continue;
       measure(node, there.footing);
       double far = there.stances;
       for (const double to_go : to_go_of_node_) far += kGreed * 2.0 * to_go;
@@ -331,7 +331,7 @@ class GuidedSearch final : public StanceSearch {
     other_ = &trees_[backwards ? 0 : 1];
   }
 
-  /// Whether the trees meet, at met_. exhausted_: there is nothing left to try.
+  /// Whether the start's tree comes to the goal. exhausted_: there is nothing left to try.
   bool grow(const Footing& start, const Eigen::VectorXd& q) {
     trees_[0] = {};
     trees_[1] = {};
@@ -339,7 +339,7 @@ class GuidedSearch final : public StanceSearch {
     space_.expect_nothing();
     followed_.clear();
     exhausted_ = false;
-    start_ = met_ = start;
+    start_ = start;
     take_turn(true);
     add(goal_, from_both_ends_ ? goal_posture_->configuration : q, -1, 0);
     take_turn(false);
@@ -350,14 +350,66 @@ class GuidedSearch final : public StanceSearch {
       take_turn(backwards_at(turn_));
       const int reached = follow_best(around_at(turn_));
       if (reached < 0) continue;
-      met_ = own_->nodes[static_cast<std::size_t>(reached)].footing;
-      if (other_->known.contains(met_)) return true;
+      const Footing& footing = own_->nodes[static_cast<std::size_t>(reached)].footing;
+      if (other_->known.contains(footing) && join(Footing(footing))) return true;
     }
     exhausted_ = true;
     return false;
   }
 
+  /// Where the trees have met, the start's goes on to the goal along the other one, in which balls
+  /// are where they touch down: here they roll. False: they do not come to one of its nodes; what
+  /// leads there is cut from the goal's tree.
+  bool join(const Footing& met) {
+    const bool has_moves = own_->backwards;  // the start's node was there before
+    take_turn(false);
+    const std::vector<int> way = trees_[1].way_to_root(met);
+    std::vector<int> rolled = {own_->known.at(met)};
+    for (std::size_t i = 1; i < way.size(); ++i) {
+      const int next = roll_along(rolled.back(), way[i - 1], way[i]);
+      if (next >= 0) {
+        rolled.push_back(next);
+        continue;
+      }
+      trees_[1].cut_off(way[i - 1]);
+      for (std::size_t k = has_moves ? 1 : 0; k < rolled.size(); ++k) {
+        choose_aim(own_->nodes[static_cast<std::size_t>(rolled[k])]);
+        push_moves(rolled[k]);
+      }
+      return false;
+    }
+    return true;
+  }
+
+  /// The node of the start's tree that comes after one, as from child to parent in the goal's; -1:
+  /// not found.
+  int roll_along(int number, int child, int parent) {
+    const Node &before = trees_[1].nodes[static_cast<std::size_t>(child)],
+               &after = trees_[1].nodes[static_cast<std::size_t>(parent)];
+    Node& node = own_->nodes[static_cast<std::size_t>(number)];
+    const int moved = changed_effector(before.footing, after.footing);
+    const std::size_t e = static_cast<std::size_t>(moved);
+    const bool lifts = before.footing[e] != kFree && after.footing[e] != kFree;
+    Footing between = before.footing;
+    Eigen::VectorXd q = node.configuration, put = before.configuration;
+    if (lifts) {
+      between[e] = kFree;
+      // Others may have rolled on from where it was lifted already.
+      if (node.lifted[e].size() == 0) {
+        if (!roll_to(space_, before.footing, between, q, put)) return -1;
+        node.lifted[e] = put;
+      }
+      q = node.lifted[e];
+      put = after.lifted[e];
+    }
+    if (!roll_to(space_, between, after.footing, q, put)) return -1;
+    return add(after.footing, std::move(put), number, node.stances + (lifts ? 2 : 1));
+  }
+
   bool backwards_at(int turn) const { return from_both_ends_ && turn % 2 == 1; }
+  bool is_cut(const Move& move) const {
+    return own_->nodes[static_cast<std::size_t>(move.node)].cut;
+  }
   bool around_at(int turn) const { return look_around_ && turn / 2 % 2 == 1; }
 
   /// The node that the best move leads to; -1: none.
@@ -366,7 +418,7 @@ class GuidedSearch final : public StanceSearch {
     while (!queue.empty()) {
       Move move = queue.top();
       queue.pop();
-      if (followed_[static_cast<std::size_t>(move.number)]) continue;
+      if (followed_[static_cast<std::size_t>(move.number)] || is_cut(move)) continue;
       move.f = around ? newness(move) : promise(move);
       if (!queue.empty() && queue.top().f < move.f) {
         queue.push(move);
@@ -379,7 +431,7 @@ class GuidedSearch final : public StanceSearch {
   }
 
   /// The path goes from the start to the goal, whichever way the tree grows. From the goal, balls
-  /// are taken to be where they touch down: from where they roll, roll_on() finds.
+  /// are taken to be where they touch down: how they roll, join() finds.
   StanceSpace::Attempt try_transition(const Footing& from, const Footing& to,
                                       const Eigen::VectorXd& q, int restarts, const Move& move) {
     look_ahead(move);
@@ -411,7 +463,7 @@ class GuidedSearch final : public StanceSearch {
     const bool around = around_at(turn);
     moves_.clear();
     (around ? own_->around : own_->ahead).look(kLookedAt, [&](Move move) {
-      if (followed_[static_cast<std::size_t>(move.number)]) return;
+      if (followed_[static_cast<std::size_t>(move.number)] || is_cut(move)) return;
       move.f = around ? newness(move) : promise(move);
       if (own_ == &growing && move.node == now.node && move.effector == now.effector) {
         if (own_->to_be_lifted(move)) return;  // that is being tried
@@ -516,23 +568,18 @@ class GuidedSearch final : public StanceSearch {
     push(move);
   }
 
-  /// From the start to where the trees met, and from there to the goal.
+  /// From the start to the goal.
   void trace(StancePath& path) {
-    std::vector<int> there = trees_[0].way_to_root(met_);
-    std::reverse(there.begin(), there.end());
-    const std::vector<int> ways[] = {std::move(there), trees_[1].way_to_root(met_)};
-    for (const std::size_t t : {0, 1}) {
-      if (t == 0 || from_both_ends_) {
-        for (const int n : ways[t]) kept_[t].mark(n);
-      }
-      trees_[t].append(ways[t], path);
-    }
+    std::vector<int> way = trees_[0].way_to_root(goal_);
+    std::reverse(way.begin(), way.end());
+    for (const int n : way) kept_[0].mark(n);
+    trees_[0].append(way, path);
   }
 
   StanceTree kept_[2];  ///< of each of trees_
   std::mt19937_64 random_;
   Experience experience_;
-  Footing start_, goal_, met_;
+  Footing start_, goal_;
   std::optional<StanceSpace::Attempt> goal_posture_;
   Tree trees_[2];  ///< from the start; from the goal, only the goal if not from_both_ends_
   Tree *own_ = nullptr, *other_ = nullptr;  ///< the one that grows, and the one it is to meet

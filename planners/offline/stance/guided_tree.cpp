@@ -16,22 +16,25 @@ std::vector<int> GuidedTree::way_to_root(const Footing& from) const {
   return way;
 }
 
-/// The parent has the configuration in which its end effector is lifted, the child the one in which
-/// it is put down; from the goal the way leads from child to parent.
+void GuidedTree::cut_off(int node) {
+  for (int n = node; n < static_cast<int>(nodes.size()); ++n) {
+    Node& of = nodes[static_cast<std::size_t>(n)];
+    if (of.cut || (n != node && !nodes[static_cast<std::size_t>(of.parent)].cut)) continue;
+    of.cut = true;
+    known.erase(of.footing);
+  }
+}
+
 void GuidedTree::append(const std::vector<int>& way, StancePath& path) const {
   for (std::size_t i = 1; i < way.size(); ++i) {
     const Node& before = nodes[static_cast<std::size_t>(way[i - 1])];
     const Node& after = nodes[static_cast<std::size_t>(way[i])];
-    const Node &parent = backwards ? after : before, &child = backwards ? before : after;
     const int moved = changed_effector(before.footing, after.footing);
     const std::size_t e = static_cast<std::size_t>(moved);
-    if (before.footing[e] == kFree || after.footing[e] == kFree) {
-      path.append(after.footing, child.configuration);
-      continue;
+    if (before.footing[e] != kFree && after.footing[e] != kFree) {
+      path.append(without(before.footing, moved), before.lifted[e]);
     }
-    const Eigen::VectorXd &lifted = parent.lifted[e], &put = child.configuration;
-    path.append(without(before.footing, moved), backwards ? put : lifted);
-    path.append(after.footing, backwards ? lifted : put);
+    path.append(after.footing, after.configuration);
   }
 }
 

@@ -60,6 +60,7 @@ struct GuidedTree {
     /// Of each end effector in contact: the configuration with it lifted, once it was tried.
     std::vector<Eigen::VectorXd> lifted;
     std::vector<signed char> lift_tried;
+    bool cut;  ///< no longer leads to the root
   };
   struct Move {
     double f;                   ///< the least first
@@ -84,7 +85,9 @@ struct GuidedTree {
   bool to_be_lifted(const Move& move) const;
   /// The numbers of the nodes from a footing to the root.
   std::vector<int> way_to_root(const Footing& from) const;
-  /// What comes behind the first node of a way through the tree, with lifting where an end effector
+  /// A node, and those that lead to the root through it: they are not known any more.
+  void cut_off(int node);
+  /// What comes behind the first node of a way from the root, with lifting where an end effector
   /// moves.
   void append(const std::vector<int>& way, StancePath& path) const;
 };

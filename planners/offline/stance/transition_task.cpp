@@ -6,9 +6,10 @@
 namespace locograph {
 namespace {
 
-/// Of polygons about places that balls have rolled to, and how often these are looked for.
+/// Of polygons about places that balls have rolled to; how often these are looked for or torques
+/// eased: either may undo the other.
 constexpr double kRolledResolution_m = 2e-3;
-constexpr int kMostRolled = 3;
+constexpr int kMostRounds = 4;
 
 bool same_bits(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   if (a.size() != b.size()) return false;
@@ -74,61 +75,65 @@ TransitionResult TaskSolver::solve(const TransitionTask& task) {
     problem.rolled_from = balls;
   }
   TransitionResult result = solver_.solve(problem, task.options);
-  if (result.success() && (!balls.empty() || !task.all_bearing.empty())) {
-    balance_all(task, !balls.empty(), problem, result);
+  std::optional<TorqueProgramme> torques;
+  for (int round = 0; result.success(); ++round) {
+    state_.update(result.configuration.data());
+    const bool balanced = is_balanced(task, !balls.empty());
+    if (balanced && (problem.torques != nullptr || !is_too_heavy(task, torques))) break;
+    if (round == kMostRounds) {
+      result.status = PlannerStatus::kNotFound;
+      result.failure = TransitionFailure::kBalance;
+      result.reason = "the centre of mass outside what the contacts balance";
+      break;
+    }
+    if (balanced) {
+      problem.torques = &*torques;
+    } else {
+      balance_here(task, !balls.empty(), problem);
+    }
+    problem.start = result.configuration;
+    result = solver_.solve(problem, task.options);
   }
-  if (result.success() && task_.check.enforce_torque_limits) ease_torques(task, problem, result);
   return result;
+}
+
+/// Balls where they have rolled to, and the larger stance where it has to bear as well.
+bool TaskSolver::is_balanced(const TransitionTask& task, bool rolls) const {
+  const double mass_kg = state_.robot().total_mass();
+  const Eigen::Vector2d com = state_.center_of_mass().head<2>();
+  const auto holds = [&](std::span<const BearingContact> contacts) {
+    return contacts.empty() || balances(mass_kg, rolled_to(state_, contacts), kRegionMargin, com);
+  };
+  return (!rolls || holds(task.bearing)) && holds(task.all_bearing);
 }
 
 /// The polygons are those of the touch-down places, worked out once for all: where they will not
 /// do, those of the places rolled to take their place.
-void TaskSolver::balance_all(const TransitionTask& task, bool rolls, TransitionProblem& problem,
-                             TransitionResult& result) {
-  const double mass_kg = state_.robot().total_mass();
-  for (int round = 0;; ++round) {
-    state_.update(result.configuration.data());
-    const Eigen::Vector2d com = state_.center_of_mass().head<2>();
-    const std::vector<BearingContact> smaller = rolled_to(state_, task.bearing);
-    const std::vector<BearingContact> larger = rolled_to(state_, task.all_bearing);
-    if ((!rolls || balances(mass_kg, smaller, kRegionMargin, com)) &&
-        (larger.empty() || balances(mass_kg, larger, kRegionMargin, com))) {
-      return;
+void TaskSolver::balance_here(const TransitionTask& task, bool rolls, TransitionProblem& problem) {
+  const auto region = [&](const Footing& footing, std::span<const BearingContact> contacts) {
+    return rolls ? balance_region(state_.robot().total_mass(), rolled_to(state_, contacts),
+                                  kRegionMargin, kRolledResolution_m)
+                 : regions_.of(footing, contacts);
+  };
+  region_ = region(task.smaller, task.bearing);
+  if (!task.all_bearing.empty() && !region_.empty()) {
+    BalanceRegion of_both = region(task.larger, task.all_bearing);
+    if (!of_both.empty()) {
+      of_both.sides.insert(of_both.sides.end(), region_.sides.begin(), region_.sides.end());
+      of_both.width_m = std::min(of_both.width_m, region_.width_m);
     }
-    if (round == kMostRolled) break;
-    const auto region = [&](const Footing& footing, std::span<const BearingContact> contacts) {
-      return rolls ? balance_region(mass_kg, contacts, kRegionMargin, kRolledResolution_m)
-                   : regions_.of(footing, contacts);
-    };
-    region_ = region(task.smaller, smaller);
-    if (!larger.empty() && !region_.empty()) {
-      BalanceRegion of_both = region(task.larger, larger);
-      if (!of_both.empty()) {
-        of_both.sides.insert(of_both.sides.end(), region_.sides.begin(), region_.sides.end());
-        of_both.width_m = std::min(of_both.width_m, region_.width_m);
-      }
-      region_ = std::move(of_both);
-    }
-    problem.balance = &region_;
-    problem.start = result.configuration;
-    result = solver_.solve(problem, task.options);
-    if (!result.success()) return;
+    region_ = std::move(of_both);
   }
-  result.status = PlannerStatus::kNotFound;
-  result.failure = TransitionFailure::kBalance;
-  result.reason = "the centre of mass outside what the contacts balance";
+  problem.balance = &region_;
 }
 
-void TaskSolver::ease_torques(const TransitionTask& task, TransitionProblem& problem,
-                              TransitionResult& result) {
-  TorqueProgramme torques(state_.robot(), task.bearing,
-                          task_.check.effort_scale * task_.margin.torque, kRegionMargin);
-  state_.update(result.configuration.data());
+bool TaskSolver::is_too_heavy(const TransitionTask& task,
+                              std::optional<TorqueProgramme>& torques) const {
+  if (!task_.check.enforce_torque_limits) return false;
+  torques.emplace(state_.robot(), task.bearing, task_.check.effort_scale * task_.margin.torque,
+                  kRegionMargin);
   Eigen::VectorXd gradient;
-  if (torques.solve(state_, gradient) <= 1.0 - task.options.torque_margin) return;
-  problem.torques = &torques;
-  problem.start = result.configuration;
-  result = solver_.solve(problem, task.options);
+  return torques->solve(state_, gradient) > 1.0 - task.options.torque_margin;
 }
 
 }  // namespace locograph

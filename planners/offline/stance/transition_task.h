@@ -12,6 +12,7 @@
 #include <locograph/planners/task/task.h>
 
 #include <mutex>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -61,18 +62,17 @@ class TaskSolver {
   TransitionResult solve(const TransitionTask& task);
 
  private:
-  /// Solves again where balls have rolled to, and for the larger stance, where it has to balance as
-  /// well.
-  void balance_all(const TransitionTask& task, bool rolls, TransitionProblem& problem,
-                   TransitionResult& result);
-  void ease_torques(const TransitionTask& task, TransitionProblem& problem,
-                    TransitionResult& result);
+  /// Of state_, as are those below.
+  bool is_balanced(const TransitionTask& task, bool rolls) const;
+  /// Asks for balance as it is there.
+  void balance_here(const TransitionTask& task, bool rolls, TransitionProblem& problem);
+  bool is_too_heavy(const TransitionTask& task, std::optional<TorqueProgramme>& torques) const;
 
   const Task& task_;
   BalanceRegions& regions_;
   TransitionSolver solver_;
   RobotState state_;
-  BalanceRegion region_;       ///< of balance_all()
+  BalanceRegion region_;       ///< of balance_here()
   Eigen::VectorXd preferred_;  ///< where the task starts, within the joint margin
 };
 
