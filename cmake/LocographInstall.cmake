@@ -11,6 +11,7 @@ install(FILES ${PROJECT_BINARY_DIR}/locographConfig.cmake
               ${PROJECT_BINARY_DIR}/locographConfigVersion.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindMETIS.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindCHOLMOD.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/FindMuJoCo.cmake
               ${PROJECT_SOURCE_DIR}/cmake/LocographPlugin.cmake
               ${PROJECT_SOURCE_DIR}/cmake/hide_eigen.map
         DESTINATION ${locograph_config_dir})

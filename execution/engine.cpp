@@ -1,0 +1,322 @@
+#include <locograph/common/error.h>
+#include <locograph/execution/engine.h>
+#include <locograph/robots/kinematic_tree.h>
+#include <mujoco/mujoco.h>
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+namespace locograph {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+struct DeleteModel {
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+};
+struct DeleteData {
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+struct DeleteFiles {
+  void operator()(mjVFS* files) const {
+    mj_deleteVFS(files);
+    delete files;
+  }
+};
+
+using Model = std::unique_ptr<mjModel, DeleteModel>;
+using Data = std::unique_ptr<mjData, DeleteData>;
+
+void ignore_warning(const char*) {}
+
+Model compile(const std::string& text) {
+  // MuJoCo would write them to a file in the working folder; Engine::diverged() tells what matters.
+  mju_user_warning = ignore_warning;
+  std::unique_ptr<mjVFS, DeleteFiles> files(new mjVFS);
+  mj_defaultVFS(files.get());
+  const char* name = "model.xml";
+  mj_makeEmptyFileVFS(files.get(), name, static_cast<int>(text.size()));
+  const int file = mj_findFileVFS(files.get(), name);
+  if (file < 0) throw Error("no memory for a model of MuJoCo");
+  std::memcpy(files->filedata[file], text.data(), text.size());
+  char message[1000] = "";
+  Model model(mj_loadXML(name, files.get(), message, sizeof message));
+  if (!model) throw Error("MuJoCo refuses the model: " + std::string(message));
+  return model;
+}
+
+int id_of(const mjModel& model, mjtObj type, const std::string& name) {
+  return mj_name2id(&model, type, name.c_str());
+}
+
+/// Between MuJoCo's coordinates and ours, the one place that knows both. MuJoCo has quaternions
+/// w x y z, the linear velocity of a floating base along the axes of the world, its angular
+/// velocity along those of the base, and joints in an order of its own.
+class Coordinates {
+ public:
+  Coordinates(const Robot& robot, const mjModel& model) : robot_(&robot) {
+    for (int i = 0; i < robot.base_tangent_size(); ++i) dof_.push_back(i);
+    for (int i = 0; i < robot.active_joint_count(); ++i) {
+      const std::string axis = "axis_" + std::to_string(robot.axes_of(i).front());
+      const int joint = id_of(model, mjOBJ_JOINT, axis);
+      position_.push_back(model.jnt_qposadr[joint]);
+      dof_.push_back(model.jnt_dofadr[joint]);
+    }
+  }
+
+  void set_positions(const Eigen::VectorXd& q, double* positions) const {
+    if (robot_->floating_base()) {
+      const double base[] = {q[0], q[1], q[2], q[6], q[3], q[4], q[5]};
+      std::copy(std::begin(base), std::end(base), positions);
+    }
+    for (std::size_t i = 0; i < position_.size(); ++i) {
+      positions[position_[i]] = q[robot_->base_configuration_size() + static_cast<int>(i)];
+    }
+  }
+
+  Eigen::VectorXd configuration(const double* positions) const {
+    Eigen::VectorXd q(robot_->configuration_size());
+    if (robot_->floating_base()) {
+      q.head<3>() << positions[0], positions[1], positions[2];
+      q.segment<4>(3) << positions[4], positions[5], positions[6], positions[3];
+      q.segment<4>(3).normalize();
+    }
+    for (std::size_t i = 0; i < position_.size(); ++i) {
+      q[robot_->base_configuration_size() + static_cast<int>(i)] = positions[position_[i]];
+    }
+    return q;
+  }
+
+  /// From a tangent of ours.
+  Eigen::VectorXd dofs(const double* positions, const Eigen::VectorXd& tangent) const {
+    Eigen::VectorXd result(tangent.size());
+    for (std::size_t i = 0; i < dof_.size(); ++i) {
+      result[dof_[i]] = tangent[static_cast<Eigen::Index>(i)];
+    }
+    if (robot_->floating_base()) result.head<3>() = rotation(positions) * tangent.head<3>();
+    return result;
+  }
+
+  /// Of velocities, forces, and matrices of such columns: one row for each entry of our tangent.
+  Eigen::MatrixXd tangent_rows(const double* positions, const Eigen::MatrixXd& dofs) const {
+    Eigen::MatrixXd result(dofs.rows(), dofs.cols());
+    for (std::size_t i = 0; i < dof_.size(); ++i) {
+      result.row(static_cast<Eigen::Index>(i)) = dofs.row(dof_[i]);
+    }
+    if (robot_->floating_base()) {
+      result.topRows(3) = rotation(positions).transpose() * dofs.topRows(3);
+    }
+    return result;
+  }
+
+  /// d/dt of dofs() at a constant tangent: the linear velocity turns with the base.
+  Eigen::VectorXd drift(const double* positions, const Eigen::VectorXd& tangent) const {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(tangent.size());
+    if (robot_->floating_base()) {
+      const Eigen::Vector3d linear = tangent.head<3>(), angular = tangent.segment<3>(3);
+      result.head<3>() = rotation(positions) * angular.cross(linear);
+    }
+    return result;
+  }
+
+ private:
+  static Eigen::Matrix3d rotation(const double* positions) {
+    return Eigen::Quaterniond(positions[3], positions[4], positions[5], positions[6])
+        .normalized()
+        .toRotationMatrix();
+  }
+
+  const Robot* robot_;
+  std::vector<int> position_;  // of each active joint among MuJoCo's positions
+  std::vector<int> dof_;       // of each entry of the tangent among MuJoCo's velocities
+};
+
+void require_size(const std::string& what, Eigen::Index size, int expected) {
+  if (size != expected) {
+    throw Error(what + " of " + std::to_string(size) + " numbers", std::to_string(expected));
+  }
+}
+
+}  // namespace
+
+class Engine::Implementation {
+ public:
+  Implementation(const Robot& robot, std::span<const EndEffector> effectors, const World& world,
+                 const MujocoModelOptions& options)
+      : robot(robot),
+        model(compile(mujoco_model(robot, effectors, world, options))),
+        data(mj_makeData(model.get())),
+        coordinates(robot, *model),
+        forces(effectors.size(), Eigen::Vector3d::Zero()) {
+    if (!data) throw Error("no memory for a state of MuJoCo");
+    for (int i = 0; i < robot.active_joint_count(); ++i) {
+      motor.push_back(id_of(*model, mjOBJ_ACTUATOR, "motor_" + std::to_string(i)));
+    }
+    effector_of_geom.assign(static_cast<std::size_t>(model->ngeom), -1);
+    for (std::size_t i = 0; i < effectors.size(); ++i) {
+      const int geom = id_of(*model, mjOBJ_GEOM, "effector_" + std::to_string(i));
+      if (geom >= 0) effector_of_geom[static_cast<std::size_t>(geom)] = static_cast<int>(i);
+    }
+    for (std::size_t b = 0; b < robot.tree().bodies.size(); ++b) {
+      body.push_back(id_of(*model, mjOBJ_BODY, "body_" + std::to_string(b)));
+    }
+    mj_forward(model.get(), data.get());
+  }
+
+  /// A step leaves what MuJoCo derives from the state as it was before: brought up to date when it
+  /// is asked for.
+  void refresh() {
+    if (!stale) return;
+    mj_fwdPosition(model.get(), data.get());
+    mj_fwdVelocity(model.get(), data.get());
+    stale = false;
+  }
+
+  void measure_forces() {
+    std::fill(forces.begin(), forces.end(), Eigen::Vector3d::Zero());
+    total.setZero();
+    for (int i = 0; i < data->ncon; ++i) {
+      const mjContact& contact = data->contact[i];
+      if (contact.efc_address < 0) continue;
+      double wrench[6];
+      mj_contactForce(model.get(), data.get(), i, wrench);
+      // The rows of the frame are its axes; the force is that of geom1 on geom2.
+      const Eigen::Map<const Eigen::Matrix3d> world_from_contact(contact.frame);
+      Eigen::Vector3d force = world_from_contact * Eigen::Map<const Eigen::Vector3d>(wrench);
+      int geom = contact.geom2;
+      if (model->geom_contype[geom] == 0) {
+        geom = contact.geom1;
+        force = -force;
+      }
+      total += force;
+      const int effector = effector_of_geom[static_cast<std::size_t>(geom)];
+      if (effector >= 0) forces[static_cast<std::size_t>(effector)] += force;
+    }
+  }
+
+  Eigen::MatrixXd tangent_rows(const Eigen::MatrixXd& dofs) const {
+    return coordinates.tangent_rows(data->qpos, dofs);
+  }
+
+  Eigen::VectorXd velocity() const {
+    return tangent_rows(Eigen::Map<const Eigen::VectorXd>(data->qvel, model->nv));
+  }
+
+  Eigen::VectorXd inverse_dynamics(const Eigen::VectorXd& acceleration) {
+    refresh();
+    const Eigen::VectorXd dofs =
+        coordinates.dofs(data->qpos, acceleration) + coordinates.drift(data->qpos, velocity());
+    std::copy(dofs.begin(), dofs.end(), data->qacc);
+    Eigen::VectorXd torques(model->nv);
+    mj_rne(model.get(), data.get(), 1, torques.data());
+    return tangent_rows(torques);
+  }
+
+  const Robot& robot;
+  Model model;
+  Data data;
+  Coordinates coordinates;
+  std::vector<int> motor;             // of each active joint, -1: none
+  std::vector<int> effector_of_geom;  // -1: none
+  std::vector<int> body;              // MuJoCo's, of each body of the tree
+  std::vector<Eigen::Vector3d> forces;
+  Eigen::Vector3d total = Eigen::Vector3d::Zero();
+  bool stale = false;
+};
+
+Engine::Engine(const Robot& robot, std::span<const EndEffector> effectors, const World& world,
+               const MujocoModelOptions& options)
+    : implementation_(std::make_unique<Implementation>(robot, effectors, world, options)) {}
+Engine::~Engine() = default;
+Engine::Engine(Engine&&) noexcept = default;
+Engine& Engine::operator=(Engine&&) noexcept = default;
+
+void Engine::set_state(const Eigen::VectorXd& configuration, const Eigen::VectorXd& velocity) {
+  Implementation& own = *implementation_;
+  require_size("a configuration", configuration.size(), own.robot.configuration_size());
+  require_size("a velocity", velocity.size(), own.robot.tangent_size());
+  own.coordinates.set_positions(configuration, own.data->qpos);
+  const Eigen::VectorXd dofs = own.coordinates.dofs(own.data->qpos, velocity);
+  std::copy(dofs.begin(), dofs.end(), own.data->qvel);
+  mj_forward(own.model.get(), own.data.get());
+  own.measure_forces();
+  own.stale = false;
+}
+
+void Engine::set_torques(const Eigen::VectorXd& torques) {
+  Implementation& own = *implementation_;
+  require_size("torques", torques.size(), own.robot.active_joint_count());
+  for (std::size_t i = 0; i < own.motor.size(); ++i) {
+    if (own.motor[i] >= 0) own.data->ctrl[own.motor[i]] = torques[static_cast<Eigen::Index>(i)];
+  }
+}
+
+void Engine::step() {
+  mj_step(implementation_->model.get(), implementation_->data.get());
+  implementation_->measure_forces();
+  implementation_->stale = true;
+}
+
+double Engine::time_s() const { return implementation_->data->time; }
+
+bool Engine::diverged() const {
+  const mjWarningStat* warning = implementation_->data->warning;
+  for (const int kind :
+       {mjWARN_CONTACTFULL, mjWARN_CNSTRFULL, mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC}) {
+    if (warning[kind].number > 0) return true;
+  }
+  return false;
+}
+
+Eigen::VectorXd Engine::configuration() const {
+  return implementation_->coordinates.configuration(implementation_->data->qpos);
+}
+
+Eigen::VectorXd Engine::velocity() const { return implementation_->velocity(); }
+
+Eigen::Vector3d Engine::contact_force(int effector) const {
+  return implementation_->forces.at(static_cast<std::size_t>(effector));
+}
+
+Eigen::Vector3d Engine::total_contact_force() const { return implementation_->total; }
+
+Eigen::MatrixXd Engine::mass_matrix() const {
+  Implementation& own = *implementation_;
+  own.refresh();
+  RowMajor full(own.model->nv, own.model->nv);
+  mj_fullM(own.model.get(), full.data(), own.data->qM);
+  return own.tangent_rows(own.tangent_rows(full).transpose());
+}
+
+Eigen::VectorXd Engine::bias_forces() const {
+  return implementation_->inverse_dynamics(
+      Eigen::VectorXd::Zero(implementation_->robot.tangent_size()));
+}
+
+Eigen::VectorXd Engine::inverse_dynamics(const Eigen::VectorXd& acceleration) const {
+  require_size("an acceleration", acceleration.size(), implementation_->robot.tangent_size());
+  return implementation_->inverse_dynamics(acceleration);
+}
+
+Eigen::MatrixXd Engine::frame_jacobian(int link, const Eigen::Vector3d& point) const {
+  Implementation& own = *implementation_;
+  own.refresh();
+  const KinematicTree& tree = own.robot.tree();
+  const int body_of_link = tree.body_of_link.at(static_cast<std::size_t>(link));
+  Eigen::Vector3d in_body = point;
+  for (const KinematicTree::RigidLink& rigid : tree.rigid_links) {
+    if (rigid.link == link) in_body = (rigid.body_from_link * point.homogeneous()).head<3>();
+  }
+  const int body = own.body[static_cast<std::size_t>(body_of_link)];
+  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> rotation(own.data->xmat +
+                                                                                9 * body);
+  const Eigen::Vector3d in_world =
+      rotation * in_body + Eigen::Map<const Eigen::Vector3d>(own.data->xpos + 3 * body);
+  RowMajor jacobian(6, own.model->nv);
+  mj_jac(own.model.get(), own.data.get(), jacobian.data(), jacobian.data() + 3 * own.model->nv,
+         in_world.data(), body);
+  return own.tangent_rows(jacobian.transpose()).transpose();
+}
+
+}  // namespace locograph

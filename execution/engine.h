@@ -1,0 +1,67 @@
+#pragma once
+/// A robot in a world, moved by the physics engine MuJoCo.
+///
+///     Engine engine(robot, effectors, world);
+///     engine.set_state(configuration, velocity);
+///     engine.set_torques(torques);
+///     engine.step();
+///     const Eigen::Vector3d force = engine.contact_force(0);
+///
+/// Configurations, velocities and torques are those of robot.h and dynamics.h, whatever MuJoCo's
+/// own order and axes. What is read is that of the state now, but for contact forces, which are
+/// those that the last step was made with. Quantities of motion (mass matrix, bias, Jacobians,
+/// inverse dynamics) are computed by MuJoCo.
+///
+/// Keeps a pointer to the robot, which must outlive it. Errors: those of mujoco_model(), and Error
+/// with MuJoCo's words for a model that it refuses. Thread-safety: one per thread.
+
+#include <locograph/execution/mujoco_model.h>
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+
+namespace locograph {
+
+class Engine {
+ public:
+  Engine(const Robot& robot, std::span<const EndEffector> effectors, const World& world,
+         const MujocoModelOptions& options = {});
+  ~Engine();
+  Engine(Engine&&) noexcept;
+  Engine& operator=(Engine&&) noexcept;
+
+  /// Throws Error for vectors of another size.
+  void set_state(const Eigen::VectorXd& configuration, const Eigen::VectorXd& velocity);
+  /// Of the active joints [N m or N], held until they are set again; MuJoCo keeps them within the
+  /// efforts. Throws Error for a vector of another size.
+  void set_torques(const Eigen::VectorXd& torques);
+  void step();
+
+  double time_s() const;  ///< of all steps
+  /// Whether MuJoCo gave up a step: numbers that are not finite or too large, after which its state
+  /// is that of its beginning, or more contacts than it has memory for (200, or 600 rows), some of
+  /// which it then leaves out.
+  bool diverged() const;
+
+  Eigen::VectorXd configuration() const;
+  Eigen::VectorXd velocity() const;  ///< tangent of robot.h
+
+  /// What the world does to the robot at an end effector [N, world axes], index as given.
+  Eigen::Vector3d contact_force(int effector) const;
+  /// The same of the whole robot.
+  Eigen::Vector3d total_contact_force() const;
+
+  Eigen::MatrixXd mass_matrix() const;  ///< tangent_size x tangent_size
+  Eigen::VectorXd bias_forces() const;  ///< h(q, v) of dynamics.h
+  /// The torques that accelerate the robot like this without contacts, of dynamics.h.
+  Eigen::VectorXd inverse_dynamics(const Eigen::VectorXd& acceleration) const;
+  /// Of a point of a link [m, link frame]: as RobotState::frame_jacobian(), 6 x tangent_size.
+  Eigen::MatrixXd frame_jacobian(int link, const Eigen::Vector3d& point) const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace locograph

@@ -1,0 +1,345 @@
+#include <locograph/common/error.h>
+#include <locograph/execution/mujoco_model.h>
+#include <locograph/robots/body_inertia.h>
+#include <locograph/robots/kinematic_tree.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <locale>
+#include <sstream>
+
+namespace locograph {
+namespace {
+
+constexpr double kPlateHalf_m = 0.01;    // half the thickness of soles and surfaces
+constexpr double kBarePoint_m = 0.005;   // radius of a point without one
+constexpr double kEndless_m = 1000.0;    // half the length of a surface without an end
+constexpr double kOtherFriction = 0.5;   // where neither world nor end effectors state any
+constexpr double kLeastInertia = 1e-14;  // kg m^2; MuJoCo wants more than 1e-15
+
+class ModelWriter {
+ public:
+  ModelWriter(const Robot& robot, std::span<const EndEffector> effectors, const World& world,
+              const MujocoModelOptions& options)
+      : robot_(robot),
+        tree_(robot.tree()),
+        effectors_(effectors),
+        world_(world),
+        options_(options),
+        inertias_(body_inertias(robot)) {
+    text_.imbue(std::locale::classic());
+    text_.precision(17);
+    require_what_it_can_write();
+  }
+
+  std::string write() {
+    write_options();
+    text_ << "<worldbody>\n";
+    write_world();
+    write_body(0);
+    text_ << "</worldbody>\n<actuator>\n";
+    write_motors();
+    text_ << "</actuator>\n</mujoco>\n";
+    return text_.str();
+  }
+
+ private:
+  void require_what_it_can_write() const {
+    for (const EndEffector& effector : effectors_) require_sound_effector(robot_, effector);
+    for (const Joint& joint : robot_.joints()) {
+      if (joint.mimics >= 0) {
+        throw Error("mimic joint '" + joint.name + "' in a model for MuJoCo",
+                    "a robot without mimic joints");
+      }
+    }
+    for (const Obstacle& obstacle : world_.obstacles) {
+      if (!obstacle.motion.empty() || std::isfinite(obstacle.appears_s) ||
+          std::isfinite(obstacle.vanishes_s)) {
+        throw Error("obstacle '" + obstacle.name + "' moves or is not always there",
+                    "obstacles at rest");
+      }
+    }
+    std::string without;
+    for (std::size_t b = robot_.floating_base() ? 0 : 1; b < inertias_.size(); ++b) {
+      if (inertias_[b].mass > 0.0 && inertias_[b].inertia.trace() > 0.0) continue;
+      without += (without.empty() ? "'" : ", '") + link_of(b).name + "'";
+    }
+    if (!without.empty()) {
+      throw Error(robot_.urdf_file().string(), 0, "links without mass or inertia: " + without,
+                  "an <inertial> on each link that moves");
+    }
+  }
+
+  const Link& link_of(std::size_t body) const {
+    return robot_.links()[static_cast<std::size_t>(tree_.link_of_body[body])];
+  }
+
+  Eigen::Isometry3d body_from_link(int link) const {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    for (const KinematicTree::RigidLink& rigid : tree_.rigid_links) {
+      if (rigid.link == link) pose.matrix() = rigid.body_from_link;
+    }
+    return pose;
+  }
+
+  int body_of(int link) const { return tree_.body_of_link[static_cast<std::size_t>(link)]; }
+
+  void write_options() {
+    text_ << "<mujoco>\n<compiler angle=\"radian\" inertiafromgeom=\"false\" "
+          << "balanceinertia=\"false\" boundmass=\"0\" boundinertia=\"0\" fusestatic=\"false\"/>\n"
+          << "<option timestep=\"" << options_.timestep_s
+          << "\" gravity=\"0 0 -9.81\" integrator=\""
+          << (options_.integrator == Integrator::kEuler ? "Euler" : "RK4")
+          << "\" solver=\"Newton\" iterations=\"50\" tolerance=\"1e-10\" cone=\"elliptic\" "
+          << "impratio=\"10\">\n";
+    if (!options_.constraints) text_ << "<flag constraint=\"disable\"/>\n";
+    text_ << "</option>\n<size nconmax=\"200\" njmax=\"600\"/>\n"
+          << "<default><geom condim=\"3\" solref=\"0.004 1\" solimp=\"0.95 0.99 0.001 0.5 2\"/>"
+          << "</default>\n";
+  }
+
+  void write_pose(const Eigen::Isometry3d& pose) {
+    const Eigen::Quaterniond q = Eigen::Quaterniond(pose.linear()).normalized();
+    text_ << " pos=\"" << row(pose.translation()) << "\" quat=\"" << q.w() << ' ' << q.x() << ' '
+          << q.y() << ' ' << q.z() << '"';
+  }
+
+  static std::string row(const Eigen::Vector3d& v) {
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text.precision(17);
+    text << v.x() << ' ' << v.y() << ' ' << v.z();
+    return text.str();
+  }
+
+  // What is stated, or the least of the end effectors.
+  double friction_or_least(double stated) const {
+    if (stated > 0.0) return stated;
+    double least = std::numeric_limits<double>::infinity();
+    for (const EndEffector& effector : effectors_) {
+      if (effector.friction > 0.0) least = std::min(least, effector.friction);
+    }
+    return std::isfinite(least) ? least : kOtherFriction;
+  }
+
+  void end_world_geom(double friction) {
+    text_ << " contype=\"0\" conaffinity=\"1\" friction=\"" << friction_or_least(friction)
+          << " 0.005 0.0001\"/>\n";
+  }
+
+  void end_robot_geom() {
+    text_ << " contype=\"1\" conaffinity=\"0\" friction=\"0 0.005 0.0001\"/>\n";
+  }
+
+  // Each thing is there once: the faces of a solid are part of it.
+  void write_world() {
+    for (std::size_t i = 0; i < world_.surfaces.size(); ++i) {
+      const Surface& surface = world_.surfaces[i];
+      if (std::any_of(world_.solids.begin(), world_.solids.end(),
+                      [&](const SolidBox& box) { return is_part_of(box, surface); })) {
+        continue;
+      }
+      text_ << "<geom name=\"surface_" << i << '"';
+      if (!std::isfinite(surface.half_x_m) && !std::isfinite(surface.half_y_m)) {
+        text_ << " type=\"plane\" size=\"0 0 1\"";
+        write_pose(surface.world_from_surface);
+      } else {
+        text_ << " type=\"box\" size=\"" << std::min(surface.half_x_m, kEndless_m) << ' '
+              << std::min(surface.half_y_m, kEndless_m) << ' ' << kPlateHalf_m << '"';
+        write_pose(surface.world_from_surface * Eigen::Translation3d(0.0, 0.0, -kPlateHalf_m));
+      }
+      end_world_geom(surface.friction);
+    }
+    for (std::size_t i = 0; i < world_.bars.size(); ++i) {
+      const Bar& bar = world_.bars[i];
+      text_ << "<geom name=\"bar_" << i << "\" type=\"capsule\" size=\"" << bar.radius_m
+            << "\" fromto=\"" << row(bar.from) << ' ' << row(bar.to) << '"';
+      end_world_geom(bar.friction);
+    }
+    for (std::size_t i = 0; i < world_.solids.size(); ++i) {
+      const SolidBox& box = world_.solids[i];
+      double friction = std::numeric_limits<double>::infinity();
+      for (const Surface& surface : world_.surfaces) {
+        if (is_part_of(box, surface)) {
+          friction = std::min(friction, friction_or_least(surface.friction));
+        }
+      }
+      text_ << "<geom name=\"solid_" << i << "\" type=\"box\" size=\"" << row(0.5 * box.size_m)
+            << '"';
+      write_pose(box.world_from_box);
+      end_world_geom(std::isfinite(friction) ? friction : 0.0);
+    }
+    for (std::size_t i = 0; i < world_.obstacles.size(); ++i) {
+      const Obstacle& obstacle = world_.obstacles[i];
+      const Eigen::Vector3d& size = obstacle.size;
+      text_ << "<geom name=\"obstacle_" << i << '"';
+      switch (obstacle.shape) {
+        case Obstacle::Shape::kBox:
+          text_ << " type=\"box\" size=\"" << row(0.5 * size) << '"';
+          break;
+        case Obstacle::Shape::kSphere:
+          text_ << " type=\"sphere\" size=\"" << size.x() << '"';
+          break;
+        case Obstacle::Shape::kCylinder:
+          text_ << " type=\"cylinder\" size=\"" << size.x() << ' ' << 0.5 * size.y() << '"';
+          break;
+      }
+      write_pose(obstacle.world_from_obstacle);
+      end_world_geom(0.0);
+    }
+  }
+
+  void write_body(std::size_t body) {
+    text_ << "<body name=\"body_" << body << '"';
+    if (body > 0) {
+      const Joint& joint = joint_of(body);
+      write_pose(body_from_link(joint.parent_link) * joint.parent_from_joint);
+      text_ << ">\n";
+      write_joint(body - 1, joint);
+    } else {
+      text_ << ">\n";
+      if (robot_.floating_base()) text_ << "<freejoint name=\"base\"/>\n";
+    }
+    if (body > 0 || robot_.floating_base()) write_inertia(inertias_[body]);
+    write_shapes(static_cast<int>(body));
+    for (std::size_t child = body + 1; child < tree_.bodies.size(); ++child) {
+      if (tree_.bodies[child].parent == static_cast<int>(body)) write_body(child);
+    }
+    text_ << "</body>\n";
+  }
+
+  const Joint& joint_of(std::size_t body) const {
+    return robot_.joints()[static_cast<std::size_t>(robot_.axes()[body - 1].joint)];
+  }
+
+  void write_joint(std::size_t axis, const Joint& joint) {
+    text_ << "<joint name=\"axis_" << axis << "\" type=\""
+          << (joint.type == JointType::kPrismatic ? "slide" : "hinge") << "\" axis=\""
+          << row(joint.axis) << '"';
+    if (std::isfinite(joint.lower) && joint.lower < joint.upper) {
+      text_ << " limited=\"true\" range=\"" << joint.lower << ' ' << joint.upper << '"';
+    }
+    text_ << "/>\n";
+  }
+
+  // Along principal axes by Eigen: those that MuJoCo finds for `fullinertia` are off by up to 1e-7.
+  void write_inertia(const BodyInertia& body) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(body.inertia);
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation() = body.com;
+    pose.linear() = principal.eigenvectors();
+    if (pose.linear().determinant() < 0.0) pose.linear().col(0) *= -1.0;
+    Eigen::Vector3d moments = principal.eigenvalues().cwiseMax(kLeastInertia);
+    // Printed in a few digits, a flat body may miss what MuJoCo asks for.
+    if (moments[0] + moments[1] < moments[2]) {
+      moments[0] = moments[2] - moments[1] + 1e-15 * moments[2];
+    }
+    text_ << "<inertial mass=\"" << body.mass << "\" diaginertia=\"" << row(moments) << '"';
+    write_pose(pose);
+    text_ << "/>\n";
+  }
+
+  void write_shapes(int body) {
+    bool touches = false;
+    for (std::size_t i = 0; i < effectors_.size(); ++i) {
+      const EndEffector& effector = effectors_[i];
+      const int link = robot_.link_index(effector.link);
+      if (body_of(link) != body) continue;
+      touches = true;
+      write_effector(i, effector, body_from_link(link));
+    }
+    if (touches) return;
+    for (std::size_t link = 0; link < robot_.links().size(); ++link) {
+      if (tree_.body_of_link[link] != body) continue;
+      for (const CollisionShape& shape : robot_.links()[link].collision) write_shape(shape);
+    }
+  }
+
+  void write_effector(std::size_t index, const EndEffector& effector,
+                      const Eigen::Isometry3d& body_from_link) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation() = effector.point;
+    if (effector.kind != ContactKind::kWheel) pose.linear() = axes_in_link(effector);
+    std::ostringstream shape;
+    shape.imbue(std::locale::classic());
+    shape.precision(17);
+    switch (effector.kind) {
+      case ContactKind::kSurface:
+        shape << "type=\"box\" size=\"" << effector.half_x_m << ' ' << effector.half_y_m << ' '
+              << kPlateHalf_m << '"';
+        pose.translation() += kPlateHalf_m * pose.linear().col(2);
+        break;
+      case ContactKind::kPoint:
+        if (effector.radius_m > 0.0) {
+          shape << "type=\"sphere\" size=\"" << effector.radius_m << '"';
+        } else {
+          shape << "type=\"sphere\" size=\"" << kBarePoint_m << '"';
+          pose.translation() += kBarePoint_m * pose.linear().col(2);
+        }
+        break;
+      case ContactKind::kWheel:
+        shape << "type=\"sphere\" size=\"" << effector.radius_m << '"';
+        break;
+      case ContactKind::kGrasp:
+        return;
+      default:
+        throw Error("end effector '" + effector.name + "' of a kind without a shape",
+                    contact_kind_names("'"));
+    }
+    text_ << "<geom name=\"effector_" << index << "\" " << shape.str();
+    write_pose(body_from_link * pose);
+    end_robot_geom();
+  }
+
+  void write_shape(const CollisionShape& shape) {
+    if (shape.type == ShapeType::kMesh) return;
+    text_ << "<geom";
+    switch (shape.type) {
+      case ShapeType::kSphere:
+        text_ << " type=\"sphere\" size=\"" << shape.radius << '"';
+        break;
+      case ShapeType::kCapsule:
+      case ShapeType::kCylinder:
+        text_ << " type=\"" << (shape.type == ShapeType::kCapsule ? "capsule" : "cylinder")
+              << "\" size=\"" << shape.radius << ' ' << 0.5 * shape.length << '"';
+        break;
+      case ShapeType::kBox:
+        text_ << " type=\"box\" size=\"" << row(0.5 * shape.size) << '"';
+        break;
+      case ShapeType::kMesh:
+        break;
+    }
+    write_pose(body_from_link(shape.link) * shape.link_from_shape);
+    end_robot_geom();
+  }
+
+  void write_motors() {
+    for (std::size_t axis = 0; axis < robot_.axes().size(); ++axis) {
+      const Joint& joint = joint_of(axis + 1);
+      if (joint.max_effort <= 0.0) continue;
+      text_ << "<motor name=\"motor_" << joint.index << "\" joint=\"axis_" << axis << '"';
+      if (std::isfinite(joint.max_effort)) {
+        text_ << " ctrllimited=\"true\" ctrlrange=\"" << -joint.max_effort << ' '
+              << joint.max_effort << '"';
+      }
+      text_ << "/>\n";
+    }
+  }
+
+  const Robot& robot_;
+  const KinematicTree& tree_;
+  std::span<const EndEffector> effectors_;
+  const World& world_;
+  const MujocoModelOptions& options_;
+  const std::vector<BodyInertia> inertias_;
+  std::ostringstream text_;
+};
+
+}  // namespace
+
+std::string mujoco_model(const Robot& robot, std::span<const EndEffector> effectors,
+                         const World& world, const MujocoModelOptions& options) {
+  return ModelWriter(robot, effectors, world, options).write();
+}
+
+}  // namespace locograph

@@ -1,0 +1,48 @@
+#pragma once
+/// A robot and a world as a model of the physics engine MuJoCo, in its XML format (MJCF).
+///
+///     std::ofstream("coman_plus.xml") << mujoco_model(robot, effectors, world);
+///
+/// Lengths are metres, angles radians, axes those of robot.h and world.h. Bodies are those of
+/// Robot::tree(): links that do not move against each other are one body. Nothing is added that
+/// the URDF does not give: no damping, no armature.
+///
+///   body_B      body B of the tree; body_0 has the joint "base" if the base floats
+///   axis_A      joint of axis A of Robot::axes(), with its limits
+///   motor_J     torque [N m] or force [N] of active joint J, limited by its effort; none where the
+///               effort is 0
+///   effector_E  what end effector E touches with: a sole is a box 2 cm thick, a ball a sphere, a
+///               bare point a sphere of 5 mm above it, a wheel a sphere of its radius (cylinders
+///               give flickering contacts on boxes)
+///
+/// The robot touches the world, not itself. A body with end effectors touches with these only; the
+/// others touch with all their collision shapes but meshes, which are left out. Grasps hold nothing
+/// yet. Friction is that of the world, MuJoCo takes the larger one of two: of surfaces and bars
+/// their own, of a box the least of its faces, and where none is stated the least of the end
+/// effectors. A surface without any end is a plane, another one a box of 2 cm below it. Maps are
+/// left out.
+///
+/// Errors: those of body_inertias() and require_sound_effector(); links of bodies without mass or
+/// inertia; mimic joints; kinds of contact that are not ours; obstacles that move or are not always
+/// there.
+
+#include <locograph/robots/contact.h>
+#include <locograph/world/world.h>
+
+#include <span>
+#include <string>
+
+namespace locograph {
+
+enum class Integrator { kEuler, kRungeKutta4 };  ///< semi-implicit Euler
+
+struct MujocoModelOptions {
+  double timestep_s = 0.001;
+  Integrator integrator = Integrator::kEuler;
+  bool constraints = true;  ///< false: neither contacts nor joint limits
+};
+
+std::string mujoco_model(const Robot& robot, std::span<const EndEffector> effectors,
+                         const World& world, const MujocoModelOptions& options = {});
+
+}  // namespace locograph

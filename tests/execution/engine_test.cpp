@@ -1,0 +1,175 @@
+// What MuJoCo computes of a robot against what we do, and whether it keeps what physics keeps.
+#include <locograph/common/error.h>
+#include <locograph/execution/engine.h>
+#include <locograph/robots/dynamics.h>
+
+#include <memory>
+
+#include "robots/robot_test_support.h"
+
+namespace locograph::test {
+namespace {
+
+constexpr double kTolerance = 1e-9;  // of the largest entry
+
+class DynamicsOfMujoco : public ComparedTest<std::tuple<RobotFile, bool>> {
+ protected:
+  void SetUp() override {
+    const std::filesystem::path& file = std::get<0>(GetParam()).urdf;
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not on this machine";
+    robot =
+        std::make_unique<Robot>(Robot::load(file, {}, {.floating_base = std::get<1>(GetParam())}));
+    state = std::make_unique<RobotState>(*robot);
+    dynamics = std::make_unique<RobotDynamics>(*robot);
+    size = robot->tangent_size();
+    engine = std::make_unique<Engine>(*robot, std::span<const EndEffector>(), World{});
+  }
+
+  /// Both robots where the drawn numbers say.
+  void place(double speed) {
+    const Eigen::VectorXd q = random_configuration(*robot, random);
+    velocity = random_vector(size, speed, random);
+    state->update(q.data());
+    engine->set_state(q, velocity);
+    compare(engine->configuration(), q, 1e-15);
+    if (speed > 0.0) compare(engine->velocity(), velocity, 1e-14);
+  }
+
+  std::mt19937 random = std::mt19937(31);
+  std::unique_ptr<Robot> robot;
+  std::unique_ptr<RobotState> state;
+  std::unique_ptr<RobotDynamics> dynamics;
+  std::unique_ptr<Engine> engine;
+  Eigen::VectorXd velocity;
+  int size = 0;
+};
+
+TEST_P(DynamicsOfMujoco, HaveOurMassMatrix) {
+  Eigen::MatrixXd mass(size, size);
+  for (int sample = 0; sample < 10; ++sample) {
+    place(1.0);
+    dynamics->mass_matrix(*state, mass);
+    const Eigen::MatrixXd theirs = engine->mass_matrix();
+    // Each entry by the inertias it couples: a wrist is judged by its own, not by the trunk's.
+    const Eigen::VectorXd scale = mass.diagonal().cwiseSqrt().cwiseInverse();
+    compare(scale.asDiagonal() * theirs * scale.asDiagonal(),
+            scale.asDiagonal() * mass * scale.asDiagonal(), kTolerance);
+  }
+}
+
+TEST_P(DynamicsOfMujoco, HaveOurGravityTorques) {
+  Eigen::VectorXd torques(size);
+  for (int sample = 0; sample < 10; ++sample) {
+    place(0.0);
+    gravity_torques(*state, standard_gravity(), torques);
+    compare(engine->bias_forces(), torques, kTolerance);
+  }
+}
+
+TEST_P(DynamicsOfMujoco, HaveOurBiasForces) {
+  Eigen::VectorXd torques(size);
+  for (int sample = 0; sample < 10; ++sample) {
+    place(3.0);
+    dynamics->bias_forces(*state, velocity, torques);
+    compare(engine->bias_forces(), torques, kTolerance);
+  }
+}
+
+TEST_P(DynamicsOfMujoco, HaveOurInverseDynamics) {
+  Eigen::VectorXd torques(size);
+  for (int sample = 0; sample < 10; ++sample) {
+    place(3.0);
+    const Eigen::VectorXd acceleration = random_vector(size, 10.0, random);
+    dynamics->inverse_dynamics(*state, velocity, acceleration, {}, torques);
+    compare(engine->inverse_dynamics(acceleration), torques, kTolerance);
+  }
+}
+
+TEST_P(DynamicsOfMujoco, HaveOurJacobians) {
+  Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(6, size);
+  for (int sample = 0; sample < 3; ++sample) {
+    place(1.0);
+    for (int link = 0; link < static_cast<int>(robot->links().size()); ++link) {
+      const Eigen::Vector3d point = random_vector(3, 0.3, random);
+      state->frame_jacobian(link, Eigen::Isometry3d(Eigen::Translation3d(point)), jacobian);
+      if (jacobian.isZero(0.0)) {
+        EXPECT_TRUE(engine->frame_jacobian(link, point).isZero(0.0));
+      } else {
+        compare(engine->frame_jacobian(link, point), jacobian, kTolerance);
+      }
+    }
+  }
+}
+
+/// Energy [J], and momentum in the world [N s, N m s about the centre of mass].
+struct Kept {
+  double energy;
+  Eigen::Vector3d linear, angular;
+
+  Kept(const Engine& engine, RobotState& state, RobotDynamics& dynamics) {
+    const Robot& robot = state.robot();
+    const Eigen::VectorXd q = engine.configuration(), velocity = engine.velocity();
+    state.update(q.data());
+    Eigen::MatrixXd mass(robot.tangent_size(), robot.tangent_size());
+    dynamics.mass_matrix(state, mass);
+    const Eigen::VectorXd momentum = mass * velocity;
+    const Eigen::Vector3d com = state.center_of_mass();
+    const Eigen::Matrix3d rotation = state.world_from_link(0).linear();
+    energy = 0.5 * velocity.dot(momentum) + 9.81 * robot.total_mass() * com.z();
+    linear = rotation * momentum.head<3>();
+    angular = rotation * momentum.segment<3>(3) -
+              (com - state.world_from_link(0).translation()).cross(linear);
+  }
+};
+
+TEST_P(DynamicsOfMujoco, KeepEnergyAndMomentumInFreeFlight) {
+  if (!robot->floating_base()) GTEST_SKIP() << "a robot that flies";
+  *engine =
+      Engine(*robot, {}, {},
+             {.timestep_s = 0.00025, .integrator = Integrator::kRungeKutta4, .constraints = false});
+  place(0.5);
+  const Kept before(*engine, *state, *dynamics);
+  while (engine->time_s() < 1.0 - 1e-9) engine->step();
+  ASSERT_FALSE(engine->diverged());
+  const Kept after(*engine, *state, *dynamics);
+  const double weight = 9.81 * robot->total_mass();
+  // What gravity has moved in this second is the scale of both.
+  EXPECT_NEAR(after.energy, before.energy, 1e-6 * weight * 4.905);
+  EXPECT_LT((after.linear - before.linear + weight * Eigen::Vector3d::UnitZ()).norm(),
+            1e-6 * weight);
+  EXPECT_LT((after.angular - before.angular).norm(), 1e-6 * before.angular.norm());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DynamicsOfMujoco,
+                         testing::Combine(testing::ValuesIn(public_and_own_robots()),
+                                          testing::Bool()),
+                         floating_or_fixed<RobotFile>);
+
+TEST(Engine, RefusesVectorsOfAnotherSize) {
+  const Robot robot = Robot::load(model("go2/go2.urdf"));
+  Engine engine(robot, {}, {});
+  const Eigen::VectorXd none;
+  EXPECT_THROW(engine.set_state(none, Eigen::VectorXd::Zero(robot.tangent_size())), Error);
+  EXPECT_THROW(engine.set_state(robot.neutral_configuration(), none), Error);
+  EXPECT_THROW(engine.set_torques(none), Error);
+  EXPECT_THROW(engine.inverse_dynamics(none), Error);
+}
+
+TEST(Engine, KeepsTorquesWithinTheEfforts) {
+  const TemporaryFolder folder;
+  const Robot robot = Robot::load(folder.write("small.urdf", small_robot_urdf()));
+  Engine within(robot, {}, {}), beyond(robot, {}, {});
+  const Eigen::VectorXd q = robot.neutral_configuration();
+  for (Engine* engine : {&within, &beyond}) {
+    engine->set_state(q, Eigen::VectorXd::Zero(robot.tangent_size()));
+  }
+  within.set_torques(Eigen::Vector2d(20.0, -30.0));
+  beyond.set_torques(Eigen::Vector2d(500.0, -500.0));
+  within.step();
+  beyond.step();
+  EXPECT_GT(within.velocity().norm(), 1e-3);
+  EXPECT_EQ(within.velocity(), beyond.velocity());
+}
+
+}  // namespace
+}  // namespace locograph::test

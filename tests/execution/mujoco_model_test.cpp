@@ -1,0 +1,91 @@
+// What a model holds, and what it refuses to hold.
+#include <locograph/common/error.h>
+#include <locograph/execution/engine.h>
+
+#include "robots/robot_test_support.h"
+
+namespace locograph::test {
+namespace {
+
+class MujocoModel : public testing::Test {
+ protected:
+  Robot robot_of(const std::string& urdf) { return Robot::load(folder.write("a.urdf", urdf)); }
+
+  static std::string refusal(const Robot& robot, const World& world = {}) {
+    try {
+      mujoco_model(robot, {}, world);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  const TemporaryFolder folder;
+};
+
+TEST_F(MujocoModel, NamesLinksWithoutInertia) {
+  // A wrist that carries a hand: our dynamics need no mass of its own, MuJoCo does.
+  const Robot robot = robot_of(R"(<robot name="a">
+  <link name="base"><inertial><mass value="1"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="wrist"/>
+  <link name="hand"><inertial><mass value="1"/><origin xyz="0 0 1"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <joint name="first" type="continuous"><parent link="base"/><child link="wrist"/>
+    <axis xyz="1 0 0"/></joint>
+  <joint name="second" type="continuous"><parent link="wrist"/><child link="hand"/>
+    <axis xyz="0 1 0"/></joint>
+</robot>)");
+  EXPECT_NE(refusal(robot).find("links without mass or inertia: 'wrist'"), std::string::npos)
+      << refusal(robot);
+}
+
+TEST_F(MujocoModel, RefusesMimicJoints) {
+  EXPECT_NE(refusal(robot_of(mimic_robot_urdf())).find("mimic joint"), std::string::npos);
+}
+
+TEST_F(MujocoModel, RefusesObstaclesThatMoveOrComeAndGo) {
+  const Robot robot = robot_of(small_robot_urdf());
+  Obstacle cart;
+  cart.name = "cart";
+  cart.size = Eigen::Vector3d::Ones();
+  EXPECT_EQ(refusal(robot, {.obstacles = {cart}}), "");
+  cart.motion = {{.time_s = 1.0}};
+  EXPECT_NE(refusal(robot, {.obstacles = {cart}}).find("'cart'"), std::string::npos);
+  cart.motion.clear();
+  cart.vanishes_s = 3.0;
+  EXPECT_NE(refusal(robot, {.obstacles = {cart}}).find("'cart'"), std::string::npos);
+}
+
+TEST_F(MujocoModel, HoldsTheWorldOnce) {
+  const Robot robot = robot_of(small_robot_urdf());
+  World world{.surfaces = {ground()}};
+  Surface top = ground();
+  top.half_x_m = top.half_y_m = 0.5;
+  top.friction = 0.7;
+  top.world_from_surface.translation().z() = 0.5;
+  world.surfaces.push_back(top);  // of the box
+  world.solids.push_back({.name = "step"});
+  top.world_from_surface.translation().x() = 3.0;
+  world.surfaces.push_back(top);
+  world.bars.push_back({.name = "rail", .radius_m = 0.02, .friction = 0.4});
+  for (const Obstacle::Shape shape :
+       {Obstacle::Shape::kBox, Obstacle::Shape::kSphere, Obstacle::Shape::kCylinder}) {
+    world.obstacles.emplace_back();
+    world.obstacles.back().shape = shape;
+    world.obstacles.back().size = Eigen::Vector3d::Constant(0.2);
+  }
+  const std::string text = mujoco_model(robot, {}, world);
+  for (const char* there : {"surface_0\" type=\"plane", "surface_2\" type=\"box",
+                            "bar_0\" type=\"capsule", "solid_0\" type=\"box", "obstacle_2\""}) {
+    EXPECT_NE(text.find(there), std::string::npos) << there;
+  }
+  EXPECT_EQ(text.find("surface_1"), std::string::npos);
+  const std::string solid = text.substr(text.find("solid_0"));
+  EXPECT_NE(solid.substr(0, solid.find('\n')).find("friction=\"0.69999999999999996 "),
+            std::string::npos);
+  EXPECT_NO_THROW(Engine(robot, {}, world));  // MuJoCo takes it all
+}
+
+}  // namespace
+}  // namespace locograph::test
