@@ -47,7 +47,7 @@ struct PlanEdgeOptions {
   bool excuse_near_world = false;
   double surface_margin_m = 2e-3;  ///< to surfaces, bars and boxes that a link does not touch
   double self_margin_m = 0.01;
-  double joint_margin_rad = 0.01;
+  double joint_margin_rad = 0.01;  ///< or what a configuration has, if that is less
   double velocity_fraction = 0.95;
   double base_linear_m_s = 0.5, base_angular_rad_s = 0.5;  ///< 0: no limit
   double joint_acceleration_rad_s2 = 10.0;                 ///< as MotionOptions has it; 0: no limit

@@ -163,6 +163,23 @@ TEST_F(MotionGraph, HasEveryConstraintAndEveryCost) {
   EXPECT_EQ(graph.edges_of<EdgeAccelerationLimits>().size(), count - 2);
 }
 
+TEST_F(MotionGraph, JointsKeepTheRoomThatTheyHaveWhereItIsLessThanTheMargin) {
+  const Robot& robot = *task.robot->robot;
+  const Joint& joint = robot.active_joint(0);
+  ASSERT_TRUE(std::isfinite(joint.lower));
+  const Eigen::Index at = robot.base_configuration_size();
+  const std::vector<double> rooms = {2e-4, 0.0, -1e-5};
+  for (std::size_t i = 0; i < rooms.size(); ++i) {
+    plan.motion.configurations[i + 1][at] = joint.lower + rooms[i];
+  }
+  const Graph graph = motion_graph(task, plan);
+  const auto& edges = graph.edges_of<EdgeJointLimits>();
+  EXPECT_DOUBLE_EQ(edges[0].margin, 1e-3);
+  EXPECT_NEAR(edges[1].margin, 2e-4, 1e-12);
+  EXPECT_NEAR(edges[2].margin, 0.0, 1e-12);
+  EXPECT_EQ(edges[3].margin, 0.0);
+}
+
 double most_moved(const Graph& graph, const std::vector<Eigen::VectorXd>& from) {
   const Motion motion = motion_of(graph, plan_of(graph));
   double most = 0.0;
