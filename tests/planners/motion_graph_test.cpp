@@ -26,6 +26,7 @@
 #include <locograph/solvers/linear_solvers.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "common/allocation_counter.h"
