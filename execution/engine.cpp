@@ -304,15 +304,11 @@ Eigen::MatrixXd Engine::frame_jacobian(int link, const Eigen::Vector3d& point) c
   own.refresh();
   const KinematicTree& tree = own.robot.tree();
   const int body_of_link = tree.body_of_link.at(static_cast<std::size_t>(link));
-  Eigen::Vector3d in_body = point;
-  for (const KinematicTree::RigidLink& rigid : tree.rigid_links) {
-    if (rigid.link == link) in_body = (rigid.body_from_link * point.homogeneous()).head<3>();
-  }
   const int body = own.body[static_cast<std::size_t>(body_of_link)];
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> rotation(own.data->xmat +
                                                                                 9 * body);
-  const Eigen::Vector3d in_world =
-      rotation * in_body + Eigen::Map<const Eigen::Vector3d>(own.data->xpos + 3 * body);
+  const Eigen::Vector3d in_world = rotation * (tree.body_from_link(link) * point) +
+                                   Eigen::Map<const Eigen::Vector3d>(own.data->xpos + 3 * body);
   RowMajor jacobian(6, own.model->nv);
   mj_jac(own.model.get(), own.data.get(), jacobian.data(), jacobian.data() + 3 * own.model->nv,
          in_world.data(), body);

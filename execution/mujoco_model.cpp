@@ -2,9 +2,12 @@
 #include <locograph/execution/mujoco_model.h>
 #include <locograph/robots/body_inertia.h>
 #include <locograph/robots/kinematic_tree.h>
+#include <locograph/robots/statics.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <locale>
 #include <sstream>
 
@@ -74,21 +77,13 @@ class ModelWriter {
     return robot_.links()[static_cast<std::size_t>(tree_.link_of_body[body])];
   }
 
-  Eigen::Isometry3d body_from_link(int link) const {
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    for (const KinematicTree::RigidLink& rigid : tree_.rigid_links) {
-      if (rigid.link == link) pose.matrix() = rigid.body_from_link;
-    }
-    return pose;
-  }
-
   int body_of(int link) const { return tree_.body_of_link[static_cast<std::size_t>(link)]; }
 
   void write_options() {
     text_ << "<mujoco>\n<compiler angle=\"radian\" inertiafromgeom=\"false\" "
           << "balanceinertia=\"false\" boundmass=\"0\" boundinertia=\"0\" fusestatic=\"false\"/>\n"
-          << "<option timestep=\"" << options_.timestep_s
-          << "\" gravity=\"0 0 -9.81\" integrator=\""
+          << "<option timestep=\"" << options_.timestep_s << "\" gravity=\""
+          << row(standard_gravity()) << "\" integrator=\""
           << (options_.integrator == Integrator::kEuler ? "Euler" : "RK4")
           << "\" solver=\"Newton\" iterations=\"50\" tolerance=\"1e-10\" cone=\"elliptic\" "
           << "impratio=\"10\">\n";
@@ -104,13 +99,13 @@ class ModelWriter {
           << q.y() << ' ' << q.z() << '"';
   }
 
-  static std::string row(const Eigen::Vector3d& v) {
-    std::ostringstream text;
-    text.imbue(std::locale::classic());
-    text.precision(17);
-    text << v.x() << ' ' << v.y() << ' ' << v.z();
-    return text.str();
-  }
+  struct Row {
+    const Eigen::Vector3d v;
+    friend std::ostream& operator<<(std::ostream& out, const Row& row) {
+      return out << row.v.x() << ' ' << row.v.y() << ' ' << row.v.z();
+    }
+  };
+  static Row row(const Eigen::Vector3d& v) { return {v}; }
 
   // What is stated, or the least of the end effectors.
   double friction_or_least(double stated) const {
@@ -193,7 +188,7 @@ class ModelWriter {
     text_ << "<body name=\"body_" << body << '"';
     if (body > 0) {
       const Joint& joint = joint_of(body);
-      write_pose(body_from_link(joint.parent_link) * joint.parent_from_joint);
+      write_pose(tree_.body_from_link(joint.parent_link) * joint.parent_from_joint);
       text_ << ">\n";
       write_joint(body - 1, joint);
     } else {
@@ -246,7 +241,7 @@ class ModelWriter {
       const int link = robot_.link_index(effector.link);
       if (body_of(link) != body) continue;
       touches = true;
-      write_effector(i, effector, body_from_link(link));
+      write_effector(i, effector, tree_.body_from_link(link));
     }
     if (touches) return;
     for (std::size_t link = 0; link < robot_.links().size(); ++link) {
@@ -260,33 +255,29 @@ class ModelWriter {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     pose.translation() = effector.point;
     if (effector.kind != ContactKind::kWheel) pose.linear() = axes_in_link(effector);
-    std::ostringstream shape;
-    shape.imbue(std::locale::classic());
-    shape.precision(17);
+    if (effector.kind == ContactKind::kGrasp) return;
+    text_ << "<geom name=\"effector_" << index << '"';
     switch (effector.kind) {
       case ContactKind::kSurface:
-        shape << "type=\"box\" size=\"" << effector.half_x_m << ' ' << effector.half_y_m << ' '
+        text_ << " type=\"box\" size=\"" << effector.half_x_m << ' ' << effector.half_y_m << ' '
               << kPlateHalf_m << '"';
         pose.translation() += kPlateHalf_m * pose.linear().col(2);
         break;
       case ContactKind::kPoint:
         if (effector.radius_m > 0.0) {
-          shape << "type=\"sphere\" size=\"" << effector.radius_m << '"';
+          text_ << " type=\"sphere\" size=\"" << effector.radius_m << '"';
         } else {
-          shape << "type=\"sphere\" size=\"" << kBarePoint_m << '"';
+          text_ << " type=\"sphere\" size=\"" << kBarePoint_m << '"';
           pose.translation() += kBarePoint_m * pose.linear().col(2);
         }
         break;
       case ContactKind::kWheel:
-        shape << "type=\"sphere\" size=\"" << effector.radius_m << '"';
+        text_ << " type=\"sphere\" size=\"" << effector.radius_m << '"';
         break;
-      case ContactKind::kGrasp:
-        return;
       default:
         throw Error("end effector '" + effector.name + "' of a kind without a shape",
                     contact_kind_names("'"));
     }
-    text_ << "<geom name=\"effector_" << index << "\" " << shape.str();
     write_pose(body_from_link * pose);
     end_robot_geom();
   }
@@ -309,7 +300,7 @@ class ModelWriter {
       case ShapeType::kMesh:
         break;
     }
-    write_pose(body_from_link(shape.link) * shape.link_from_shape);
+    write_pose(tree_.body_from_link(shape.link) * shape.link_from_shape);
     end_robot_geom();
   }
 

@@ -93,4 +93,12 @@ KinematicTree KinematicTree::build(const std::vector<Link>& links, const std::ve
   return tree;
 }
 
+Eigen::Isometry3d KinematicTree::body_from_link(int link) const {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  for (const RigidLink& rigid : rigid_links) {
+    if (rigid.link == link) pose.matrix() = rigid.body_from_link;
+  }
+  return pose;
+}
+
 }  // namespace locograph

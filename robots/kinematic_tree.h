@@ -41,6 +41,8 @@ struct KinematicTree {
   std::vector<int> support_begin;      ///< links + 1 offsets into support
   std::vector<int> support;            ///< axes from the root to each link
 
+  Eigen::Isometry3d body_from_link(int link) const;
+
   static KinematicTree build(const std::vector<Link>& links, const std::vector<Joint>& joints,
                              const std::vector<Axis>& axes);
 };

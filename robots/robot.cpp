@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace locograph {
 namespace {
@@ -90,6 +91,15 @@ Eigen::VectorXd Robot::named_configuration(const std::string& group_state) const
     if (index >= 0) q[base_configuration_size() + index] = position;
   }
   return q;
+}
+
+double Robot::joint_room(const Eigen::VectorXd& configuration) const {
+  double room = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < active_joint_count(); ++i) {
+    const double at = configuration[base_configuration_size() + i];
+    room = std::min({room, at - active_joint(i).lower, active_joint(i).upper - at});
+  }
+  return std::max(0.0, room);
 }
 
 std::vector<std::string> Robot::configuration_names() const { return names_of(states_); }

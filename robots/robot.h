@@ -160,6 +160,8 @@ class Robot {
   Eigen::VectorXd neutral_configuration() const;
   /// A group_state of the SRDF. Base at the identity; joints the state does not name are neutral.
   Eigen::VectorXd named_configuration(const std::string& group_state) const;
+  /// How far the active joint that is nearest to a limit is from it [rad, m]; 0: at it, or beyond.
+  double joint_room(const Eigen::VectorXd& configuration) const;
   std::vector<std::string> configuration_names() const;  ///< of the group states, sorted
 
   std::vector<std::string> group_names() const;  ///< sorted

@@ -223,23 +223,13 @@ class PlanEdges {
     graph_.add_edge(std::move(edge), ids_.front());
   }
 
-  /// The margin of joints [rad, m], or what the plan has where that is less: a start that is given
-  /// may, and the plan is to stay where it is.
-  double joint_margin(const Eigen::VectorXd& q) const {
-    double margin = options_.joint_margin_rad;
-    for (int j = 0; j < robot_.active_joint_count(); ++j) {
-      const Joint& joint = robot_.active_joint(j);
-      const double at = q[robot_.base_configuration_size() + j];
-      margin = std::min({margin, at - joint.lower, joint.upper - at});
-    }
-    return std::max(0.0, margin);
-  }
-
   void add_to_configuration(std::size_t i) {
     const bool last = i + 1 == ids_.size();
     graph_.add_edge(EdgePlanTracking(configurations_[i], last ? goal_ : track_), ids_[i]);
+    const double room = robot_.joint_room(configurations_[i]);
     graph_.add_edge(
-        EdgeJointLimits(robot_, joint_margin(configurations_[i]), options_.limit_weight), ids_[i]);
+        EdgeJointLimits(robot_, std::min(options_.joint_margin_rad, room), options_.limit_weight),
+        ids_[i]);
     for (const int number : contacts_at(plan_.stance_from, i)) {
       const auto contact = graph_.parameters().get<ContactParameter>(number);
       if (i > 0 && is_ball(contact->contact.effector) && is_held(i - 1, number)) {

@@ -42,17 +42,6 @@ struct TriedSegment : LoadedSegment {
   ExecutionMargin margin;  ///< what its ends, which are given, leave of the task's
 };
 
-/// Of the joint that is nearest to a limit; 0: at it, or beyond.
-double room_of_joints(const Robot& robot, const Eigen::VectorXd& q) {
-  double room = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < robot.active_joint_count(); ++i) {
-    const Joint& joint = robot.active_joint(i);
-    const double x = q[robot.base_configuration_size() + i];
-    room = std::min({room, x - joint.lower, joint.upper - x});
-  }
-  return std::max(0.0, room);
-}
-
 bool is_of_inertia(const Violation& violation) {
   return violation.constraint == "static_balance" || violation.constraint == "torque_limits";
 }
@@ -306,7 +295,7 @@ class MotionSearch {
       const Eigen::Vector2d centre = state_.center_of_mass().head<2>();
       share = std::min(share, share_of_margin(robot.total_mass(), rolled_to(state_, bearing),
                                               task_.margin, {&centre, 1}));
-      margin.joint_rad = std::min(margin.joint_rad, room_of_joints(robot, *q));
+      margin.joint_rad = std::min(margin.joint_rad, robot.joint_room(*q));
     }
     const ExecutionMargin had = task_.margin.scaled(share);
     margin.friction = had.friction;

@@ -87,8 +87,8 @@ struct GuidedTree {
   std::vector<int> way_to_root(const Footing& from) const;
   /// A node, and those that lead to the root through it: they are not known any more.
   void cut_off(int node);
-  /// What comes behind the first node of a way from the root, with lifting where an end effector
-  /// moves.
+  /// What comes after the first node of a way from the root; an end effector that moves is lifted
+  /// in between.
   void append(const std::vector<int>& way, StancePath& path) const;
 };
 
