@@ -132,9 +132,18 @@ class Coordinates {
   std::vector<int> dof_;       // of each entry of the tangent among MuJoCo's velocities
 };
 
-void require_size(const std::string& what, Eigen::Index size, int expected) {
-  if (size != expected) {
-    throw Error(what + " of " + std::to_string(size) + " numbers", std::to_string(expected));
+void require_numbers(const std::string& what, const Eigen::VectorXd& numbers, int expected) {
+  if (numbers.size() != expected) {
+    throw Error(what + " of " + std::to_string(numbers.size()) + " numbers",
+                std::to_string(expected));
+  }
+  if (!numbers.allFinite()) throw Error(what + " with a number that is not finite");
+}
+
+void require_index(const std::string& what, int index, std::size_t count) {
+  if (index < 0 || static_cast<std::size_t>(index) >= count) {
+    throw Error(what + " " + std::to_string(index),
+                "0 to " + std::to_string(count) + ", exclusive");
   }
 }
 
@@ -234,8 +243,11 @@ Engine& Engine::operator=(Engine&&) noexcept = default;
 
 void Engine::set_state(const Eigen::VectorXd& configuration, const Eigen::VectorXd& velocity) {
   Implementation& own = *implementation_;
-  require_size("a configuration", configuration.size(), own.robot.configuration_size());
-  require_size("a velocity", velocity.size(), own.robot.tangent_size());
+  require_numbers("a configuration", configuration, own.robot.configuration_size());
+  require_numbers("a velocity", velocity, own.robot.tangent_size());
+  if (own.robot.floating_base() && !(configuration.segment<4>(3).norm() > 1e-3)) {
+    throw Error("a base whose quaternion is zero", "one of norm 1");
+  }
   own.coordinates.set_positions(configuration, own.data->qpos);
   const Eigen::VectorXd dofs = own.coordinates.dofs(own.data->qpos, velocity);
   std::copy(dofs.begin(), dofs.end(), own.data->qvel);
@@ -246,7 +258,7 @@ void Engine::set_state(const Eigen::VectorXd& configuration, const Eigen::Vector
 
 void Engine::set_torques(const Eigen::VectorXd& torques) {
   Implementation& own = *implementation_;
-  require_size("torques", torques.size(), own.robot.active_joint_count());
+  require_numbers("torques", torques, own.robot.active_joint_count());
   for (std::size_t i = 0; i < own.motor.size(); ++i) {
     if (own.motor[i] >= 0) own.data->ctrl[own.motor[i]] = torques[static_cast<Eigen::Index>(i)];
   }
@@ -276,7 +288,8 @@ Eigen::VectorXd Engine::configuration() const {
 Eigen::VectorXd Engine::velocity() const { return implementation_->velocity(); }
 
 Eigen::Vector3d Engine::contact_force(int effector) const {
-  return implementation_->forces.at(static_cast<std::size_t>(effector));
+  require_index("end effector", effector, implementation_->forces.size());
+  return implementation_->forces[static_cast<std::size_t>(effector)];
 }
 
 Eigen::Vector3d Engine::total_contact_force() const { return implementation_->total; }
@@ -295,15 +308,16 @@ Eigen::VectorXd Engine::bias_forces() const {
 }
 
 Eigen::VectorXd Engine::inverse_dynamics(const Eigen::VectorXd& acceleration) const {
-  require_size("an acceleration", acceleration.size(), implementation_->robot.tangent_size());
+  require_numbers("an acceleration", acceleration, implementation_->robot.tangent_size());
   return implementation_->inverse_dynamics(acceleration);
 }
 
 Eigen::MatrixXd Engine::frame_jacobian(int link, const Eigen::Vector3d& point) const {
   Implementation& own = *implementation_;
-  own.refresh();
   const KinematicTree& tree = own.robot.tree();
-  const int body_of_link = tree.body_of_link.at(static_cast<std::size_t>(link));
+  require_index("link", link, tree.body_of_link.size());
+  own.refresh();
+  const int body_of_link = tree.body_of_link[static_cast<std::size_t>(link)];
   const int body = own.body[static_cast<std::size_t>(body_of_link)];
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> rotation(own.data->xmat +
                                                                                 9 * body);

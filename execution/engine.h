@@ -13,7 +13,9 @@
 /// inverse dynamics) are computed by MuJoCo.
 ///
 /// Keeps a pointer to the robot, which must outlive it. Errors: those of mujoco_model(), and Error
-/// with MuJoCo's words for a model that it refuses. Thread-safety: one per thread.
+/// with MuJoCo's words for a model that it refuses, and for end effectors and links that are none.
+/// Silences MuJoCo's warnings in the whole program, as it would write them to a file where the
+/// program runs; diverged() tells of them. Thread-safety: one per thread.
 
 #include <locograph/execution/mujoco_model.h>
 
@@ -31,10 +33,12 @@ class Engine {
   Engine(Engine&&) noexcept;
   Engine& operator=(Engine&&) noexcept;
 
-  /// Throws Error for vectors of another size.
+  /// Throws Error for vectors of another size, numbers that are not finite, and a base whose
+  /// quaternion is zero.
   void set_state(const Eigen::VectorXd& configuration, const Eigen::VectorXd& velocity);
   /// Of the active joints [N m or N], held until they are set again; MuJoCo keeps them within the
-  /// efforts. Throws Error for a vector of another size.
+  /// efforts. Throws Error for a vector of another size and for numbers that are not finite, which
+  /// MuJoCo would take for 0.
   void set_torques(const Eigen::VectorXd& torques);
   void step();
 

@@ -1,4 +1,4 @@
-#include <locograph/common/error.h>
+#include <locograph/common/check_option.h>
 #include <locograph/execution/mujoco_model.h>
 #include <locograph/robots/body_inertia.h>
 #include <locograph/robots/kinematic_tree.h>
@@ -328,8 +328,13 @@ class ModelWriter {
 
 }  // namespace
 
+void MujocoModelOptions::validate() const {
+  check_option(timestep_s > 0.0 && timestep_s <= 0.1, "timestep_s", "above 0, up to 0.1 s");
+}
+
 std::string mujoco_model(const Robot& robot, std::span<const EndEffector> effectors,
                          const World& world, const MujocoModelOptions& options) {
+  options.validate();
   return ModelWriter(robot, effectors, world, options).write();
 }
 

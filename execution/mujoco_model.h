@@ -22,9 +22,9 @@
 /// effectors. A surface without any end is a plane, another one a box of 2 cm below it. Maps are
 /// left out.
 ///
-/// Errors: those of body_inertias() and require_sound_effector(); links of bodies without mass or
-/// inertia; mimic joints; kinds of contact that are not ours; obstacles that move or are not always
-/// there.
+/// Errors: those of options, of body_inertias() and of require_sound_effector(); links of bodies
+/// without mass or inertia; mimic joints; kinds of contact that are not ours; obstacles that move
+/// or are not always there.
 
 #include <locograph/robots/contact.h>
 #include <locograph/world/world.h>
@@ -40,6 +40,9 @@ struct MujocoModelOptions {
   double timestep_s = 0.001;
   Integrator integrator = Integrator::kEuler;
   bool constraints = true;  ///< false: neither contacts nor joint limits
+
+  /// Throws Error for a time step that is not above 0, or longer than 0.1 s.
+  void validate() const;
 };
 
 std::string mujoco_model(const Robot& robot, std::span<const EndEffector> effectors,

@@ -3,6 +3,7 @@
 #include <locograph/execution/engine.h>
 #include <locograph/robots/dynamics.h>
 
+#include <limits>
 #include <memory>
 
 #include "robots/robot_test_support.h"
@@ -153,6 +154,32 @@ TEST(Engine, RefusesVectorsOfAnotherSize) {
   EXPECT_THROW(engine.set_state(robot.neutral_configuration(), none), Error);
   EXPECT_THROW(engine.set_torques(none), Error);
   EXPECT_THROW(engine.inverse_dynamics(none), Error);
+}
+
+TEST(Engine, RefusesNumbersThatAreNone) {
+  const Robot robot = Robot::load(model("go2/go2.urdf"), {}, {.floating_base = true});
+  Engine engine(robot, {}, {});
+  const Eigen::VectorXd q = robot.neutral_configuration();
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(robot.tangent_size());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Eigen::VectorXd wrong = q;
+  wrong[9] = nan;
+  EXPECT_THROW(engine.set_state(wrong, rest), Error);
+  wrong = q;
+  wrong.segment<4>(3).setZero();
+  EXPECT_THROW(engine.set_state(wrong, rest), Error);
+  EXPECT_THROW(engine.set_state(q, Eigen::VectorXd::Constant(rest.size(), nan)), Error);
+  EXPECT_THROW(engine.set_torques(Eigen::VectorXd::Constant(robot.active_joint_count(), nan)),
+               Error);
+  EXPECT_THROW(engine.contact_force(-1), Error);
+  EXPECT_THROW(engine.contact_force(0), Error);
+  EXPECT_THROW(engine.frame_jacobian(-1, Eigen::Vector3d::Zero()), Error);
+  EXPECT_THROW(
+      engine.frame_jacobian(static_cast<int>(robot.links().size()), Eigen::Vector3d::Zero()),
+      Error);
+  for (const double timestep_s : {0.0, -1.0, 1e9, nan}) {
+    EXPECT_THROW(Engine(robot, {}, {}, {.timestep_s = timestep_s}), Error) << timestep_s;
+  }
 }
 
 TEST(Engine, KeepsTorquesWithinTheEfforts) {
