@@ -11,6 +11,7 @@
 #include <locograph/apps/plot_command.h>
 #include <locograph/apps/posture_command.h>
 #include <locograph/apps/refine_command.h>
+#include <locograph/apps/simulate_command.h>
 #include <locograph/apps/view_command.h>
 #include <locograph/common/error.h>
 #include <locograph/common/stop_signals.h>
@@ -47,10 +48,10 @@ ExitCode run_chosen(const std::vector<Command>& commands) {
 int run(int argc, char** argv) {
   OptionParser app("Hyper-graph optimisation and loco-manipulation planning", "locograph");
   app.add_version("locograph " LOCOGRAPH_VERSION);
-  std::vector<Command> commands = {add_optimize(app), add_plan(app),   add_refine(app),
-                                   add_check(app),    add_info(app),   add_list(app),
-                                   add_view(app),     add_plot(app),   add_posture(app),
-                                   add_campaign(app), add_convert(app)};
+  std::vector<Command> commands = {add_optimize(app), add_plan(app),    add_refine(app),
+                                   add_check(app),    add_info(app),    add_list(app),
+                                   add_view(app),     add_plot(app),    add_posture(app),
+                                   add_campaign(app), add_convert(app), add_simulate(app)};
   bool quiet = false;
   for (Command& command : commands) {
     command.parser.add_flag("--quiet", quiet, "Neither progress nor warnings on stderr");

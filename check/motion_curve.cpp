@@ -142,7 +142,8 @@ Eigen::VectorXd CurveStep::rates(double s) const {
 void CurveStep::at(double fraction, CurvePoint& point) const {
   const double s = fraction, h = duration_s_;
   configuration(s, point.configuration);
-  point.velocity = rates(s);
+  // Into what is there: rates() would allocate.
+  point.velocity = (cubics_.col(0) + s * (2.0 * cubics_.col(1) + 3.0 * s * cubics_.col(2))) / h;
   point.acceleration = (2.0 * cubics_.col(1) + 6.0 * s * cubics_.col(2)) / (h * h);
   if (!robot_->floating_base()) return;
   const Vector3 c = s * (cubics_.block<3, 1>(3, 0) +

@@ -185,6 +185,7 @@ class Engine::Implementation {
   void measure_forces() {
     std::fill(forces.begin(), forces.end(), Eigen::Vector3d::Zero());
     total.setZero();
+    other = {};
     for (int i = 0; i < data->ncon; ++i) {
       const mjContact& contact = data->contact[i];
       if (contact.efc_address < 0) continue;
@@ -200,8 +201,17 @@ class Engine::Implementation {
       }
       total += force;
       const int effector = effector_of_geom[static_cast<std::size_t>(geom)];
-      if (effector >= 0) forces[static_cast<std::size_t>(effector)] += force;
+      if (effector >= 0) {
+        forces[static_cast<std::size_t>(effector)] += force;
+      } else if (wrench[0] > other.pressing_N) {
+        other = {wrench[0], link_of_body(model->geom_bodyid[geom])};
+      }
     }
+  }
+
+  int link_of_body(int mujoco_body) const {
+    const auto at = std::find(body.begin(), body.end(), mujoco_body);
+    return robot.tree().link_of_body[static_cast<std::size_t>(at - body.begin())];
   }
 
   Eigen::MatrixXd tangent_rows(const Eigen::MatrixXd& dofs) const {
@@ -231,6 +241,7 @@ class Engine::Implementation {
   std::vector<int> body;              // MuJoCo's, of each body of the tree
   std::vector<Eigen::Vector3d> forces;
   Eigen::Vector3d total = Eigen::Vector3d::Zero();
+  OtherTouch other;
   bool stale = false;
 };
 
@@ -264,6 +275,12 @@ void Engine::set_torques(const Eigen::VectorXd& torques) {
   }
 }
 
+void Engine::set_push(const Eigen::Vector3d& force) {
+  require_numbers("a push", force, 3);
+  double* applied = implementation_->data->xfrc_applied + 6 * implementation_->body.front();
+  std::copy(force.begin(), force.end(), applied);
+}
+
 void Engine::step() {
   mj_step(implementation_->model.get(), implementation_->data.get());
   implementation_->measure_forces();
@@ -293,6 +310,16 @@ Eigen::Vector3d Engine::contact_force(int effector) const {
 }
 
 Eigen::Vector3d Engine::total_contact_force() const { return implementation_->total; }
+
+Engine::OtherTouch Engine::other_touch() const { return implementation_->other; }
+
+double Engine::penetration_m() const {
+  double deepest = 0.0;
+  for (int i = 0; i < implementation_->data->ncon; ++i) {
+    deepest = std::max(deepest, -implementation_->data->contact[i].dist);
+  }
+  return deepest;
+}
 
 Eigen::MatrixXd Engine::mass_matrix() const {
   Implementation& own = *implementation_;

@@ -40,6 +40,9 @@ class Engine {
   /// efforts. Throws Error for a vector of another size and for numbers that are not finite, which
   /// MuJoCo would take for 0.
   void set_torques(const Eigen::VectorXd& torques);
+  /// On the root link, at its centre of mass [N, world axes], until it is set again. All else that
+  /// acts are torques, gravity and contacts.
+  void set_push(const Eigen::Vector3d& force);
   void step();
 
   double time_s() const;  ///< of all steps
@@ -55,6 +58,16 @@ class Engine {
   Eigen::Vector3d contact_force(int effector) const;
   /// The same of the whole robot.
   Eigen::Vector3d total_contact_force() const;
+
+  /// The largest pressing force [N] on a part of the robot that is no end effector, and one of the
+  /// links of that part; 0: nothing else touches.
+  struct OtherTouch {
+    double pressing_N = 0.0;
+    int link = -1;
+  };
+  OtherTouch other_touch() const;
+  /// How deep the robot is in anything [m].
+  double penetration_m() const;
 
   Eigen::MatrixXd mass_matrix() const;  ///< tangent_size x tangent_size
   Eigen::VectorXd bias_forces() const;  ///< h(q, v) of dynamics.h

@@ -29,7 +29,7 @@ class ModelWriter {
         effectors_(effectors),
         world_(world),
         options_(options),
-        inertias_(body_inertias(robot)) {
+        inertias_(body_inertias(robot, options.link_mass_factors)) {
     text_.imbue(std::locale::classic());
     text_.precision(17);
     require_what_it_can_write();
@@ -118,8 +118,8 @@ class ModelWriter {
   }
 
   void end_world_geom(double friction) {
-    text_ << " contype=\"0\" conaffinity=\"1\" friction=\"" << friction_or_least(friction)
-          << " 0.005 0.0001\"/>\n";
+    text_ << " contype=\"0\" conaffinity=\"1\" friction=\""
+          << options_.friction_factor * friction_or_least(friction) << " 0.005 0.0001\"/>\n";
   }
 
   void end_robot_geom() {
@@ -330,6 +330,8 @@ class ModelWriter {
 
 void MujocoModelOptions::validate() const {
   check_option(timestep_s > 0.0 && timestep_s <= 0.1, "timestep_s", "above 0, up to 0.1 s");
+  check_option(friction_factor >= 0.0 && std::isfinite(friction_factor), "friction_factor",
+               "0 or more");
 }
 
 std::string mujoco_model(const Robot& robot, std::span<const EndEffector> effectors,

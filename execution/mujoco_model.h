@@ -31,6 +31,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 namespace locograph {
 
@@ -39,9 +40,13 @@ enum class Integrator { kEuler, kRungeKutta4 };  ///< semi-implicit Euler
 struct MujocoModelOptions {
   double timestep_s = 0.001;
   Integrator integrator = Integrator::kEuler;
-  bool constraints = true;  ///< false: neither contacts nor joint limits
+  bool constraints = true;       ///< false: neither contacts nor joint limits
+  double friction_factor = 1.0;  ///< of all friction of the world
+  /// Of masses and inertias, one for each link; none: as the URDF has them.
+  std::vector<double> link_mass_factors = {};
 
-  /// Throws Error for a time step that is not above 0, or longer than 0.1 s.
+  /// Throws Error for a time step that is not above 0, or longer than 0.1 s, and a factor of
+  /// friction that is negative.
   void validate() const;
 };
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 namespace locograph {
@@ -23,13 +24,29 @@ Eigen::Matrix3d steiner(double mass, const Eigen::Vector3d& r) {
   return mass * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
 }
 
-std::vector<BodyInertia> fold(const Robot& robot) {
+/// Mass * com and mass of the bodies, as the tree has them or with a factor for each link.
+std::vector<Eigen::Vector4d> moments(const Robot& robot, std::span<const double> factors) {
   const KinematicTree& tree = robot.tree();
+  std::vector<Eigen::Vector4d> result(tree.bodies.size(), Eigen::Vector4d::Zero());
+  for (std::size_t b = 0; factors.empty() && b < result.size(); ++b) {
+    result[b] = tree.bodies[b].moment;
+  }
+  for (std::size_t l = 0; l < factors.size(); ++l) {
+    const Link& link = robot.links()[l];
+    const Eigen::Vector3d com = tree.body_from_link(static_cast<int>(l)) * link.com;
+    result[static_cast<std::size_t>(tree.body_of_link[l])] +=
+        factors[l] * link.mass * com.homogeneous();
+  }
+  return result;
+}
+
+std::vector<BodyInertia> fold(const Robot& robot, std::span<const double> factors) {
+  const KinematicTree& tree = robot.tree();
+  const std::vector<Eigen::Vector4d> moment = moments(robot, factors);
   std::vector<BodyInertia> bodies(tree.bodies.size());
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const Eigen::Vector4d& moment = tree.bodies[b].moment;
-    bodies[b].mass = moment[3];
-    if (moment[3] > 0.0) bodies[b].com = moment.head<3>() / moment[3];
+    bodies[b].mass = moment[b][3];
+    if (moment[b][3] > 0.0) bodies[b].com = moment[b].head<3>() / moment[b][3];
   }
   std::vector<Eigen::Matrix4d> body_from_link(robot.links().size(), Eigen::Matrix4d::Identity());
   for (const KinematicTree::RigidLink& rigid : tree.rigid_links) {
@@ -41,7 +58,9 @@ std::vector<BodyInertia> fold(const Robot& robot) {
     const Eigen::Matrix3d rotation = body_from_link[l].topLeftCorner<3, 3>();
     const Eigen::Vector3d com =
         rotation * link.com + body_from_link[l].topRightCorner<3, 1>() - body.com;
-    body.inertia += rotation * link.inertia * rotation.transpose() + steiner(link.mass, com);
+    const double factor = factors.empty() ? 1.0 : factors[l];
+    body.inertia +=
+        factor * (rotation * link.inertia * rotation.transpose() + steiner(link.mass, com));
   }
   return bodies;
 }
@@ -125,8 +144,18 @@ bool is_inertia_of_a_body(const Eigen::Matrix3d& inertia) {
          principal[0] + principal[1] >= (1.0 - kRoundedInertia) * principal[2];
 }
 
-std::vector<BodyInertia> body_inertias(const Robot& robot) {
-  const std::vector<BodyInertia> bodies = fold(robot);
+std::vector<BodyInertia> body_inertias(const Robot& robot) { return body_inertias(robot, {}); }
+
+std::vector<BodyInertia> body_inertias(const Robot& robot, std::span<const double> link_factors) {
+  if (!link_factors.empty() && link_factors.size() != robot.links().size()) {
+    throw Error(std::to_string(link_factors.size()) + " factors of masses",
+                "one for each of " + std::to_string(robot.links().size()) + " links");
+  }
+  for (const double factor : link_factors) {
+    if (factor > 0.0 && std::isfinite(factor)) continue;
+    throw Error("a factor of a mass of " + std::to_string(factor), "above 0");
+  }
+  const std::vector<BodyInertia> bodies = fold(robot, link_factors);
   check_moved(robot, bodies);
   for (std::size_t b = robot.floating_base() ? 0 : 1; b < bodies.size(); ++b) {
     check_solid(robot, static_cast<int>(b), bodies[b]);

@@ -15,6 +15,7 @@
 #include <locograph/robots/robot.h>
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 namespace locograph {
@@ -30,5 +31,9 @@ struct BodyInertia {
 bool is_inertia_of_a_body(const Eigen::Matrix3d& inertia);
 
 std::vector<BodyInertia> body_inertias(const Robot& robot);
+/// The same where mass and inertia of each link are those of the URDF times its factor; no factors:
+/// as they are. Throws Error also for another count of factors than of links, and for one that is
+/// not above 0.
+std::vector<BodyInertia> body_inertias(const Robot& robot, std::span<const double> link_factors);
 
 }  // namespace locograph

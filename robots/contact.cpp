@@ -81,41 +81,48 @@ void require_consistent(const RobotState& state, const Contact& a, const Contact
   }
 }
 
-}  // namespace
-
-Eigen::Matrix3d contact_axes(const std::string& contact, const Eigen::Vector3d& normal,
-                             const Eigen::Vector3d& forward) {
+/// name: of the contact, made for errors alone.
+template <class Name>
+Eigen::Matrix3d axes_of(Name&& name, const Eigen::Vector3d& normal,
+                        const Eigen::Vector3d& forward) {
   // Neither overflows nor vanishes on the way. The last bits of Eigen's stableNorm() depend on
   // where the vector lies in memory, and it may overlook NaN.
   const double length = std::hypot(normal.x(), normal.y(), normal.z());
   const double way = std::hypot(forward.x(), forward.y(), forward.z());
   if (!(length > 0.0 && std::isfinite(length))) {
-    throw Error(contact + " has a normal of length zero or not finite",
+    throw Error(name() + " has a normal of length zero or not finite",
                 "a direction out of the surface");
   }
   if (!(way > 0.0 && std::isfinite(way))) {
-    throw Error(contact + " has a forward direction that is zero or not finite",
+    throw Error(name() + " has a forward direction that is zero or not finite",
                 "a direction in the surface");
   }
   Eigen::Matrix3d axes;
   axes.col(2) = normal / length;
   const Eigen::Vector3d across = axes.col(2).cross(forward / way);
   if (!(across.norm() > 1e-9)) {
-    throw Error(contact + " has a forward direction along its normal",
-                "a direction in the surface");
+    throw Error(name() + " has a forward direction along its normal", "a direction in the surface");
   }
   axes.col(1) = across.normalized();
   axes.col(0) = axes.col(1).cross(axes.col(2));
   return axes;
 }
 
+}  // namespace
+
+Eigen::Matrix3d contact_axes(const std::string& contact, const Eigen::Vector3d& normal,
+                             const Eigen::Vector3d& forward) {
+  return axes_of([&]() -> const std::string& { return contact; }, normal, forward);
+}
+
 Eigen::Matrix3d axes_in_link(const EndEffector& effector) {
-  return contact_axes(contact_of(effector) + " in its link", effector.normal, effector.forward);
+  return axes_of([&] { return contact_of(effector) + " in its link"; }, effector.normal,
+                 effector.forward);
 }
 
 Eigen::Matrix3d axes_in_world(const Contact& contact) {
-  return contact_axes(contact_of(contact.effector), contact.normal,
-                      contact.forward.value_or(some_forward(contact.normal)));
+  return axes_of([&] { return contact_of(contact.effector); }, contact.normal,
+                 contact.forward.value_or(some_forward(contact.normal)));
 }
 
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {

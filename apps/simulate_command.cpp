@@ -1,0 +1,158 @@
+#include <locograph/apps/about_file.h>
+#include <locograph/apps/common_options.h>
+#include <locograph/apps/output.h>
+#include <locograph/apps/plan_file.h>
+#include <locograph/apps/progress.h>
+#include <locograph/apps/simulate_command.h>
+#include <locograph/apps/statistics.h>
+#ifdef LOCOGRAPH_WITH_MUJOCO
+#include <locograph/execution/simulation.h>
+#include <locograph/planners/task/task.h>
+#endif
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace locograph {
+namespace {
+
+struct CommandOptions {
+  std::string input, output, csv, controller = "whole_body", push;
+  WorldOptions world;
+  double friction = 1.0, mass_error = 0.0, contact_error_m = 0.0, initial_error_rad = 0.005;
+  unsigned seed = 0;
+  bool json = false;
+};
+
+#ifdef LOCOGRAPH_WITH_MUJOCO
+
+/// Those of the task, or of the motion's contacts where nobody's word says; each with the least
+/// friction that it has anywhere in the motion.
+std::vector<EndEffector> end_effectors(const Judging& judging, const Motion& motion) {
+  std::vector<EndEffector> result;
+  if (judging.task) result = judging.task->end_effectors();
+  for (const Stance& stance : motion.stances) {
+    for (const Contact& contact : stance.contacts) {
+      const auto named = std::find_if(result.begin(), result.end(), [&](const EndEffector& known) {
+        return (known.name.empty() ? known.link : known.name) == contact.name();
+      });
+      if (named == result.end()) {
+        result.push_back(contact.effector);
+      } else if (contact.effector.friction > 0.0) {
+        named->friction = named->friction > 0.0
+                              ? std::min(named->friction, contact.effector.friction)
+                              : contact.effector.friction;
+      }
+    }
+  }
+  return result;
+}
+
+/// "30,0.2": for how long how hard.
+void read_push(const std::string& text, SimulationOptions& options) {
+  if (text.empty()) return;
+  std::size_t comma = 0, end = 0;
+  try {
+    options.push_N = std::stod(text, &comma);
+    if (comma < text.size() && text[comma] == ',') {
+      options.push_s = std::stod(text.substr(comma + 1), &end);
+      if (comma + 1 + end == text.size()) return;
+    }
+  } catch (const std::exception&) {
+  }
+  throw Error("--push '" + text + "'", "newtons and seconds, as in 30,0.2");
+}
+
+SimulationOptions simulation_options(const CommandOptions& command) {
+  SimulationOptions options{.controller = command.controller,
+                            .friction_factor = command.friction,
+                            .mass_error = command.mass_error,
+                            .contact_error_m = command.contact_error_m,
+                            .initial_error_rad = command.initial_error_rad,
+                            .seed = command.seed};
+  read_push(command.push, options);
+  options.validate();
+  return options;
+}
+
+Json result_json(const SimulationResult& result) {
+  Json json = {
+      {"upright", result.upright},
+      {"reached_goal", result.reached_goal},
+      {"carried_out", result.carried_out},
+      {"reason", result.reason},
+      {"time_s", result.time_s},
+      {"plan_time_s", result.plan_time_s},
+      {"waited_s", result.waited_s},
+      {"max_joint_error_rad", result.max_joint_error_rad},
+      {"max_base_error_m", result.max_base_error_m},
+      {"max_base_error_rad", result.max_base_error_rad},
+      {"max_contact_slip_m", result.max_contact_slip_m},
+      {"slipping", result.slipping},
+      {"other_link", result.other_link},
+      {"other_touch_N", result.other_touch_N},
+      {"max_torque_ratio", result.max_torque_ratio},
+      {"pushed_at_s", nullptr},
+      {"controller_time", statistics_json(result.controller_s)},
+      {"real_time_factor", result.processor_s > 0.0 ? result.time_s / result.processor_s : 0.0}};
+  if (result.pushed_at_s >= 0.0) json["pushed_at_s"] = result.pushed_at_s;
+  return json;
+}
+
+ExitCode simulate_plan(const CommandOptions& command) {
+  const SimulationOptions options = simulation_options(command);
+  std::optional<Progress> progress("reading " + command.input);
+  const PlanFile file = load_plan(command.input);
+  const Judging judging = judging_of(file, command.world);
+  const Motion motion = motion_of(file.graph, file.plan);
+  progress.emplace("carrying out " + command.input);
+  const SimulationResult result = about_file(file.name, [&] {
+    return simulate(*judging.robot, end_effectors(judging, motion), judging.world->world(), motion,
+                    options);
+  });
+  progress.reset();
+  print_result(result_json(result), command.json);
+  return result.upright ? kDone : kNo;
+}
+
+#else
+
+ExitCode simulate_plan(const CommandOptions&) {
+  throw Error("this locograph is built without the physics engine MuJoCo",
+              "Debian's libmujoco-dev installed, and locograph built again");
+}
+
+#endif
+
+}  // namespace
+
+Command add_simulate(OptionParser& app) {
+  const auto options = std::make_shared<CommandOptions>();
+  CommandOptions& o = *options;
+  OptionParser parser = app.add_subcommand(
+      "simulate", "Carry a plan out in a physics engine, under a torque controller");
+  parser.add_option("PLAN", o.input, "Plan file (.g2o); - reads standard input").required();
+  add_world_options(parser, o.world);
+  parser.add_option("--controller", o.controller, "whole_body or joint_impedance").show_default();
+  parser.add_option("--friction", o.friction, "Factor of the world's friction").show_default();
+  parser.add_option("--mass-error", o.mass_error, "Share by which each link's mass may be off")
+      .show_default();
+  parser
+      .add_option("--contact-error", o.contact_error_m,
+                  "How far what may be touched is off along its normal, up or down [m]")
+      .show_default();
+  parser.add_option("--push", o.push, "Newtons and seconds of a push at the root link")
+      .value_name("N,S");
+  parser
+      .add_option("--initial-error", o.initial_error_rad,
+                  "By how much each joint may be off at the start [rad]")
+      .show_default();
+  parser.add_option("--seed", o.seed, "Of all that is drawn at random").show_default();
+  parser.add_flag("--json", o.json, "Print one JSON object");
+  return {parser, [options] { return simulate_plan(*options); }};
+}
+
+}  // namespace locograph

@@ -1,0 +1,99 @@
+// What simulate() makes of bad input, of perturbations, and of robots that fall.
+#include <gtest/gtest.h>
+#include <locograph/common/error.h>
+#include <locograph/execution/simulation.h>
+
+#include <cmath>
+#include <limits>
+
+#include "execution/standing_coman.h"
+
+namespace locograph::test {
+namespace {
+
+template <class F>
+void expect_error(F&& job, const std::string& words) {
+  try {
+    job();
+    ADD_FAILURE() << "no error about " << words;
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+  }
+}
+
+class Simulations : public testing::Test {
+ protected:
+  StandingComan coman;
+  SimulationResult run(const Motion& motion, const SimulationOptions& options = {}) const {
+    return simulate(coman.robot, coman.effectors, coman.world, motion, options);
+  }
+};
+
+TEST_F(Simulations, TheSameSeedGivesTheSameRun) {
+  const SimulationOptions options = {.mass_error = 0.05,
+                                     .contact_error_m = 0.002,
+                                     .push_N = 20.0,
+                                     .initial_error_rad = 0.003,
+                                     .seed = 7,
+                                     .record_every_s = 0.1};
+  const SimulationResult one = run(coman.standing(), options), two = run(coman.standing(), options);
+  EXPECT_TRUE(one.upright) << one.reason;
+  EXPECT_GE(one.pushed_at_s, 0.0);
+  ASSERT_EQ(one.samples.size(), two.samples.size());
+  EXPECT_EQ(one.samples.back().configuration, two.samples.back().configuration);
+  SimulationOptions other = options;
+  other.seed = 8;
+  EXPECT_NE(run(coman.standing(), other).samples.back().configuration,
+            one.samples.back().configuration);
+}
+
+TEST_F(Simulations, ARobotThatStandsOnNothingFalls) {
+  Motion motion = coman.standing();
+  motion.time_s.back() = 5.0;
+  const SimulationResult result = run(motion, {.push_N = 2000.0, .push_s = 1.0});
+  EXPECT_FALSE(result.upright);
+  EXPECT_FALSE(result.reached_goal);
+  EXPECT_NE(result.reason.find("falls"), std::string::npos) << result.reason;
+}
+
+TEST_F(Simulations, OnIceItSlipsAndThatIsTold) {
+  Motion motion = coman.standing();
+  motion.configurations.back()[0] += 0.05;  // its feet do not come along
+  const SimulationResult result = run(motion, {.friction_factor = 0.001});
+  EXPECT_FALSE(result.carried_out);
+  EXPECT_FALSE(result.reason.empty());
+}
+
+TEST_F(Simulations, RefuseWhatCannotBeCarriedOut) {
+  Motion motion = coman.standing();
+  motion.time_s.back() = 0.0;
+  expect_error([&] { run(motion); }, "not after the one before");
+  motion = coman.standing();
+  motion.stance_from.back() = -1;
+  expect_error([&] { run(motion); }, "has no stance");
+  motion = coman.standing();
+  motion.stances_only = true;
+  expect_error([&] { run(motion); }, "no times");
+  motion = coman.standing();
+  motion.configurations.back()[3] = std::numeric_limits<double>::quiet_NaN();
+  expect_error([&] { run(motion); }, "not finite");
+  motion = coman.standing();
+  motion.stances[0].contacts[0].effector.name = "third_foot";
+  expect_error([&] { run(motion); }, "third_foot");
+  motion = coman.standing();
+  for (Eigen::VectorXd& q : motion.configurations) q[2] -= 0.05;
+  expect_error([&] { run(motion); }, "50 mm deep");
+}
+
+TEST_F(Simulations, RefusePerturbationsWithoutSense) {
+  const Motion motion = coman.standing();
+  expect_error([&] { run(motion, {.controller = "magic"}); }, "controller");
+  expect_error([&] { run(motion, {.friction_factor = -1.0}); }, "friction_factor");
+  expect_error([&] { run(motion, {.mass_error = 1.0}); }, "mass_error");
+  expect_error([&] { run(motion, {.contact_error_m = std::nan("")}); }, "contact_error_m");
+  expect_error([&] { run(motion, {.push_N = -30.0}); }, "push_N");
+  expect_error([&] { run(motion, {.initial_error_rad = 1.0}); }, "initial_error_rad");
+}
+
+}  // namespace
+}  // namespace locograph::test
