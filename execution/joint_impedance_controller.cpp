@@ -37,8 +37,8 @@ void JointImpedanceController::feed_forward(const CurvePoint& reference,
                                             std::span<const ContactCommand> contacts) {
   dynamics_.inverse_dynamics(planned_, reference.velocity, reference.acceleration, {}, full_);
   for (std::size_t e = 0; e < effectors_.size(); ++e) {
-    if (!contacts[e].contact) continue;
-    const Contact& contact = *contacts[e].contact;
+    if (!contacts[e].held) continue;
+    const Contact& contact = contacts[e].held->contact();
     const EndEffector& effector = effectors_[e];
     const Eigen::Isometry3d& world_from_link = planned_.world_from_link(links_[e]);
     const Eigen::Vector3d centre = world_from_link * effector.point;

@@ -1,3 +1,4 @@
+#include <locograph/check/judged_stance.h>
 #include <locograph/common/check_option.h>
 #include <locograph/common/error.h>
 #include <locograph/execution/motion_player.h>
@@ -36,13 +37,14 @@ void PlayerOptions::validate() const {
   seconds(end_s, "end_s");
   seconds(patience_s, "patience_s");
   seconds(early_s, "early_s");
+  shares.validate();
   check_option(touch >= 0.0 && touch < 1.0, "touch", "0 or more, below 1");
   seconds(most_slip_m, "most_slip_m");
   check_option(stopping_s > 0.0 && std::isfinite(stopping_s), "stopping_s", "above 0");
 }
 
 MotionPlayer::MotionPlayer(const Robot& robot, std::span<const EndEffector> effectors,
-                           Motion motion, const PlayerOptions& options)
+                           const World& world, Motion motion, const PlayerOptions& options)
     : robot_(robot),
       motion_(std::move(motion)),
       options_(options),
@@ -71,12 +73,36 @@ MotionPlayer::MotionPlayer(const Robot& robot, std::span<const EndEffector> effe
     names_.push_back(effector.name.empty() ? effector.link : effector.name);
   }
   for (std::size_t i = 0; i + 1 < count; ++i) steps_.push_back(curve_.step(static_cast<int>(i)));
+  find_what_holds(world, effectors);
   find_intervals(effectors);
   time_s_ = motion_.time_s.front();
   reference_ = curve_.at_vertex(0);
   reference_.velocity.setZero();
   reference_.acceleration.setZero();
   set_commands();
+}
+
+/// As a stance is where it is first held.
+void MotionPlayer::find_what_holds(const World& world, std::span<const EndEffector> effectors) {
+  held_.resize(motion_.stances.size());
+  RobotState state(robot_);
+  std::vector<Eigen::Isometry3d> poses;
+  for (std::size_t i = 0; i < motion_.configurations.size(); ++i) {
+    const auto stance = static_cast<std::size_t>(motion_.stance_from[i]);
+    if (!held_[stance].empty()) continue;
+    state.update(motion_.configurations[i].data());
+    poses.clear();
+    for (std::size_t link = 0; link < robot_.links().size(); ++link) {
+      poses.push_back(state.world_from_link(static_cast<int>(link)));
+    }
+    const JudgedStance judged(robot_, world, motion_.stances[stance], effectors);
+    for (std::size_t c = 0; c < judged.contacts.size(); ++c) {
+      const JudgedBearing bearing = bearing_at(judged.contacts[c], world, poses);
+      Contact contact = motion_.stances[stance].contacts[c];
+      contact.effector.friction = bearing.contact.effector.friction;
+      held_[stance].emplace_back(contact, bearing.area, options_.shares);
+    }
+  }
 }
 
 void MotionPlayer::find_intervals(std::span<const EndEffector> effectors) {
@@ -106,12 +132,12 @@ void MotionPlayer::find_intervals(std::span<const EndEffector> effectors) {
     Interval& interval = intervals_[k];
     find_still_times(interval);
     for (std::size_t e = 0; e < effectors.size(); ++e) {
-      const Contact* held = contact_of(k, e);
+      const HeldContact* held = contact_of(k, e);
       if (!held) continue;
-      const Contact* before = k > 0 ? contact_of(k - 1, e) : held;
-      const Contact* after = k + 1 < intervals_.size() ? contact_of(k + 1, e) : held;
-      interval.closes[e] = !before || !is_same(*before, *held);
-      interval.opens[e] = !after || !is_same(*after, *held);
+      const HeldContact* before = k > 0 ? contact_of(k - 1, e) : held;
+      const HeldContact* after = k + 1 < intervals_.size() ? contact_of(k + 1, e) : held;
+      interval.closes[e] = !before || !is_same(before->contact(), held->contact());
+      interval.opens[e] = !after || !is_same(after->contact(), held->contact());
     }
     const auto any = [](const std::vector<char>& flags) {
       return std::find(flags.begin(), flags.end(), char{1}) != flags.end();
@@ -141,13 +167,12 @@ void MotionPlayer::find_still_times(Interval& interval) const {
   interval.still_after_s = time_s(interval.last) - time_s(last);
 }
 
-const Contact* MotionPlayer::contact_of(std::size_t interval, std::size_t effector) const {
+const HeldContact* MotionPlayer::contact_of(std::size_t interval, std::size_t effector) const {
   const Interval& of = intervals_[interval];
   const int contact = of.contact[effector];
   if (contact < 0) return nullptr;
   const int stance = motion_.stance_from[static_cast<std::size_t>(of.first)];
-  return &motion_.stances[static_cast<std::size_t>(stance)]
-              .contacts[static_cast<std::size_t>(contact)];
+  return &held_[static_cast<std::size_t>(stance)][static_cast<std::size_t>(contact)];
 }
 
 int MotionPlayer::stance() const {
@@ -171,8 +196,8 @@ bool MotionPlayer::measure(std::span<const TouchMeasurement> measured) {
       touch.loaded_s = 0.0;
       touch.was_lifted = true;
     }
-    const Contact* held = contact_of(now_, e);
-    if (!held || touch.given_up || !held->bears_load) continue;
+    const HeldContact* held = contact_of(now_, e);
+    if (!held || touch.given_up || !held->contact().bears_load) continue;
     // What is being unloaded may lift a little earlier.
     const bool counts = !interval.opens[e] || opening_share(interval) > kCounts;
     if (!touch.touches && counts && settled_s_ >= options_.settle_s) {
@@ -307,10 +332,10 @@ void MotionPlayer::set_commands() {
     const Touch& touch = touches_[e];
     command = {};
     command.touches = touch.touches || settled_s_ < options_.settle_s;
-    const Contact* held = contact_of(now_, e);
+    const HeldContact* held = contact_of(now_, e);
     if (touch.given_up) continue;
-    if (held && held->bears_load) {
-      command.contact = held;
+    if (held && held->contact().bears_load) {
+      command.held = held;
       if (interval.closes[e]) command.share = closing_share(interval, e);
       if (interval.opens[e]) command.share = std::min(command.share, opening_share(interval));
       set_wrench(e);
@@ -319,10 +344,10 @@ void MotionPlayer::set_commands() {
     if (held || now_ + 1 == intervals_.size()) continue;
     // Early: it touched before it should, after it was in the air.
     const double left_s = motion_.time_s[static_cast<std::size_t>(interval.last)] - time_s_;
-    const Contact* next = contact_of(now_ + 1, e);
-    if (next && next->bears_load && touch.was_lifted && touch.touches &&
+    const HeldContact* next = contact_of(now_ + 1, e);
+    if (next && next->contact().bears_load && touch.was_lifted && touch.touches &&
         left_s < options_.early_s) {
-      command.contact = next;
+      command.held = next;
       command.share = 0.0;
     }
   }

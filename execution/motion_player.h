@@ -1,7 +1,7 @@
 #pragma once
 /// Where a motion that is carried out should be now: plan time, stances, and what contacts bear.
 ///
-///     MotionPlayer player(robot, effectors, motion);
+///     MotionPlayer player(robot, effectors, world, motion);
 ///     while (!player.done()) {
 ///       player.advance(measured);                       // one for each end effector
 ///       engine.set_torques(controller.torques(configuration, velocity, player.reference(),
@@ -15,6 +15,8 @@
 /// and unloaded while the robot stands at a change of stance: as long as the plan has it stand
 /// there, and where that is shorter than PlayerOptions::dwell_s, as long as that.
 ///
+/// What contacts can bear is what of them lies on something in the world, with its friction.
+///
 /// A contact that is not found, or slips too far, is given up: it follows the reference, and the
 /// motion halts for good. advance() does not allocate. Keeps a pointer to the robot, which must
 /// outlive it; the motion is copied.
@@ -22,6 +24,7 @@
 #include <locograph/check/motion.h>
 #include <locograph/check/motion_curve.h>
 #include <locograph/execution/torque_controller.h>
+#include <locograph/world/world.h>
 
 #include <span>
 #include <string>
@@ -38,7 +41,8 @@ struct PlayerOptions {
   double early_s = 0.4;       ///< by which a contact may be early
   double touch = 0.002;       ///< that tells of a contact
   double most_slip_m = 0.03;  ///< of a contact that is kept
-  double stopping_s = 0.25;   ///< in which plan time stops, or goes on again
+  HoldingShares shares = {};
+  double stopping_s = 0.25;  ///< in which plan time stops, or goes on again
 
   /// Throws Error naming the number that is negative or not finite.
   void validate() const;
@@ -54,8 +58,8 @@ class MotionPlayer {
  public:
   /// Throws Error for a motion without times, steps whose stance is not known, and contacts of end
   /// effectors that are not among those given.
-  MotionPlayer(const Robot& robot, std::span<const EndEffector> effectors, Motion motion,
-               const PlayerOptions& options = {});
+  MotionPlayer(const Robot& robot, std::span<const EndEffector> effectors, const World& world,
+               Motion motion, const PlayerOptions& options = {});
   MotionPlayer(const MotionPlayer&) = delete;
   MotionPlayer& operator=(const MotionPlayer&) = delete;
 
@@ -98,7 +102,8 @@ class MotionPlayer {
   void move_on(bool all_bear);
   void set_reference();
   void set_commands();
-  const Contact* contact_of(std::size_t interval, std::size_t effector) const;
+  void find_what_holds(const World& world, std::span<const EndEffector> effectors);
+  const HeldContact* contact_of(std::size_t interval, std::size_t effector) const;
   double closing_share(const Interval& interval, std::size_t effector) const;
   double opening_share(const Interval& interval) const;
   void set_wrench(std::size_t effector);
@@ -110,6 +115,7 @@ class MotionPlayer {
   MotionCurve curve_;
   std::vector<CurveStep> steps_;
   std::vector<Interval> intervals_;
+  std::vector<std::vector<HeldContact>> held_;  ///< of the contacts of each stance
   std::vector<Touch> touches_;
   std::vector<ContactCommand> commands_;
   std::vector<std::string> names_;

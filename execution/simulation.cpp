@@ -26,6 +26,10 @@ double processor_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+const std::string& name_of(const EndEffector& effector) {
+  return effector.name.empty() ? effector.link : effector.name;
+}
+
 std::string millimetres(double metres) {
   return std::to_string(static_cast<int>(std::lround(1000.0 * metres))) + " mm";
 }
@@ -158,7 +162,7 @@ class Run {
                 {.timestep_s = options.player.cycle_s,
                  .friction_factor = options.friction_factor,
                  .link_mass_factors = perturbed_.mass_factors()}),
-        player_(robot, effectors, motion, options.player),
+        player_(robot, effectors, world, motion, options.player),
         controller_(make_controller()),
         state_(robot),
         planned_(robot),
@@ -235,7 +239,8 @@ class Run {
 
   void measure(const Eigen::VectorXd& v) {
     for (std::size_t e = 0; e < effectors_.size(); ++e) {
-      const Contact* held = player_.contacts()[e].contact;
+      const HeldContact* command = player_.contacts()[e].held;
+      const Contact* held = command ? &command->contact() : nullptr;
       const Eigen::Vector3d force = engine_.contact_force(static_cast<int>(e));
       touches_[e].pressing_N = held ? force.dot(held->normal.normalized()) : force.norm();
       const bool bears = touches_[e].pressing_N > kTouched_N;
@@ -245,7 +250,7 @@ class Run {
       if (slip_m <= result_.max_contact_slip_m) continue;
       result_.max_contact_slip_m = slip_m;
       result_.slip_at_s = player_.plan_time_s();
-      result_.slipping = effectors_[e].name.empty() ? effectors_[e].link : effectors_[e].name;
+      result_.slipping = name_of(effectors_[e]);
     }
   }
 
@@ -321,10 +326,9 @@ class Run {
     planned_.update(motion.configurations.back().data());
     const Stance& stance = motion.stances[static_cast<std::size_t>(motion.stance_from.back())];
     for (const Contact& contact : stance.contacts) {
-      const auto named =
-          std::find_if(effectors_.begin(), effectors_.end(), [&](const EndEffector& effector) {
-            return (effector.name.empty() ? effector.link : effector.name) == contact.name();
-          });
+      const auto named = std::find_if(
+          effectors_.begin(), effectors_.end(),
+          [&](const EndEffector& effector) { return name_of(effector) == contact.name(); });
       const auto e = static_cast<std::size_t>(named - effectors_.begin());
       const double off_m =
           (meter_.touching(state_, e, contact) - meter_.touching(planned_, e, contact)).norm();
@@ -362,6 +366,24 @@ class Run {
 };
 
 }  // namespace
+
+std::vector<EndEffector> effectors_of(const Motion& motion, std::vector<EndEffector> known) {
+  for (const Stance& stance : motion.stances) {
+    for (const Contact& contact : stance.contacts) {
+      const auto named = std::find_if(known.begin(), known.end(), [&](const EndEffector& own) {
+        return name_of(own) == contact.name();
+      });
+      if (named == known.end()) {
+        known.push_back(contact.effector);
+      } else if (contact.effector.friction > 0.0) {
+        named->friction = named->friction > 0.0
+                              ? std::min(named->friction, contact.effector.friction)
+                              : contact.effector.friction;
+      }
+    }
+  }
+  return known;
+}
 
 std::vector<std::string> controller_names() { return {"whole_body", "joint_impedance"}; }
 

@@ -51,6 +51,10 @@ struct SimulationOptions {
   void validate() const;
 };
 
+/// Of a motion: those known, each with the least friction that it has in a contact of the motion,
+/// then those of contacts that are not known.
+std::vector<EndEffector> effectors_of(const Motion& motion, std::vector<EndEffector> known);
+
 /// What controllers there are.
 std::vector<std::string> controller_names();
 

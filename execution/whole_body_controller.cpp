@@ -23,7 +23,6 @@ constexpr double kLittle = 1e-3;
 constexpr double kMostSteering_rad = 0.3;
 constexpr double kRolling_m_s = 0.02;  // from which on steering gets a wheel anywhere
 constexpr int kRounds = 3;             // of limits that are taken in
-constexpr int kFacets = 8;
 constexpr int kBaseRows = 6;
 
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
@@ -68,8 +67,6 @@ void WholeBodyOptions::validate() const {
   not_negative(seeking_m_s, "seeking_m_s");
   not_negative(seeking_rate, "seeking_rate");
   check_option(regularisation > 0.0 && std::isfinite(regularisation), "regularisation", "above 0");
-  share(friction, "friction");
-  share(area, "area");
   check_option(least_force >= 0.0 && least_force < 1.0, "least_force", "0 or more, below 1");
   share(torque, "torque");
   check_option(limit_horizon_s > 0.0 && std::isfinite(limit_horizon_s), "limit_horizon_s",
@@ -82,10 +79,11 @@ struct WholeBodyController::Effector {
   bool surface = false, round = false, ball = false;
   Eigen::Vector3d axle = Eigen::Vector3d::UnitY();  ///< of a wheel, in its link
   int wheel_joint = -1;                             ///< the active joint that turns it
-  std::unique_ptr<const WrenchCone> cone;           ///< of what is used of it
-  int unknown = 0, row = 0;                         ///< where those of the programme begin
-  Jacobian jacobian, ahead;                         ///< of the point of the end effector
-  Vector6 velocity, drift;                          ///< of that point; J' v
+  std::vector<int> components;                      ///< of its wrenches
+  int cone_rows = 0;
+  int unknown = 0, row = 0;  ///< where those of the programme begin
+  Jacobian jacobian, ahead;  ///< of the point of the end effector
+  Vector6 velocity, drift;   ///< of that point; J' v
   Eigen::MatrixXd touching;  ///< jacobian of what touches, 6 x n; along its axes
   Eigen::MatrixXd along_axes;
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
@@ -122,17 +120,14 @@ WholeBodyController::WholeBodyController(const Robot& robot, std::span<const End
       own.axle = joint.axis;
       own.wheel_joint = joint.index;
     }
-    Contact used{.effector = given, .forward = Eigen::Vector3d::UnitX()};
-    used.effector.friction *= options.friction;
-    used.effector.half_x_m *= options.area;
-    used.effector.half_y_m *= options.area;
-    own.cone = contact_kind_entry(given.kind)
-                   .wrench_cone(used, {.cone = FrictionCone::kInner, .facets = kFacets});
+    const HeldContact any(Contact{.effector = given, .forward = Eigen::Vector3d::UnitX()}, {});
+    for (const int component : any.cone().components()) own.components.push_back(component);
+    own.cone_rows = any.cone().rows();
     own.unknown = unknowns;
     own.row = rows;
-    const int components = static_cast<int>(own.cone->components().size());
+    const int components = static_cast<int>(own.components.size());
     unknowns += components;
-    rows += own.cone->rows();
+    rows += own.cone_rows;
     own.jacobian = own.ahead = Jacobian::Zero(6, n);
     own.touching = Eigen::MatrixXd::Zero(6, n);
     own.along_axes = Eigen::MatrixXd::Zero(components, n);
@@ -232,7 +227,7 @@ void WholeBodyController::follow_centre_of_mass(const Eigen::VectorXd& v,
 
 void WholeBodyController::hold(Effector& own, const ContactCommand& command,
                                const CurvePoint& reference) {
-  const Contact& contact = *command.contact;
+  const Contact& contact = command.held->contact();
   const Eigen::Isometry3d& world_from_link = state_.world_from_link(own.link);
   const Eigen::Vector3d centre = world_from_link * own.effector.point;
   Eigen::Vector3d arm = Eigen::Vector3d::Zero(), normal = contact.normal.normalized();
@@ -272,7 +267,7 @@ void WholeBodyController::hold(Effector& own, const ContactCommand& command,
   } else if (own.effector.kind == ContactKind::kWheel) {
     roll(own, contact.normal.normalized(), off, reference);
   }
-  const auto components = own.cone->components();
+  const std::vector<int>& components = own.components;
   for (std::size_t k = 0; k < components.size(); ++k) {
     const int component = components[k];
     own.along_axes.row(static_cast<Eigen::Index>(k)).noalias() =
@@ -353,7 +348,7 @@ void WholeBodyController::collect_tasks(const Eigen::VectorXd& q, const Eigen::V
     own.velocity.noalias() = own.jacobian * v;
     own.drift.noalias() = own.ahead * v;
     own.drift = (own.drift - own.velocity) / kAhead_s;
-    own.held = contacts[i].contact != nullptr;
+    own.held = contacts[i].held != nullptr;
     if (own.held) {
       hold(own, contacts[i], reference);
     } else {
@@ -413,7 +408,7 @@ bool WholeBodyController::solve_wrenches(std::span<const ContactCommand> contact
   for (std::size_t i = 0; i < effectors_.size(); ++i) {
     const Effector& own = effectors_[i];
     const ContactCommand& command = contacts[i];
-    const auto components = own.cone->components();
+    const std::vector<int>& components = own.components;
     const double share =
         command.touches ? std::clamp(command.share, kLeastShare, 1.0) : kLeastShare;
     for (std::size_t k = 0; k < components.size(); ++k) {
@@ -423,17 +418,15 @@ bool WholeBodyController::solve_wrenches(std::span<const ContactCommand> contact
       hessian(at, at) += cost;
       if (own.held) qp_->gradient()[at] -= cost * command.wrench[components[k]] / weight_N_;
     }
-    for (int r = 0; r < own.cone->rows(); ++r) {
+    for (int r = 0; r < own.cone_rows; ++r) {
       const int at = own.row + r;
       if (!own.held) {
         qp_->bound(at, -kUnbounded, kUnbounded);
         continue;
       }
-      static constexpr double kZero[6] = {};
-      const WrenchRow limit = own.cone->row(r, kZero);
+      const WrenchRow limit = command.held->row(r);
       for (std::size_t k = 0; k < components.size(); ++k) {
-        qp_->row(at)[own.unknown + static_cast<int>(k)] =
-            limit.gradient[static_cast<Eigen::Index>(k)];
+        qp_->row(at)[own.unknown + static_cast<int>(k)] = limit.gradient[components[k]];
       }
       double bound = -limit.offset / weight_N_;
       const bool pressed = contact_kind_entry(own.effector.kind).pressed;
@@ -468,14 +461,14 @@ bool WholeBodyController::solve_wrenches(std::span<const ContactCommand> contact
     if (own.held && !solved) continue;
     own.wrench.setZero();
     if (!own.held) continue;
-    const auto components = own.cone->components();
+    const std::vector<int>& components = own.components;
     for (std::size_t k = 0; k < components.size(); ++k) {
       own.wrench[components[k]] = weight_N_ * qp_->solution()[own.unknown + static_cast<int>(k)];
     }
   }
   missing_ = -asked_;
   for (const Effector& own : effectors_) {
-    const auto components = own.cone->components();
+    const std::vector<int>& components = own.components;
     for (std::size_t k = 0; own.held && k < components.size(); ++k) {
       missing_ += own.wrench[components[k]] * by_wrench_.col(own.unknown + static_cast<int>(k));
     }
@@ -486,7 +479,7 @@ bool WholeBodyController::solve_wrenches(std::span<const ContactCommand> contact
   torques_full_ = bias_;
   torques_full_.noalias() += mass_ * acceleration_;
   for (const Effector& own : effectors_) {
-    const auto components = own.cone->components();
+    const std::vector<int>& components = own.components;
     for (std::size_t k = 0; own.held && k < components.size(); ++k) {
       torques_full_.noalias() -=
           own.wrench[components[k]] * own.along_axes.row(static_cast<Eigen::Index>(k)).transpose();

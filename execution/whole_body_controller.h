@@ -27,7 +27,6 @@
 #include <locograph/execution/torque_controller.h>
 #include <locograph/robots/dynamics.h>
 #include <locograph/robots/robot_state.h>
-#include <locograph/robots/wrench_cone.h>
 #include <locograph/solvers/dense_qp.h>
 
 #include <Eigen/Cholesky>
@@ -59,9 +58,7 @@ struct WholeBodyOptions {
   double seeking_m_s = 0.04;      ///< with which a contact that is late is looked for
   double seeking_rate = 200.0;    ///< of that velocity [1/s]; times it, what presses then
 
-  double regularisation = 1e-6;  ///< of wrenches, in parts of what the base's force costs
-  double friction = 0.9;         ///< of what contacts have, that is used
-  double area = 0.95;
+  double regularisation = 1e-6;   ///< of wrenches, in parts of what the base's force costs
   double least_force = 0.01;      ///< of the weight, on everything that is pressed
   double torque = 0.98;           ///< of the efforts
   double limit_horizon_s = 0.05;  ///< in which joints may get to their limits

@@ -25,7 +25,7 @@ struct Context {
   const Eigen::VectorXd velocity = Eigen::VectorXd::Zero(robot.tangent_size());
   const Eigen::VectorXd torques = Eigen::VectorXd::Zero(robot.active_joint_count());
   const Motion motion = standing();
-  MotionPlayer player{robot, effectors, motion};
+  MotionPlayer player{robot, effectors, world, motion};
   WholeBodyController controller{robot, effectors};
   Engine engine{robot, effectors, world};
   const std::vector<TouchMeasurement> measured = std::vector<TouchMeasurement>(1);

@@ -16,8 +16,8 @@ class Controllers : public testing::Test {
  protected:
   StandingComan coman;
   WholeBodyController whole_body{coman.robot, coman.effectors};
-  const Contact left = coman.contact(0), right = coman.contact(1);
-  std::vector<ContactCommand> commands = {{.contact = &left}, {.contact = &right}};
+  const HeldContact left{coman.contact(0), {}}, right{coman.contact(1), {}};
+  std::vector<ContactCommand> commands = {{.held = &left}, {.held = &right}};
   CurvePoint rest = {coman.configuration, zero(), zero()};
 
   Eigen::VectorXd zero() const { return Eigen::VectorXd::Zero(coman.robot.tangent_size()); }
@@ -52,7 +52,7 @@ TEST_F(Controllers, AContactThatIsUnloadedBearsLess) {
   commands[1].share = 0.05;
   torques();
   EXPECT_LT(whole_body.wrench(1)[2], 0.1 * whole_body.wrench(0)[2] + 0.05 * coman.weight_N());
-  commands[1].contact = nullptr;
+  commands[1].held = nullptr;
   torques();
   EXPECT_EQ(whole_body.wrench(1).norm(), 0.0);
 }
@@ -97,7 +97,7 @@ TEST_F(Controllers, AJointThatRunsIntoItsLimitIsBraked) {
 TEST_F(Controllers, DoNotAllocate) {
   if (!allocations_are_counted()) GTEST_SKIP();
   JointImpedanceController impedance(coman.robot, coman.effectors);
-  MotionPlayer player(coman.robot, coman.effectors, coman.standing());
+  MotionPlayer player(coman.robot, coman.effectors, coman.world, coman.standing());
   const std::vector<TouchMeasurement> measured(2, {.pressing_N = 300.0});
   const Eigen::VectorXd still = zero();
   const auto cycle = [&] {
@@ -127,7 +127,7 @@ TEST_F(Controllers, BothKeepTheRobotStandingInTheEngine) {
 
 TEST_F(Controllers, RefuseOptionsAndCommandsThatMakeNoSense) {
   EXPECT_THROW(WholeBodyController(coman.robot, coman.effectors, {.joint_weight = 0.0}), Error);
-  EXPECT_THROW(WholeBodyController(coman.robot, coman.effectors, {.friction = 1.5}), Error);
+  EXPECT_THROW(WholeBodyController(coman.robot, coman.effectors, {.torque = 1.5}), Error);
   EXPECT_THROW(WholeBodyController(coman.robot, coman.effectors, {.swing_weight = -1.0}), Error);
   commands.pop_back();
   EXPECT_THROW(static_cast<void>(torques()), Error);

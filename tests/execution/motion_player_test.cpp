@@ -33,7 +33,7 @@ class Step : public testing::Test {
 };
 
 TEST_F(Step, AContactIsUnloadedBeforeItOpensAndLoadedAfterItCloses) {
-  MotionPlayer player(coman.robot, coman.effectors, step(), options);
+  MotionPlayer player(coman.robot, coman.effectors, coman.world, step(), options);
   EXPECT_EQ(player.contacts()[1].share, 1.0);
   play(player, 0.25);
   EXPECT_NEAR(player.contacts()[1].share, 0.5, 0.05);
@@ -42,12 +42,12 @@ TEST_F(Step, AContactIsUnloadedBeforeItOpensAndLoadedAfterItCloses) {
   EXPECT_EQ(player.contacts()[0].share, 1.0);
   measured[1].pressing_N = 0.0;
   play(player, 1.0);
-  EXPECT_EQ(player.contacts()[1].contact, nullptr);
+  EXPECT_EQ(player.contacts()[1].held, nullptr);
   EXPECT_EQ(player.stance(), 1);
   play(player, 1.499);
   measured[1].pressing_N = 300.0;
   play(player, 1.51);
-  ASSERT_NE(player.contacts()[1].contact, nullptr);
+  ASSERT_NE(player.contacts()[1].held, nullptr);
   EXPECT_LT(player.contacts()[1].share, 0.05);
   while (!player.done()) player.advance(measured);
   EXPECT_TRUE(player.at_end());
@@ -56,14 +56,14 @@ TEST_F(Step, AContactIsUnloadedBeforeItOpensAndLoadedAfterItCloses) {
 }
 
 TEST_F(Step, ALateContactIsWaitedForAndThenGivenUp) {
-  MotionPlayer player(coman.robot, coman.effectors, step(), options);
+  MotionPlayer player(coman.robot, coman.effectors, coman.world, step(), options);
   play(player, 0.6);
   measured[1].pressing_N = 0.0;
   play(player, 1.49);
   for (int i = 0; i < 600; ++i) player.advance(measured);
   EXPECT_NEAR(player.plan_time_s(), 1.5, 0.002);
   EXPECT_FALSE(player.contacts()[1].touches);
-  EXPECT_NE(player.contacts()[1].contact, nullptr);
+  EXPECT_NE(player.contacts()[1].held, nullptr);
   EXPECT_TRUE(player.halted().empty());
   for (int i = 0; i < 1000; ++i) player.advance(measured);
   EXPECT_EQ(player.halted(), "right_foot finds no contact");
@@ -72,20 +72,20 @@ TEST_F(Step, ALateContactIsWaitedForAndThenGivenUp) {
 }
 
 TEST_F(Step, AnEarlyContactIsTakenOnceItWasInTheAir) {
-  MotionPlayer player(coman.robot, coman.effectors, step(), options);
+  MotionPlayer player(coman.robot, coman.effectors, coman.world, step(), options);
   play(player, 1.3);
-  EXPECT_EQ(player.contacts()[1].contact, nullptr) << "it never left the ground";
-  MotionPlayer lifting(coman.robot, coman.effectors, step(), options);
+  EXPECT_EQ(player.contacts()[1].held, nullptr) << "it never left the ground";
+  MotionPlayer lifting(coman.robot, coman.effectors, coman.world, step(), options);
   play(lifting, 0.6);
   measured[1].pressing_N = 0.0;
   play(lifting, 1.3);
   measured[1].pressing_N = 50.0;
   play(lifting, 1.35);
-  EXPECT_NE(lifting.contacts()[1].contact, nullptr);
+  EXPECT_NE(lifting.contacts()[1].held, nullptr);
 }
 
 TEST_F(Step, PlanTimeStopsWhereAContactIsLostAndGoesOnWhereItIsBack) {
-  MotionPlayer player(coman.robot, coman.effectors, step(), options);
+  MotionPlayer player(coman.robot, coman.effectors, coman.world, step(), options);
   play(player, 0.8);
   EXPECT_GT(player.reference().velocity.norm(), 0.0);
   measured[0].pressing_N = 0.0;
@@ -99,19 +99,19 @@ TEST_F(Step, PlanTimeStopsWhereAContactIsLostAndGoesOnWhereItIsBack) {
 }
 
 TEST_F(Step, AContactThatSlipsIsGivenUp) {
-  MotionPlayer player(coman.robot, coman.effectors, step(), options);
+  MotionPlayer player(coman.robot, coman.effectors, coman.world, step(), options);
   play(player, 0.2);
   measured[0].slip_m = 0.05;
   player.advance(measured);
   EXPECT_EQ(player.halted(), "left_foot slips");
-  EXPECT_EQ(player.contacts()[0].contact, nullptr);
+  EXPECT_EQ(player.contacts()[0].held, nullptr);
 }
 
 TEST_F(Step, WhereAPlanHasNoTimeToLoadItIsGivenSome) {
   Motion motion = step();
   motion.configurations[1] = motion.configurations[2];  // moves until the change
   motion.configurations[3] = motion.configurations[2];
-  MotionPlayer player(coman.robot, coman.effectors, motion, options);
+  MotionPlayer player(coman.robot, coman.effectors, coman.world, motion, options);
   play(player, 0.4999);
   for (int i = 0; i < 100; ++i) player.advance(measured);
   EXPECT_NEAR(player.plan_time_s(), 0.5, 1e-9);
