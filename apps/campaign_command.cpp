@@ -38,7 +38,7 @@ struct CampaignOptions {
   std::vector<std::string> segment_planners;
   int runs = 0;
   unsigned seed = 0;
-  bool stances_only = false;
+  bool stances_only = false, simulate = false;
   double timeout_s = 0.0, move_contacts_m = 0.0, margin_factor = 1.0;
   int threads = 0;  ///< 0: an even share of the cores for each process
   int processes = 1;
@@ -62,6 +62,12 @@ struct CampaignOptions {
     if (threads > 0) words.insert(words.end(), {"--threads", std::to_string(threads)});
     return words;
   }
+  /// All that tells this campaign from others.
+  std::vector<std::string> all() const {
+    std::vector<std::string> words = passed_on();
+    if (simulate) words.emplace_back("--simulate");
+    return words;
+  }
 };
 
 std::string joined(const std::vector<std::string>& words) {
@@ -70,7 +76,7 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-/// One seed that is being planned.
+/// One seed that is being planned, and then carried out where that is asked for.
 class PlanProcess {
  public:
   PlanProcess(const CampaignOptions& options, unsigned seed, const std::filesystem::path& folder)
@@ -79,25 +85,42 @@ class PlanProcess {
         plan_(folder / ("plan_" + std::to_string(seed) + ".g2o")),
         output_(folder / ("output_" + std::to_string(seed))),
         errors_(folder / ("errors_" + std::to_string(seed))),
-        child_(kThisProgram, arguments(options), output_, errors_) {}
+        simulated_(folder / ("simulated_" + std::to_string(seed))),
+        simulate_(options.simulate),
+        child_(std::make_unique<ChildProcess>(kThisProgram, arguments(options), output_, errors_)) {
+  }
   PlanProcess(const PlanProcess&) = delete;
   PlanProcess& operator=(const PlanProcess&) = delete;
   ~PlanProcess() {
-    child_.end();
+    child_->end();
     std::error_code ignored;
-    for (const auto& file : {plan_, output_, errors_}) std::filesystem::remove(file, ignored);
+    for (const auto& file : {plan_, output_, errors_, simulated_}) {
+      std::filesystem::remove(file, ignored);
+    }
   }
 
   /// Nothing while it plans. Throws Error with what the process said when it did not get to an
   /// answer.
   std::optional<CampaignRun> result() {
-    const std::optional<int> code = child_.exit_code();
+    const std::optional<int> code = child_->exit_code();
     if (!code) return std::nullopt;
     if (*code != kDone && *code != kNo) fail(*code);
-    const Json plan = Json::parse(read_file(output_), nullptr, false);
-    if (!plan.is_object()) fail(*code);
-    CampaignRun run = campaign_run(plan, seed_, asked_planner_);
-    if (run.solved != (*code == kDone)) fail(*code);
+    if (!plan_code_) {
+      plan_code_ = code;
+      answer_ = Json::parse(read_file(output_), nullptr, false);
+      if (!answer_.is_object()) fail(*code);
+      if (simulate_ && *code == kDone) {
+        const std::vector<std::string> words = {"simulate", plan_.string(), "--json",
+                                                "--quiet",  "--seed",       std::to_string(seed_)};
+        child_ = std::make_unique<ChildProcess>(kThisProgram, words, simulated_, errors_);
+        return std::nullopt;
+      }
+    } else {
+      answer_["simulation"] = Json::parse(read_file(simulated_), nullptr, false);
+      if (!answer_["simulation"].is_object()) fail(*code);
+    }
+    CampaignRun run = campaign_run(answer_, seed_, asked_planner_);
+    if (run.solved != (*plan_code_ == kDone)) fail(*plan_code_);
     return run;
   }
 
@@ -131,8 +154,11 @@ class PlanProcess {
 
   unsigned seed_;
   std::string asked_planner_;
-  std::filesystem::path plan_, output_, errors_;
-  ChildProcess child_;
+  std::filesystem::path plan_, output_, errors_, simulated_;
+  bool simulate_;
+  std::optional<int> plan_code_;
+  Json answer_;  ///< of `plan`
+  std::unique_ptr<ChildProcess> child_;
 };
 
 /// Runs the seeds that the table does not have, and saves it after each. Ends early when it is
@@ -277,7 +303,7 @@ std::vector<unsigned> seeds_of(const CampaignOptions& options) {
 }
 
 CampaignTable table_of(const CampaignOptions& options, const Scenario& scenario) {
-  CampaignTable table({scenario.source, options.planner, joined(options.passed_on())});
+  CampaignTable table({scenario.source, options.planner, joined(options.all())});
   if (options.csv.empty()) return table;
   if (is_standard_output(options.csv)) {
     throw Error(options.csv, 0, "standard output as a table that grows", "a file");
@@ -291,6 +317,9 @@ ExitCode run_campaign(const CampaignOptions& options) {
   if (options.scenario == "-") {
     throw Error("standard input", 0, "can be read by one run only",
                 "a scenario file, or a name that `locograph list scenarios` gives");
+  }
+  if (options.simulate && options.stances_only) {
+    throw Error("--simulate with --stances-only", "whole plans, which have a motion");
   }
   const std::vector<unsigned> seeds = seeds_of(options);
   // Where it is wrong that is said before anything runs.
@@ -325,6 +354,8 @@ Command add_campaign(OptionParser& app) {
       .show_default();
   parser.add_option("--planner", o.planner, "As for plan");
   parser.add_flag("--stances-only", o.stances_only, "As for plan: no motion between stances");
+  parser.add_flag("--simulate", o.simulate,
+                  "Carry each plan out, as simulate does; the seed is that of the plan");
   parser.add_option("--segment-planner", o.segment_planners, "As for plan")
       .one_of(segment_planner_names())
       .value_name("NAME")

@@ -75,7 +75,8 @@ CampaignRun campaign_run(const Json& plan, unsigned seed, const std::string& pla
     for (std::size_t q = 0; q < kCampaignQuantities.size(); ++q) {
       const Json::json_pointer place(kCampaignQuantities[q].place);
       if (!plan.contains(place) || plan.at(place).is_null()) continue;
-      run.values[q] = plan.at(place).get<double>();
+      const Json& told = plan.at(place);
+      run.values[q] = told.is_boolean() ? (told.get<bool>() ? 1.0 : 0.0) : told.get<double>();
     }
     return run;
   } catch (const Json::exception& wrong) {

@@ -22,14 +22,14 @@
 
 namespace locograph {
 
-/// A number that `plan --json` tells.
+/// A number that `plan --json` tells, or `simulate --json`, whose answer is its `simulation`.
 struct CampaignQuantity {
   const char* name;
-  const char* place;      ///< JSON pointer into what `plan` prints
+  const char* place;      ///< JSON pointer into what `plan` prints; true counts as 1
   bool whole_plans_only;  ///< says nothing of plans that are stances only
 };
 
-inline constexpr std::array<CampaignQuantity, 24> kCampaignQuantities = {{
+inline constexpr std::array<CampaignQuantity, 33> kCampaignQuantities = {{
     {"planning_time", "/time/total", false},
     {"transition_time", "/time/transitions", false},
     {"iterations", "/iterations", false},
@@ -54,6 +54,15 @@ inline constexpr std::array<CampaignQuantity, 24> kCampaignQuantities = {{
     {"rrt_connect_time", "/segments_by_planner/rrt_connect/seconds", true},
     {"atlas_rrt_star_segments", "/segments_by_planner/atlas_rrt_star/count", true},
     {"atlas_rrt_star_time", "/segments_by_planner/atlas_rrt_star/seconds", true},
+    {"carried_out", "/simulation/carried_out", true},
+    {"reached_goal", "/simulation/reached_goal", true},
+    {"upright", "/simulation/upright", true},
+    {"max_base_error_m", "/simulation/max_base_error_m", true},
+    {"max_contact_slip_m", "/simulation/max_contact_slip_m", true},
+    {"max_torque_ratio", "/simulation/max_torque_ratio", true},
+    {"controller_time", "/simulation/controller_time/mean", true},
+    {"controller_p99_time", "/simulation/controller_time/p99", true},
+    {"real_time_factor", "/simulation/real_time_factor", true},
 }};
 
 struct CampaignRun {
