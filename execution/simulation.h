@@ -60,6 +60,7 @@ struct SimulationSample {
   Eigen::VectorXd configuration, velocity, torques;
   Eigen::VectorXd planned;              ///< where the reference is
   std::vector<Eigen::Vector3d> forces;  ///< on each end effector [N, world]
+  std::vector<Eigen::Vector3d> moments;  ///< of them, about its point [N m, world]
 };
 
 struct SimulationResult {
