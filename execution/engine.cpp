@@ -257,9 +257,9 @@ class Engine::Implementation {
   Model model;
   Data data;
   Coordinates coordinates;
-  std::vector<int> motor;             // of each active joint, -1: none
-  std::vector<int> effector_of_geom;  // -1: none
-  std::vector<int> body;              // MuJoCo's, of each body of the tree
+  std::vector<int> motor;                               // of each active joint, -1: none
+  std::vector<int> effector_of_geom;                    // -1: none
+  std::vector<int> body;                                // MuJoCo's, of each body of the tree
   std::vector<std::pair<int, Eigen::Vector3d>> points;  // of end effectors: MuJoCo's body, in it
   std::vector<Eigen::Vector3d> forces, moments;
   Eigen::Vector3d total = Eigen::Vector3d::Zero();

@@ -81,12 +81,11 @@ Graph record_graph(const Graph& graph, const Plan& plan, const Record& record) {
     const VertexId<VertexConfiguration> configuration{result.slot_of(i)};
     const auto stance = static_cast<std::size_t>(record.motion.stance_from[at]);
     const auto wrenches = result.add_vertex(
-        count + i,
-        wrenches_vertex(parameters, *parameters.get<StanceParameter>(stances.at(stance)),
-                        record.motion.wrenches[at]));
+        count + i, wrenches_vertex(parameters, *parameters.get<StanceParameter>(stances.at(stance)),
+                                   record.motion.wrenches[at]));
     result.add_edge(EdgePlanTracking(record.planned[at], ones), configuration);
-    result.add_edge(EdgeMeasurement(robot, record.plan_time_s[at], record.torques[at]), configuration,
-                    wrenches);
+    result.add_edge(EdgeMeasurement(robot, record.plan_time_s[at], record.torques[at]),
+                    configuration, wrenches);
   }
   return result;
 }

@@ -9,8 +9,8 @@
 /// The file has the robot, world and scenario of the plan, the word `recorded` in its PARAMS_PLAN
 /// and a PARAMS_RECORD that names the plan's file. Of each moment it has a VERTEX_CONFIGURATION
 /// with its velocity as slopes, a VERTEX_WRENCHES at the contacts of its stance, an
-/// EDGE_PLAN_TRACKING with the configuration that the plan had it in then, and an EDGE_MEASUREMENT with
-/// the time of the plan and the torques. Nothing in it has to hold: no constraints.
+/// EDGE_PLAN_TRACKING with the configuration that the plan had it in then, and an EDGE_MEASUREMENT
+/// with the time of the plan and the torques. Nothing in it has to hold: no constraints.
 
 #include <locograph/planners/plan/plan.h>
 
@@ -23,10 +23,10 @@ namespace locograph {
 
 struct Record {
   Motion motion;  ///< measured; slopes, and wrenches at the contacts of each stance, of all moments
-  std::vector<double> plan_time_s;        ///< of each moment
-  std::vector<Eigen::VectorXd> planned;   ///< configurations where the plan had the robot then
-  std::vector<Eigen::VectorXd> torques;   ///< of the active joints
-  std::filesystem::path plan_file = {};   ///< empty: not known
+  std::vector<double> plan_time_s;       ///< of each moment
+  std::vector<Eigen::VectorXd> planned;  ///< configurations where the plan had the robot then
+  std::vector<Eigen::VectorXd> torques;  ///< of the active joints
+  std::filesystem::path plan_file = {};  ///< empty: not known
 };
 
 /// graph, plan: what was carried out. Throws Error for a record without moments, of other numbers

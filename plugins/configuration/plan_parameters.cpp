@@ -56,8 +56,7 @@ void PlanParameter::read(FieldReader& in) {
   while (!in.at_end()) {
     const std::string word = in.word();
     if ((word == "stances_only" && stances_only) || (word == "incomplete" && incomplete) ||
-        (word == "recorded" && recorded) ||
-        (word == "moved_contacts" && moves.most_m > 0.0) ||
+        (word == "recorded" && recorded) || (word == "moved_contacts" && moves.most_m > 0.0) ||
         (word == "execution_margin" && margin != ExecutionMargin::none())) {
       in.fail("a second '" + word + "'", "it once");
     }

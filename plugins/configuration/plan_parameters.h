@@ -7,8 +7,8 @@
 ///     PARAMS_PLAN 1 3 moved_contacts 0.05 3 1  (of the scenario's start and goals: ContactMoves)
 ///     PARAMS_PLAN 1 3 execution_margin 0.65 0.65 0.9 0.02 0.03 0.5
 ///                                              (that it keeps: ExecutionMargin, in its order)
-///     PARAMS_PLAN 1 3 recorded                 (no plan: what was measured when one was carried out)
-///     PARAMS_SCENARIO 3 centauro_drive         (made for this scenario: a name, or a file)
+///     PARAMS_PLAN 1 3 recorded                 (no plan: what was measured when one was carried
+///     out) PARAMS_SCENARIO 3 centauro_drive         (made for this scenario: a name, or a file)
 ///     PARAMS_CONTACTS 4 ../standing.xml        (a posture for this contacts file)
 ///     PARAMS_RECORD 6 ../plan.g2o              (measured when this plan was carried out)
 ///

@@ -33,14 +33,15 @@ void EdgeMeasurement::bind(const Parameters& parameters) {
 }
 
 void EdgeMeasurement::error(const ConfigurationState& q, const WrenchesState& wrenches,
-                       Eigen::Ref<Eigen::VectorXd> e) const {
+                            Eigen::Ref<Eigen::VectorXd> e) const {
   require_rows(kTag, e.size(), q.model().active_joint_count());
   require_same_robot(kTag, q.robot, wrenches.contacts->front()->robot);
   static_torques(q.kinematics, wrenches, e);
   e = torques - e;
 }
 
-RowLabel EdgeMeasurement::row_label(int row, const VertexConfiguration& q, const VertexWrenches&) const {
+RowLabel EdgeMeasurement::row_label(int row, const VertexConfiguration& q,
+                                    const VertexWrenches&) const {
   const Joint& joint = q.robot->robot->active_joint(row);
   return {joint.name + " torque", joint.type == JointType::kPrismatic ? "N" : "N m"};
 }
