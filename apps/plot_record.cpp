@@ -85,8 +85,8 @@ PlotScript plot_record(const PlanFile& file) {
   if (base) {
     add_panel(plot, "base, off from the plan (lower is better)", "error [mm], [mrad]", "base",
               motion.time_s,
-              {series_of("position [mm]", thousandfold(errors.base_m)),
-               series_of("rotation [mrad]", thousandfold(errors.base_rad))},
+              {series_of("position, mm", thousandfold(errors.base_m)),
+               series_of("rotation, mrad", thousandfold(errors.base_rad))},
               1e-3);
   }
   add_panel(plot, "joints, off from the plan (lower is better)", "|error| [mrad], [mm]", "joint",
