@@ -22,14 +22,14 @@ class SimulateTest : public testing::Test {
   static inline Outcome simulated;
 };
 
-std::vector<std::string> lines_of(const std::string& text) {
+std::vector<std::string> text_lines(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   return lines;
 }
 
-bool contains(const std::string& text, const std::string& part) {
+bool has_part(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
@@ -38,22 +38,22 @@ TEST_F(SimulateTest, WritesItsRecordAsAGraph) {
   const nlohmann::json json = simulated.json();
   EXPECT_EQ(json["output"], "runs/r.g2o");
   const std::string text = runner->read("runs/r.g2o");
-  EXPECT_TRUE(contains(text, "PARAMS_PLAN 1 3 recorded"));
-  EXPECT_TRUE(contains(text, "PARAMS_RECORD 6 ../drive.g2o\n"));
-  EXPECT_TRUE(contains(text, "PARAMS_SCENARIO 3 centauro_drive\n"));
+  EXPECT_TRUE(has_part(text, "PARAMS_PLAN 1 3 recorded"));
+  EXPECT_TRUE(has_part(text, "PARAMS_RECORD 6 ../drive.g2o\n"));
+  EXPECT_TRUE(has_part(text, "PARAMS_SCENARIO 3 centauro_drive\n"));
   int moments = 0;
-  for (const std::string& line : lines_of(text)) {
+  for (const std::string& line : text_lines(text)) {
     moments += line.starts_with("VERTEX_CONFIGURATION ") ? 1 : 0;
   }
   EXPECT_NEAR(moments, json["time_s"].get<double>() / 0.02, 2.0);
 }
 
 TEST_F(SimulateTest, WritesATable) {
-  const std::vector<std::string> lines = lines_of(runner->read("runs/r.csv"));
+  const std::vector<std::string> lines = text_lines(runner->read("runs/r.csv"));
   ASSERT_GT(lines.size(), 2U);
   EXPECT_TRUE(lines.front().starts_with("time_s,plan_time_s,stance,base_x,")) << lines.front();
   for (const char* column : {",planned_base_qw,", ",planned_", ",torque_", ",force_"}) {
-    EXPECT_TRUE(contains(lines.front(), column)) << column;
+    EXPECT_TRUE(has_part(lines.front(), column)) << column;
   }
   const auto fields = [](const std::string& line) { return std::ranges::count(line, ','); };
   for (const std::string& line : lines) EXPECT_EQ(fields(line), fields(lines.front()));
@@ -79,7 +79,7 @@ TEST_F(SimulateTest, InfoTellsWhatTheRecordIs) {
 TEST_F(SimulateTest, CheckDoesNotJudgeTheRecord) {
   const Outcome text = runner->run("check runs/r.g2o");
   EXPECT_EQ(text.exit_code, 1);
-  EXPECT_TRUE(contains(text.out, "runs/r.g2o: NOT judged: the record of the plan drive.g2o"))
+  EXPECT_TRUE(has_part(text.out, "runs/r.g2o: NOT judged: the record of the plan drive.g2o"))
       << text.out;
   const Outcome outcome = runner->run("check runs/r.g2o --json");
   EXPECT_EQ(outcome.exit_code, 1);
@@ -107,18 +107,18 @@ TEST_F(SimulateTest, TheRecordIsDrawnAndShownWithoutItsPlan) {
     const std::string svg = runner->read("out.svg");
     for (const char* title : {"base, off from the plan", "joints, off from the plan",
                               "contact forces that were measured", "joint torques"}) {
-      EXPECT_TRUE(contains(svg, title)) << title;
+      EXPECT_TRUE(has_part(svg, title)) << title;
     }
   }
   const Outcome viewed = runner->run("view away/r.g2o -o out.html");
   std::filesystem::rename(runner->folder() / "hidden.g2o", runner->folder() / "drive.g2o");
-  if (contains(viewed.err, "the viewer's page is missing")) GTEST_SKIP() << "no viewer";
+  if (has_part(viewed.err, "the viewer's page is missing")) GTEST_SKIP() << "no viewer";
   EXPECT_EQ(viewed.exit_code, 0) << viewed.err;
   const std::string page = runner->read("out.html");
   for (const char* member : {"\"recorded\":true", "\"reference\":", "\"torques\":", "base off"}) {
-    EXPECT_TRUE(contains(page, member)) << member;
+    EXPECT_TRUE(has_part(page, member)) << member;
   }
-  EXPECT_FALSE(contains(page, "\"violations\":[{"));
+  EXPECT_FALSE(has_part(page, "\"violations\":[{"));
 }
 
 TEST_F(SimulateTest, RefusesBadOutputsBeforeItBegins) {

@@ -10,7 +10,7 @@
 namespace locograph {
 namespace {
 
-TypeRegistry robot_types() {
+TypeRegistry record_types() {
   TypeRegistry types;
   add_robot_types(types);
   return types;
@@ -56,7 +56,7 @@ TEST_F(RecordTest, ComesBackFromItsFileToTheLastBit) {
   std::filesystem::create_directories(folder.file("results"));
   const std::filesystem::path file = folder.file("results/drive.g2o");
   write_graph(record_graph(graph, plan, record), file);
-  const Graph read = read_graph(file, robot_types());
+  const Graph read = read_graph(file, record_types());
   const Plan again = plan_of(read);
   EXPECT_TRUE(again.recorded);
   EXPECT_FALSE(plan.recorded);
@@ -133,7 +133,7 @@ TEST_F(RecordTest, NamesTheLineOfBadInput) {
     std::string changed = text;
     changed.replace(changed.find(from), from.size(), to);
     try {
-      read_graph_text(changed, "r.g2o", folder.path(), robot_types());
+      read_graph_text(changed, "r.g2o", folder.path(), record_types());
     } catch (const Error& error) {
       EXPECT_GT(error.line(), 0) << error.what();
       return std::string(error.what());
