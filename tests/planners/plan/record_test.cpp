@@ -112,7 +112,7 @@ TEST_F(RecordTest, IsRefusedWhereSomethingIsMissing) {
   Graph lacking = record_graph(graph, plan, record);
   for (int edge = 0; edge < lacking.edge_slots(); ++edge) {
     if (lacking.edge_vertices(edge).size() != 2) continue;
-    lacking.remove_edge(edge);
+    lacking.remove_edge(EdgeId{edge});
     break;
   }
   try {
