@@ -134,7 +134,9 @@ struct RecordContext : DriveContext {
     return all;
   }();
   const Record record = [this] {
-    Record all{.motion = motion_of(graph, plan), .planned = planned};
+    Record all;
+    all.motion = motion_of(graph, plan);
+    all.planned = planned;
     all.plan_time_s = all.motion.time_s;
     all.motion.wrenches.clear();
     for (std::size_t i = 0; i < planned.size(); ++i) {
