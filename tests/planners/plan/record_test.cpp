@@ -148,7 +148,7 @@ TEST_F(RecordTest, NamesTheLineOfBadInput) {
   const std::string line = text.substr(at, text.find('\n', at) - at);
   const std::string start =
       line.substr(0, line.find(' ', line.find(' ', line.find(' ', line.find(' ') + 1) + 1) + 1));
-  EXPECT_NE(message(start + " ", start + " -").find("of a plan's time"), std::string::npos);
+  EXPECT_NE(message(start + " ", start + " -1").find("of a plan's time"), std::string::npos);
 }
 
 }  // namespace
