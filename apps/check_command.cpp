@@ -5,6 +5,7 @@
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_file.h>
 #include <locograph/apps/progress.h>
+#include <locograph/apps/record_json.h>
 #include <locograph/common/deadline.h>
 
 #include <cmath>
@@ -39,10 +40,34 @@ std::string task_text(const Judging& judging, const CheckReport& report) {
          counted(ends.goals, "goal", "goals") + '\n';
 }
 
+/// What was measured is not judged by rules for plans.
+ExitCode tell_record(const PlanFile& file, bool as_json) {
+  const Json record = record_json(file);
+  if (as_json) {
+    print_result({{"recorded", true},
+                  {"feasible", nullptr},
+                  {"configurations", file.plan.slots.size()},
+                  {"record", record}},
+                 true);
+  } else {
+    const std::string plan =
+        record["plan"].is_null() ? "a plan" : "the plan " + record["plan"].get<std::string>();
+    print_text(
+        file.name + ": NOT judged: the record of " + plan + " carried out, " +
+        counted(static_cast<long>(file.plan.slots.size()), "configuration", "configurations") +
+        "\n");
+  }
+  return kNo;
+}
+
 ExitCode check(const CommandOptions& options) {
   const Stopwatch total;
   std::optional<Progress> progress("reading " + options.input);
   const PlanFile file = load_plan(options.input, options.plugins);
+  if (file.plan.recorded) {
+    progress.reset();
+    return tell_record(file, options.json);
+  }
   progress.emplace("checking " + options.input);
   Judging judging = judging_of(file, options.world);
   judging.options.min_clearance_m = options.clearance_m;

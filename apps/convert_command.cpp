@@ -51,6 +51,7 @@ ExitCode convert(const CommandOptions& options) {
   check_output(options.output, {options.input}, options.json);
   std::optional<Progress> progress("converting " + options.input);
   const PlanFile plan = read_plan(options.input, from, options.plugins);
+  require_plan(plan.plan, plan.name);
   check_not_input(options.output, files_of(plan));
   if (to == Format::kGraph) {
     write_graph(plan.graph, options.output);

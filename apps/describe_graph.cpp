@@ -2,7 +2,9 @@
 #include <locograph/apps/describe.h>
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/margin_json.h>
+#include <locograph/apps/plan_file.h>
 #include <locograph/apps/progress.h>
+#include <locograph/apps/record_json.h>
 #include <locograph/apps/violations_json.h>
 #include <locograph/core/connectivity.h>
 #include <locograph/core/graph_file.h>
@@ -97,11 +99,11 @@ Json describe_graph(const std::filesystem::path& path, const TypeRegistry& types
     throw Error(path.string(), 0,
                 "no line is a known vertex or edge; the first: " + report.unknown.front(), "");
   }
-  Json json = {{"file", path.string()}, {"kind", "graph"}};
+  const auto plan = graph.parameters().find<PlanParameter>();
+  const bool recorded = plan && plan->recorded;
+  Json json = {{"file", path.string()}, {"kind", recorded ? "record" : "graph"}};
   json.update(content_json(graph));
-  if (const auto plan = graph.parameters().find<PlanParameter>()) {
-    json["execution_margin"] = margin_json(plan->margin);
-  }
+  if (plan) json["execution_margin"] = margin_json(plan->margin);
   json["vertices_from_edges"] = report.vertices_from_edges;
   json["indefinite_information"] = report.indefinite_information;
   if (report.indefinite_information > 0) {
@@ -110,6 +112,10 @@ Json describe_graph(const std::filesystem::path& path, const TypeRegistry& types
   about_file(path.string(), [&] { add_violations(json, graph); });
   if (json.contains("violations")) {
     for (Json& violation : json["violations"]) violation = std::string(violation["text"]);
+  }
+  // Where it is whole: what it says as a plan is asked last.
+  if (recorded && report.unknown.empty()) {
+    json["record"] = record_json(plan_in(std::move(graph), path.string()));
   }
   json["unknown_lines"] = report.unknown.size();
   if (!report.unknown.empty()) json["first_unknown"] = report.unknown.front();

@@ -125,6 +125,7 @@ struct PlanBefore {
 std::optional<PlanBefore> plan_before(const Graph& graph, const std::string& file) {
   if (!graph.parameters().find<PlanParameter>()) return {};
   PlanBefore before{plan_of_file(graph, file), {}};
+  require_plan(before.plan, file);
   if (before.plan.stances_only) return {};
   before.motion = motion_of_slopes(graph, before.plan);
   return before;

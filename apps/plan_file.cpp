@@ -25,6 +25,10 @@ PlanFile load_plan(const std::string& file, const std::vector<std::string>& plug
   return plan_in(read_input_graph(file, graph_types(plugins)), input_name(file));
 }
 
+void require_plan(const Plan& plan, const std::string& file) {
+  if (plan.recorded) throw Error(file, 0, "is the record of a plan carried out", "a plan");
+}
+
 void require_increasing_times(const PlanFile& file) {
   const auto time_s = [&file](int slot) {
     return file.graph.vertex(VertexId<VertexConfiguration>{slot}).time_s;
@@ -51,6 +55,7 @@ std::vector<std::filesystem::path> files_of(const PlanFile& file) {
     files.emplace_back(origin->scenario);
   }
   if (const auto contacts = parameters.find<ContactsParameter>()) files.push_back(contacts->file);
+  if (const auto record = parameters.find<RecordParameter>()) files.push_back(record->plan);
   return files;
 }
 

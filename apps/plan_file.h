@@ -31,6 +31,9 @@ PlanFile load_plan(const std::string& file, const std::vector<std::string>& plug
 /// The plan in a graph that was read from this file, likewise.
 PlanFile plan_in(Graph graph, const std::string& file);
 
+/// Throws Error naming the file when it is the record of a plan carried out, which is no plan.
+void require_plan(const Plan& plan, const std::string& file);
+
 /// Throws Error with the line of a configuration that is not after the one before.
 void require_increasing_times(const PlanFile& file);
 

@@ -35,8 +35,8 @@ Command add_plot(OptionParser& app) {
   parser
       .add_option(
           "RESULT", o.input,
-          "JSON of optimize, refine or check (also -, standard input), a plan (.g2o) or a table "
-          "(.csv)")
+          "JSON of optimize, refine or check (also -, standard input), a plan or the record of "
+          "one carried out (.g2o), or a table (.csv)")
       .required();
   parser.add_option("-o,--output", o.output, "Diagram to write (.svg); - is standard output")
       .required();

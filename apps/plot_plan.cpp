@@ -1,8 +1,8 @@
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_file.h>
 #include <locograph/apps/plot.h>
+#include <locograph/apps/plot_series.h>
 #include <locograph/check/motion_curve.h>
-#include <locograph/robots/statics.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,38 +10,6 @@
 
 namespace locograph {
 namespace {
-
-/// One line of a panel: a joint's values over time, and the largest, by which lines are ranked.
-struct Series {
-  std::string name;
-  std::vector<double> values;
-  double peak = 0.0;
-};
-
-constexpr std::size_t kNamedLines = 6;
-
-/// The lines that come nearest to a limit in colour and by name, the others in grey.
-void add_lines(PlotScript& plot, const std::string& prefix, const std::vector<double>& time_s,
-               std::vector<Series> series) {
-  std::stable_sort(series.begin(), series.end(),
-                   [](const Series& a, const Series& b) { return a.peak > b.peak; });
-  const char* colors[kNamedLines] = {"'#c8372d'", "'#2f6fb5'", "'#3a9a5b'",
-                                     "'#d98a1f'", "'#7a4fa3'", "'#1b9aaa'"};
-  std::string command;
-  for (std::size_t k = series.size(); k-- > 0;) {
-    std::string rows;
-    for (std::size_t i = 0; i < series[k].values.size(); ++i) {
-      rows += short_number(time_s[i]) + ' ' + short_number(series[k].values[i]) + '\n';
-    }
-    const std::string name = prefix + std::to_string(k);
-    plot.data(name, rows);
-    const bool named = k < kNamedLines;
-    command += (command.empty() ? "plot $" : ", $") + name + " with lines linewidth " +
-               (named ? "1.8" : "0.8") + " linecolor " + (named ? colors[k] : "'#c0c4c8'") +
-               (named ? " title " + PlotScript::label(series[k].name) : " notitle");
-  }
-  plot.line(command.empty() ? "plot 0 notitle" : command);
-}
 
 /// Where the joints stand between their limits: −1 at the lower, 1 at the upper one.
 std::vector<Series> positions(const Robot& robot, const Motion& motion) {
@@ -102,50 +70,6 @@ std::vector<Series> jerks(const MotionCurve& curve) {
   return all;
 }
 
-/// |force| at each contact that the plan states wrenches of, over the robot's weight; 0: not held.
-std::vector<Series> forces(const Robot& robot, const Motion& motion) {
-  const double weight_N = robot.total_mass() * standard_gravity().norm();
-  std::vector<Series> all;
-  for (std::size_t i = 0; i < motion.wrenches.size(); ++i) {
-    for (std::size_t c = 0; c < motion.wrenches[i].size(); ++c) {
-      const Stance& stance = motion.stances[static_cast<std::size_t>(motion.stance_from[i])];
-      const std::string& name = stance.contacts[c].name();
-      auto found = std::ranges::find(all, name, &Series::name);
-      if (found == all.end()) {
-        found = all.insert(all.end(), {name, std::vector<double>(motion.wrenches.size(), 0.0)});
-      }
-      found->values[i] = motion.wrenches[i][c].head<3>().norm() / weight_N;
-      found->peak = std::max(found->peak, found->values[i]);
-    }
-  }
-  return all;
-}
-
-double highest(const std::vector<Series>& all, double at_least) {
-  for (const Series& series : all) at_least = std::max(at_least, series.peak);
-  return at_least;
-}
-
-/// A thin line where the stance changes, in this and the next panels; the tags of its arrows.
-std::vector<int> mark_stance_changes(PlotScript& plot, const Motion& motion) {
-  constexpr int kFirstTag = 10;
-  std::vector<int> tags;
-  for (std::size_t i = 1; i < motion.stance_from.size(); ++i) {
-    if (motion.stance_from[i] == motion.stance_from[i - 1]) continue;
-    tags.push_back(kFirstTag + static_cast<int>(tags.size()));
-    const std::string time = short_number(motion.time_s[i]);
-    plot.line("set arrow " + std::to_string(tags.back()) + " from " + time + ", graph 0 to " +
-              time + ", graph 1 nohead back linewidth 0.7 linecolor '#d0d4d8'");
-  }
-  return tags;
-}
-
-void limit_line(PlotScript& plot, int tag, double at) {
-  plot.line("set arrow " + std::to_string(tag) + " from graph 0, first " + short_number(at) +
-            " to graph 1, first " + short_number(at) +
-            " nohead linewidth 1.4 dashtype 2 linecolor '#202428'");
-}
-
 void add_base_path(PlotScript& plot, const Motion& motion) {
   std::string rows;
   Eigen::AlignedBox2d box;
@@ -173,6 +97,7 @@ void add_base_path(PlotScript& plot, const Motion& motion) {
 
 PlotScript plot_plan(const std::filesystem::path& file, const std::vector<std::string>& plugins) {
   const PlanFile plan = load_plan(file.string(), plugins);
+  if (plan.plan.recorded) return plot_record(plan);
   const Robot& robot = *plan.plan.robot->robot;
   const Motion motion = motion_of(plan.graph, plan.plan);
   if (motion.configurations.size() < 2) {
@@ -180,7 +105,7 @@ PlotScript plot_plan(const std::filesystem::path& file, const std::vector<std::s
   }
   require_increasing_times(plan);
   const bool base = robot.floating_base(), moves = !motion.stances_only;
-  const std::vector<Series> bears = forces(robot, motion);
+  const std::vector<Series> bears = force_shares(robot, motion);
   const int panels = 1 + (moves ? 2 : 0) + (bears.empty() ? 0 : 1) + (base ? 1 : 0);
   PlotScript plot(1000, 340 * panels + (base ? 0 : 40));
   plot.line("set multiplot layout " + std::to_string(panels) + ",1 title " +

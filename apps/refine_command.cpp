@@ -140,6 +140,7 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
   walk_options.termination.stop = &stop_flag();
   std::optional<Progress> progress("reading " + options.input);
   PlanFile file = load_plan(options.input, options.plugins);
+  require_plan(file.plan, file.name);
   if (!file.plan.world) throw Error(file.name, 0, "the plan has no world", "a PARAMS_WORLD line");
   check_not_input(options.output, files_of(file));
   const Judging judging = judging_of(file, options.world);

@@ -92,7 +92,7 @@ Json plan_scene(PlanFile file, const SceneOptions& options) {
   if (options.perception.given()) {
     scene["perception"] = perception_json(file, *judging, options);
   }
-  if (!options.check || !judging) return scene;
+  if (!options.check || !judging || file.plan.recorded) return scene;
   try {
     scene["check"] = check_scene(file, check_plan(file, *judging));
   } catch (const Error& error) {

@@ -1,8 +1,10 @@
+#include <locograph/apps/about_file.h>
 #include <locograph/apps/check_json.h>
 #include <locograph/apps/packed.h>
 #include <locograph/apps/scene.h>
 #include <locograph/check/judged_stance.h>
 #include <locograph/check/motion_curve.h>
+#include <locograph/planners/plan/record.h>
 #include <locograph/plugins/static_balance/static_rows.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
 #include <locograph/robots/contact_kinds.h>
@@ -138,6 +140,37 @@ Json stances_json(const Plan& plan) {
   return all;
 }
 
+Json series_json(const char* name, const char* unit, const std::vector<double>& values) {
+  const std::vector<float> numbers(values.begin(), values.end());
+  return {{"name", name}, {"unit", unit}, {"values", packed_floats(numbers)}};
+}
+
+/// What a record says beside a plan: torques, and how far the robot is off.
+void add_record(const PlanFile& file, Json& plan) {
+  const Robot& robot = *file.plan.robot->robot;
+  const Record record = about_file(file.name, [&] { return record_of(file.graph, file.plan); });
+  const TrackingErrors errors = tracking_errors(robot, record);
+  std::vector<float> torques;
+  std::vector<double> largest_torque;
+  for (const Eigen::VectorXd& moment : record.torques) {
+    append(moment, torques);
+    double largest = 0.0;
+    for (int j = 0; j < robot.active_joint_count(); ++j) {
+      const double effort = robot.active_joint(j).max_effort;
+      if (effort > 0.0) largest = std::max(largest, std::abs(moment[j]) / effort);
+    }
+    largest_torque.push_back(largest);
+  }
+  plan["recorded"] = true;
+  plan["torques"] = packed_floats(torques);
+  plan["series"] = Json::array();
+  if (robot.floating_base()) {
+    plan["series"].push_back(series_json("base off", "m", errors.base_m));
+  }
+  plan["series"].push_back(series_json("torque / effort", "", largest_torque));
+  plan["series"].back()["limit"] = 1.0;
+}
+
 }  // namespace
 
 void add_plan_scene(const PlanFile& file, const Judging* judging, const SceneOptions& options,
@@ -186,6 +219,7 @@ void add_plan_scene(const PlanFile& file, const Judging* judging, const SceneOpt
   }
   const auto is_tracked = [](const Eigen::VectorXd& q) { return q.size() > 0; };
   if (std::ranges::any_of(planned, is_tracked)) plan["reference"] = packed_floats(reference);
+  if (file.plan.recorded) add_record(file, plan);
   if (options.executed >= 0) {
     if (options.executed >= count) {
       throw Error(file.name, 0, "no configuration " + std::to_string(options.executed),

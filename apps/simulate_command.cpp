@@ -6,13 +6,17 @@
 #include <locograph/apps/simulate_command.h>
 #include <locograph/apps/statistics.h>
 #ifdef LOCOGRAPH_WITH_MUJOCO
+#include <locograph/apps/simulation_record.h>
+#include <locograph/common/atomic_file.h>
+#include <locograph/core/graph_file.h>
 #include <locograph/execution/simulation.h>
 #include <locograph/planners/task/task.h>
 #endif
 
-#include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,28 +33,6 @@ struct CommandOptions {
 
 #ifdef LOCOGRAPH_WITH_MUJOCO
 
-/// Those of the task, or of the motion's contacts where nobody's word says; each with the least
-/// friction that it has anywhere in the motion.
-std::vector<EndEffector> end_effectors(const Judging& judging, const Motion& motion) {
-  std::vector<EndEffector> result;
-  if (judging.task) result = judging.task->end_effectors();
-  for (const Stance& stance : motion.stances) {
-    for (const Contact& contact : stance.contacts) {
-      const auto named = std::find_if(result.begin(), result.end(), [&](const EndEffector& known) {
-        return (known.name.empty() ? known.link : known.name) == contact.name();
-      });
-      if (named == result.end()) {
-        result.push_back(contact.effector);
-      } else if (contact.effector.friction > 0.0) {
-        named->friction = named->friction > 0.0
-                              ? std::min(named->friction, contact.effector.friction)
-                              : contact.effector.friction;
-      }
-    }
-  }
-  return result;
-}
-
 /// "30,0.2": for how long how hard.
 void read_push(const std::string& text, SimulationOptions& options) {
   if (text.empty()) return;
@@ -66,6 +48,9 @@ void read_push(const std::string& text, SimulationOptions& options) {
   throw Error("--push '" + text + "'", "newtons and seconds, as in 30,0.2");
 }
 
+/// Of simulated time, from one moment of a record to the next.
+constexpr double kRecordEvery_s = 0.02;
+
 SimulationOptions simulation_options(const CommandOptions& command) {
   SimulationOptions options{.controller = command.controller,
                             .friction_factor = command.friction,
@@ -74,6 +59,7 @@ SimulationOptions simulation_options(const CommandOptions& command) {
                             .initial_error_rad = command.initial_error_rad,
                             .seed = command.seed};
   read_push(command.push, options);
+  if (!command.output.empty() || !command.csv.empty()) options.record_every_s = kRecordEvery_s;
   options.validate();
   return options;
 }
@@ -102,19 +88,63 @@ Json result_json(const SimulationResult& result) {
   return json;
 }
 
+/// Before the simulation, as what is given must not be lost, nor what it takes minutes to find.
+void check_outputs(const CommandOptions& command,
+                   const std::vector<std::filesystem::path>& inputs) {
+  for (const std::string& output : {command.output, command.csv}) {
+    if (!output.empty()) check_output(output, inputs, command.json);
+  }
+}
+
+/// The world that the command line names is the record's, too.
+void take_world(PlanFile& file, const WorldOptions& given, const World& world) {
+  if (!given.given()) return;
+  const WorldFiles files{.map = given.map, .obstacles = given.obstacles};
+  file.plan.world = std::make_shared<const WorldParameter>(
+      std::make_shared<const WorldSnapshot>(World{.map = world.map, .obstacles = world.obstacles},
+                                            0.0, files),
+      file.plan.world ? file.plan.world->ground_z_m : std::nullopt);
+}
+
+void write_record(const CommandOptions& command, PlanFile& file, const Judging& judging,
+                  std::span<const EndEffector> effectors, const SimulationResult& result) {
+  if (!command.output.empty()) {
+    take_world(file, command.world, judging.world->world());
+    Record record = record_of_run(file.graph, file.plan, effectors, result.samples);
+    if (command.input != "-") record.plan_file = command.input;
+    write_graph(record_graph(file.graph, file.plan, record), command.output);
+  }
+  if (command.csv.empty()) return;
+  write_file_atomically(command.csv,
+                        samples_csv(*file.plan.robot->robot, effectors, result.samples));
+}
+
 ExitCode simulate_plan(const CommandOptions& command) {
   const SimulationOptions options = simulation_options(command);
+  const std::vector<std::filesystem::path> inputs = {command.input, command.world.map,
+                                                     command.world.obstacles};
+  check_outputs(command, inputs);
   std::optional<Progress> progress("reading " + command.input);
-  const PlanFile file = load_plan(command.input);
+  PlanFile file = load_plan(command.input);
+  require_plan(file.plan, file.name);
+  for (const std::string& output : {command.output, command.csv}) {
+    if (!output.empty()) check_not_input(output, files_of(file));
+  }
   const Judging judging = judging_of(file, command.world);
   const Motion motion = motion_of(file.graph, file.plan);
+  const std::vector<EndEffector> effectors = effectors_of(
+      motion, judging.task ? judging.task->end_effectors() : std::vector<EndEffector>());
   progress.emplace("carrying out " + command.input);
   const SimulationResult result = about_file(file.name, [&] {
-    return simulate(*judging.robot, end_effectors(judging, motion), judging.world->world(), motion,
-                    options);
+    return simulate(*judging.robot, effectors, judging.world->world(), motion, options);
   });
+  progress.emplace("writing " + (command.output.empty() ? command.csv : command.output));
+  write_record(command, file, judging, effectors, result);
   progress.reset();
-  print_result(result_json(result), command.json);
+  Json json = result_json(result);
+  if (!command.output.empty()) json["output"] = command.output;
+  if (!command.csv.empty()) json["csv"] = command.csv;
+  print_result(json, command.json);
   return result.upright ? kDone : kNo;
 }
 
@@ -135,6 +165,9 @@ Command add_simulate(OptionParser& app) {
   OptionParser parser = app.add_subcommand(
       "simulate", "Carry a plan out in a physics engine, under a torque controller");
   parser.add_option("PLAN", o.input, "Plan file (.g2o); - reads standard input").required();
+  parser.add_option("-o,--output", o.output,
+                    "Record to write (.g2o): what was measured; - is standard output");
+  parser.add_option("--csv", o.csv, "The same to write as a table (.csv); - is standard output");
   add_world_options(parser, o.world);
   parser.add_option("--controller", o.controller, "whole_body or joint_impedance").show_default();
   parser.add_option("--friction", o.friction, "Factor of the world's friction").show_default();

@@ -29,6 +29,9 @@ ExitCode serve(const CommandOptions& options, Json scene) {
   if (scene["kind"] != "plan" || scene["plan"]["times"].size() < 2) {
     throw Error(options.input, 0, "--serve has nothing to run", "a plan (.g2o)");
   }
+  if (scene["plan"].contains("recorded")) {
+    throw Error(options.input, 0, "is the record of a plan carried out", "a plan to --serve");
+  }
   scene["live"] = "/live";
   const LiveJob job = {options.input,           options.scene.map, options.scene.obstacles,
                        options.scene.window,    options.speed,     options.scene.plugins,

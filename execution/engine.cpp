@@ -157,7 +157,8 @@ class Engine::Implementation {
         model(compile(mujoco_model(robot, effectors, world, options))),
         data(mj_makeData(model.get())),
         coordinates(robot, *model),
-        forces(effectors.size(), Eigen::Vector3d::Zero()) {
+        forces(effectors.size(), Eigen::Vector3d::Zero()),
+        moments(effectors.size(), Eigen::Vector3d::Zero()) {
     if (!data) throw Error("no memory for a state of MuJoCo");
     for (int i = 0; i < robot.active_joint_count(); ++i) {
       motor.push_back(id_of(*model, mjOBJ_ACTUATOR, "motor_" + std::to_string(i)));
@@ -169,6 +170,12 @@ class Engine::Implementation {
     }
     for (std::size_t b = 0; b < robot.tree().bodies.size(); ++b) {
       body.push_back(id_of(*model, mjOBJ_BODY, "body_" + std::to_string(b)));
+    }
+    for (const EndEffector& effector : effectors) {
+      const int link = robot.link_index(effector.link);
+      const int at = robot.tree().body_of_link[static_cast<std::size_t>(link)];
+      points.emplace_back(body[static_cast<std::size_t>(at)],
+                          robot.tree().body_from_link(link) * effector.point);
     }
     mj_forward(model.get(), data.get());
   }
@@ -184,6 +191,7 @@ class Engine::Implementation {
 
   void measure_forces() {
     std::fill(forces.begin(), forces.end(), Eigen::Vector3d::Zero());
+    std::fill(moments.begin(), moments.end(), Eigen::Vector3d::Zero());
     total.setZero();
     other = {};
     for (int i = 0; i < data->ncon; ++i) {
@@ -194,19 +202,32 @@ class Engine::Implementation {
       // The rows of the frame are its axes; the force is that of geom1 on geom2.
       const Eigen::Map<const Eigen::Matrix3d> world_from_contact(contact.frame);
       Eigen::Vector3d force = world_from_contact * Eigen::Map<const Eigen::Vector3d>(wrench);
+      Eigen::Vector3d moment = world_from_contact * Eigen::Map<const Eigen::Vector3d>(wrench + 3);
       int geom = contact.geom2;
       if (model->geom_contype[geom] == 0) {
         geom = contact.geom1;
         force = -force;
+        moment = -moment;
       }
       total += force;
       const int effector = effector_of_geom[static_cast<std::size_t>(geom)];
       if (effector >= 0) {
-        forces[static_cast<std::size_t>(effector)] += force;
+        const auto e = static_cast<std::size_t>(effector);
+        forces[e] += force;
+        moments[e] +=
+            moment + (Eigen::Map<const Eigen::Vector3d>(contact.pos) - point(e)).cross(force);
       } else if (wrench[0] > other.pressing_N) {
         other = {wrench[0], link_of_body(model->geom_bodyid[geom])};
       }
     }
+  }
+
+  /// Of an end effector, in the world, when MuJoCo looked for contacts.
+  Eigen::Vector3d point(std::size_t effector) const {
+    const auto& [at, in_body] = points[effector];
+    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> rotation(data->xmat +
+                                                                                  9 * at);
+    return rotation * in_body + Eigen::Map<const Eigen::Vector3d>(data->xpos + 3 * at);
   }
 
   int link_of_body(int mujoco_body) const {
@@ -236,10 +257,11 @@ class Engine::Implementation {
   Model model;
   Data data;
   Coordinates coordinates;
-  std::vector<int> motor;             // of each active joint, -1: none
-  std::vector<int> effector_of_geom;  // -1: none
-  std::vector<int> body;              // MuJoCo's, of each body of the tree
-  std::vector<Eigen::Vector3d> forces;
+  std::vector<int> motor;                               // of each active joint, -1: none
+  std::vector<int> effector_of_geom;                    // -1: none
+  std::vector<int> body;                                // MuJoCo's, of each body of the tree
+  std::vector<std::pair<int, Eigen::Vector3d>> points;  // of end effectors: MuJoCo's body, in it
+  std::vector<Eigen::Vector3d> forces, moments;
   Eigen::Vector3d total = Eigen::Vector3d::Zero();
   OtherTouch other;
   bool stale = false;
@@ -307,6 +329,11 @@ Eigen::VectorXd Engine::velocity() const { return implementation_->velocity(); }
 Eigen::Vector3d Engine::contact_force(int effector) const {
   require_index("end effector", effector, implementation_->forces.size());
   return implementation_->forces[static_cast<std::size_t>(effector)];
+}
+
+Eigen::Vector3d Engine::contact_moment(int effector) const {
+  require_index("end effector", effector, implementation_->moments.size());
+  return implementation_->moments[static_cast<std::size_t>(effector)];
 }
 
 Eigen::Vector3d Engine::total_contact_force() const { return implementation_->total; }

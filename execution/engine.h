@@ -56,6 +56,8 @@ class Engine {
 
   /// What the world does to the robot at an end effector [N, world axes], index as given.
   Eigen::Vector3d contact_force(int effector) const;
+  /// The moment of these forces about the end effector's point [N m, world axes].
+  Eigen::Vector3d contact_moment(int effector) const;
   /// The same of the whole robot.
   Eigen::Vector3d total_contact_force() const;
 

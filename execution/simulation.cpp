@@ -277,6 +277,7 @@ class Run {
     sample.planned = player_.reference().configuration;
     for (std::size_t e = 0; e < effectors_.size(); ++e) {
       sample.forces.push_back(engine_.contact_force(static_cast<int>(e)));
+      sample.moments.push_back(engine_.contact_moment(static_cast<int>(e)));
     }
   }
 

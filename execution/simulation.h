@@ -62,8 +62,9 @@ struct SimulationSample {
   double time_s = 0.0, plan_time_s = 0.0;
   int stance = 0;
   Eigen::VectorXd configuration, velocity, torques;
-  Eigen::VectorXd planned;              ///< where the reference is
-  std::vector<Eigen::Vector3d> forces;  ///< on each end effector [N, world]
+  Eigen::VectorXd planned;               ///< where the reference is
+  std::vector<Eigen::Vector3d> forces;   ///< on each end effector [N, world]
+  std::vector<Eigen::Vector3d> moments;  ///< of them, about its point [N m, world]
 };
 
 struct SimulationResult {

@@ -11,6 +11,7 @@
 #include <locograph/plugins/joint_limits/edge_joint_limits.h>
 #include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
 #include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
+#include <locograph/plugins/record/edge_measurement.h>
 #include <locograph/plugins/robot_types.h>
 #include <locograph/plugins/rolling/edge_ball_rolling.h>
 #include <locograph/plugins/rolling/edge_rolling.h>
@@ -40,6 +41,7 @@ void add_robot_types(TypeRegistry& types) {
   types.add_parameter<PlanParameter>("PARAMS_PLAN");
   types.add_parameter<ScenarioParameter>("PARAMS_SCENARIO");
   types.add_parameter<ContactsParameter>("PARAMS_CONTACTS");
+  types.add_parameter<RecordParameter>("PARAMS_RECORD");
   types.add_parameter<ContactParameter>("PARAMS_CONTACT");
   types.add_parameter<StanceParameter>("PARAMS_STANCE");
   types.add_parameter<SegmentParameter>("PARAMS_SEGMENT");
@@ -60,6 +62,7 @@ void add_robot_types(TypeRegistry& types) {
   types.add_edge<EdgeGroundDistance>();
   types.add_edge<EdgeLinkHeight>();
   types.add_edge<EdgeJointLimits>();
+  types.add_edge<EdgeMeasurement>();
   types.add_edge<EdgeMovingBalance>();
   types.add_edge<EdgeObstacleDistance>();
   types.add_edge<EdgePlanTracking>();

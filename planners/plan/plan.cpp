@@ -230,7 +230,9 @@ Plan plan_of(const Graph& graph) {
   if (!format) throw Error("a plan without a format version", "a PARAMS_PLAN line");
   only<ScenarioParameter>(parameters);
   only<ContactsParameter>(parameters);
+  only<RecordParameter>(parameters);
   plan.incomplete = format->incomplete;
+  plan.recorded = format->recorded;
   plan.moves = format->moves;
   plan.world = only<WorldParameter>(parameters);
   if (plan.world) plan.world_number = *parameters.number_of<WorldParameter>();

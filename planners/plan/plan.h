@@ -39,6 +39,7 @@ struct Plan {
   /// segments: else it is a motion.
   bool stances_only = false;
   bool incomplete = false;       ///< it ends before its goal
+  bool recorded = false;         ///< no plan: the record of one carried out (record.h)
   bool states_wrenches = false;  ///< it has some
   ContactMoves moves;            ///< how its start and goals differ from its scenario's
   PlanIndex index;               ///< where all of this is in the graph
@@ -70,7 +71,7 @@ void mark_incomplete(Graph& graph);
 
 /// Numbers of the parameters in a plan file. Contacts begin at kFirstContact; stances follow them.
 inline constexpr int kRobotNumber = 0, kPlanNumber = 1, kWorldNumber = 2, kScenarioNumber = 3,
-                     kContactsNumber = 4, kPlacesNumber = 5, kFirstContact = 10;
+                     kContactsNumber = 4, kPlacesNumber = 5, kRecordNumber = 6, kFirstContact = 10;
 
 /// Adds PARAMS_PLAN, and the stances with their contacts as parameters; contacts that are equal are
 /// one. Returns the number of each stance.

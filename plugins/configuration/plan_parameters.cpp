@@ -56,7 +56,7 @@ void PlanParameter::read(FieldReader& in) {
   while (!in.at_end()) {
     const std::string word = in.word();
     if ((word == "stances_only" && stances_only) || (word == "incomplete" && incomplete) ||
-        (word == "moved_contacts" && moves.most_m > 0.0) ||
+        (word == "recorded" && recorded) || (word == "moved_contacts" && moves.most_m > 0.0) ||
         (word == "execution_margin" && margin != ExecutionMargin::none())) {
       in.fail("a second '" + word + "'", "it once");
     }
@@ -64,6 +64,8 @@ void PlanParameter::read(FieldReader& in) {
       stances_only = true;
     } else if (word == "incomplete") {
       incomplete = true;
+    } else if (word == "recorded") {
+      recorded = true;
     } else if (word == "moved_contacts") {
       moves = read_moves(in);
     } else if (word == "execution_margin") {
@@ -71,16 +73,18 @@ void PlanParameter::read(FieldReader& in) {
     } else {
       in.fail(
           "'" + word + "'",
-          "'stances_only', 'incomplete', 'moved_contacts', 'execution_margin' or the end of the "
-          "line");
+          "'stances_only', 'incomplete', 'recorded', 'moved_contacts', 'execution_margin' or the "
+          "end of the line");
     }
   }
+  if (recorded && stances_only) in.fail("a record of stances only", "of a motion");
 }
 
 void PlanParameter::write(FieldWriter& out) const {
   out.integer(kPlanFormat);
   if (stances_only) out.word("stances_only");
   if (incomplete) out.word("incomplete");
+  if (recorded) out.word("recorded");
   if (moves.most_m > 0.0) {
     out.word("moved_contacts");
     out.number(moves.most_m);
@@ -116,5 +120,8 @@ void ScenarioParameter::write(FieldWriter& out) const {
 
 void ContactsParameter::read(FieldReader& in) { file = read_path(in); }
 void ContactsParameter::write(FieldWriter& out) const { write_path(out, file); }
+
+void RecordParameter::read(FieldReader& in) { plan = read_path(in); }
+void RecordParameter::write(FieldWriter& out) const { write_path(out, plan); }
 
 }  // namespace locograph

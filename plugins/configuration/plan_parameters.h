@@ -7,8 +7,10 @@
 ///     PARAMS_PLAN 1 3 moved_contacts 0.05 3 1  (of the scenario's start and goals: ContactMoves)
 ///     PARAMS_PLAN 1 3 execution_margin 0.65 0.65 0.9 0.02 0.03 0.5
 ///                                              (that it keeps: ExecutionMargin, in its order)
-///     PARAMS_SCENARIO 3 centauro_drive         (made for this scenario: a name, or a file)
+///     PARAMS_PLAN 1 3 recorded                 (no plan: what was measured when one was carried
+///     out) PARAMS_SCENARIO 3 centauro_drive         (made for this scenario: a name, or a file)
 ///     PARAMS_CONTACTS 4 ../standing.xml        (a posture for this contacts file)
+///     PARAMS_RECORD 6 ../plan.g2o              (measured when this plan was carried out)
 ///
 /// Version 3 has slopes in its configurations; version 2, which is read as well, says nothing of
 /// them. Both say where the plan stands: PARAMS_CONTACT, PARAMS_STANCE and a stance in
@@ -42,6 +44,8 @@ struct PlanParameter final : Parameter {
   bool stances_only = false;
   /// It ends before its goal.
   bool incomplete = false;
+  /// It is the record of a plan carried out (planners/plan/record.h).
+  bool recorded = false;
   /// It was made for a start and goals that are those of its scenario so moved.
   ContactMoves moves;
   /// By its word, but for what its start and goals do not have.
@@ -67,6 +71,15 @@ struct ContactsParameter final : Parameter {
   std::filesystem::path file;
 
   std::string_view tag() const override { return "PARAMS_CONTACTS"; }
+  void read(FieldReader& in) override;
+  void write(FieldWriter& out) const override;
+};
+
+/// The plan that a record is of.
+struct RecordParameter final : Parameter {
+  std::filesystem::path plan;  ///< empty: it had no file
+
+  std::string_view tag() const override { return "PARAMS_RECORD"; }
   void read(FieldReader& in) override;
   void write(FieldWriter& out) const override;
 };

@@ -41,25 +41,10 @@ void EdgeTorqueLimits::bind(const Parameters& parameters) {
 
 void EdgeTorqueLimits::error(const ConfigurationState& q, const WrenchesState& wrenches,
                              Eigen::Ref<Eigen::VectorXd> e) const {
-  const RobotState& state = q.kinematics;
   const Robot& robot = q.model();
   require_rows(kTag, e.size(), robot.active_joint_count());
   require_same_robot(kTag, q.robot, wrenches.contacts->front()->robot);
-  state.require_mass();
-  const std::vector<Axis>& axes = robot.axes();
-  e.setZero();
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    e[axes[i].active] += axes[i].multiplier * gravity_torque(state, static_cast<int>(i));
-  }
-  const double* components = wrenches.components.data();
-  for (const auto& contact : *wrenches.contacts) {
-    const AppliedWrench applied(state, *contact, components);
-    for (const int i : robot.support(contact->link)) {
-      const Axis& axis = axes[static_cast<std::size_t>(i)];
-      e[axis.active] -= axis.multiplier * wrench_torque(state, applied, i);
-    }
-    components += contact->cone->components().size();
-  }
+  static_torques(q.kinematics, wrenches, e);
   for (int i = 0; i < robot.active_joint_count(); ++i) {
     e[i] = std::max(0.0, std::abs(e[i]) - fraction * robot.active_joint(i).max_effort);
   }

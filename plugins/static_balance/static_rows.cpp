@@ -270,6 +270,26 @@ void add_wrench_gradient_by_components(const RobotState& state, const AppliedWre
   }
 }
 
+void static_torques(const RobotState& state, const WrenchesState& wrenches,
+                    Eigen::Ref<Eigen::VectorXd> torques) {
+  state.require_mass();
+  const Robot& robot = state.robot();
+  const std::vector<Axis>& axes = robot.axes();
+  torques.setZero();
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    torques[axes[i].active] += axes[i].multiplier * gravity_torque(state, static_cast<int>(i));
+  }
+  const double* components = wrenches.components.data();
+  for (const auto& contact : *wrenches.contacts) {
+    const AppliedWrench applied(state, *contact, components);
+    for (const int i : robot.support(contact->link)) {
+      const Axis& axis = axes[static_cast<std::size_t>(i)];
+      torques[axis.active] -= axis.multiplier * wrench_torque(state, applied, i);
+    }
+    components += contact->cone->components().size();
+  }
+}
+
 bool supports(const Robot& robot, int i, int link) {
   const std::span<const int> joints = robot.support(link);
   return std::find(joints.begin(), joints.end(), i) != joints.end();

@@ -82,6 +82,11 @@ void add_wrench_gradient(const RobotState& state, const AppliedWrench& applied, 
 void add_wrench_gradient_by_components(const RobotState& state, const AppliedWrench& applied, int i,
                                        double scale, double* row);
 
+/// Of all active joints, what holds the robot still: g(q) − Σ J_iᵀ w_i. Throws Error for a robot
+/// without mass.
+void static_torques(const RobotState& state, const WrenchesState& wrenches,
+                    Eigen::Ref<Eigen::VectorXd> torques);
+
 /// Whether axis i moves a link.
 bool supports(const Robot& robot, int i, int link);
 

@@ -34,6 +34,7 @@
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
+#include <locograph/planners/plan/record.h>
 #include <locograph/planners/posture/posture_solver.h>
 #include <locograph/planners/posture/transition_rows.h>
 #include <locograph/planners/scenario/bar_place.h>
@@ -122,6 +123,31 @@ struct DriveContext : Context {
       : graph(drive(distance_m, configurations)) {
     world.surfaces = {ground()};
   }
+};
+
+/// The drive as if it had been carried out.
+struct RecordContext : DriveContext {
+  const Graph& plan_graph = graph;
+  const TypeRegistry types = [] {
+    TypeRegistry all;
+    add_robot_types(all);
+    return all;
+  }();
+  const Record record = [this] {
+    Record all;
+    all.motion = motion_of(graph, plan);
+    all.planned = planned;
+    all.plan_time_s = all.motion.time_s;
+    all.motion.wrenches.clear();
+    for (std::size_t i = 0; i < planned.size(); ++i) {
+      all.torques.emplace_back(Eigen::VectorXd::Zero(robot->robot->active_joint_count()));
+      all.motion.slopes[i] = Eigen::VectorXd::Zero(robot->robot->tangent_size());
+      const auto stance = static_cast<std::size_t>(all.motion.stance_from[i]);
+      all.motion.wrenches.emplace_back(all.motion.stances[stance].contacts.size(),
+                                       Eigen::Matrix<double, 6, 1>::Zero());
+    }
+    return all;
+  }();
 };
 
 /// The window after the first configuration of the drive.
@@ -581,6 +607,9 @@ struct Context : DriveContext {
   }
 };
 }  // namespace plan_plan_h
+namespace plan_record_h {
+using Context = RecordContext;
+}  // namespace plan_record_h
 namespace plan_plan_edges_h {
 struct Context : DriveContext {
   const Motion motion = motion_of(DriveContext::graph, plan);

@@ -47,6 +47,23 @@ TEST_F(Simulations, TheSameSeedGivesTheSameRun) {
             one.samples.back().configuration);
 }
 
+TEST_F(Simulations, ForcesAndMomentsThatAreMeasuredHoldTheRobot) {
+  const SimulationResult result = run(coman.standing(), {.record_every_s = 0.5});
+  ASSERT_GT(result.samples.size(), 3U);
+  const SimulationSample& sample = result.samples[result.samples.size() - 2];
+  RobotState state(coman.robot);
+  state.update(sample.configuration.data());
+  Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
+  for (std::size_t e = 0; e < coman.effectors.size(); ++e) {
+    const Eigen::Vector3d arm = coman.sole(e, sample.configuration) - state.center_of_mass();
+    force += sample.forces[e];
+    moment += arm.cross(sample.forces[e]) + sample.moments[e];
+    EXPECT_GT(sample.moments[e].norm(), 0.1);  // it does not stand over the middle of its soles
+  }
+  EXPECT_LT((force - coman.weight_N() * Eigen::Vector3d::UnitZ()).norm(), 0.01 * coman.weight_N());
+  EXPECT_LT(moment.norm(), 0.005 * coman.weight_N());
+}
+
 TEST_F(Simulations, ARobotThatStandsOnNothingFalls) {
   Motion motion = coman.standing();
   motion.time_s.back() = 5.0;

@@ -5,7 +5,7 @@ import { Layers } from './layers';
 import { LegendEntry, LegendScale } from './legend';
 import { FIELD_REACH_M } from './perception';
 import { Plan } from './plan';
-import { FIRST_GHOST, LAST_GHOST } from './robot_view';
+import { FIRST_GHOST, LAST_GHOST, PLANNED } from './robot_view';
 import { SceneViews } from './scene_views';
 import { FIELD_COLOURS, HEIGHT_COLOURS, SEEN_COLOURS, Theme } from './theme';
 import { DEPTH_COLOURS } from './tree_view';
@@ -53,6 +53,7 @@ export function legendEntries(
   if (perception?.hasFloor) add('seen of the floor', theme.floor, 'dot', 'clouds');
   add('taken by the self-filter', theme.taken, 'dot', 'taken');
   add('seen beyond the range of the map', theme.beyond, 'dot', 'beyond');
+  add('where the plan has it', PLANNED, 'patch', 'planned');
   add('first ghost', FIRST_GHOST, 'patch', 'ghosts');
   add('last ghost', LAST_GHOST, 'patch', 'ghosts');
   add('violation', theme.violation, 'dot', 'violations');

@@ -27,6 +27,8 @@ export class Plan {
   /** Of the curve, a row for each configuration; null: the straight way. */
   readonly slopes: Float32Array | null;
   readonly reference: Float32Array | null;
+  /** The record of a plan carried out, which is the reference. */
+  readonly recorded: boolean;
   readonly torques: Float32Array | null;
   readonly contacts: Contact[][];
   readonly series: PlanSeries[];
@@ -60,6 +62,7 @@ export class Plan {
     this.reference = description.reference
       ? unpackFloats(description.reference, this.size, 'the reference plan')
       : null;
+    this.recorded = (description.recorded ?? false) && this.reference !== null;
     const joints = this.size - (floating ? 7 : 0);
     this.torques =
       description.torques && joints > 0
@@ -125,6 +128,12 @@ export class Plan {
   copyConfiguration(index: number, configuration: Float32Array): void {
     const first = index * this.size;
     for (let k = 0; k < this.size; ++k) configuration[k] = this.configurations[first + k];
+  }
+
+  /** Where the plan had the robot that was recorded, at the moment nearest to a time [s]. */
+  planned(time: number, configuration: Float32Array): void {
+    const first = this.nearestIndex(time) * this.size;
+    for (let k = 0; k < this.size; ++k) configuration[k] = this.reference![first + k];
   }
 
   /** Joint velocities [rad/s] at a time [s]; zero where there is no step. */

@@ -20,6 +20,7 @@ const COLLISION_COLOUR = [0.93, 0.6, 0.2];
 export const MOST_GHOSTS = 60;
 export const FIRST_GHOST = 0x8ab6ea;
 export const LAST_GHOST = 0xd08ae0;
+export const PLANNED = 0x3fb8a0;
 
 interface LinkMesh {
   link: number;
@@ -29,6 +30,8 @@ interface LinkMesh {
 export class RobotView {
   readonly group = new Group();
   readonly ghosts = new Group();
+  /** One more ghost: where the plan had a robot that was recorded. */
+  readonly planned = new Group();
   readonly hasVisual: boolean;
   readonly hasCollision: boolean;
 
@@ -36,6 +39,7 @@ export class RobotView {
   private readonly collision = new Group();
   private readonly links: LinkMesh[] = [];
   private readonly ghostLinks: { link: number; meshes: InstancedMesh[] }[] = [];
+  private readonly plannedLinks: LinkMesh[] = [];
   private readonly shape = new Box3();
 
   constructor(
@@ -58,6 +62,8 @@ export class RobotView {
       depthWrite: false,
       depthFunc: EqualDepth,
     });
+    const planned = ghost.clone();
+    planned.color.set(PLANNED);
     robot.links.forEach((link, i) => {
       const visual = linkGeometry(link.visual, meshes);
       const collision = linkGeometry(link.collision, meshes, COLLISION_COLOUR);
@@ -75,10 +81,19 @@ export class RobotView {
         return instances;
       });
       this.ghostLinks.push({ link: i, meshes: pair });
+      [ghostDepth, planned].forEach((m, pass) => {
+        const mesh = new Mesh(ghostGeometry, m);
+        mesh.matrixAutoUpdate = false;
+        mesh.frustumCulled = false;
+        mesh.renderOrder = 20 + pass;
+        this.planned.add(mesh);
+        this.plannedLinks.push({ link: i, mesh });
+      });
     });
     this.group.add(this.visual, this.collision);
     this.showCollision(!this.hasVisual);
     this.ghosts.visible = false;
+    this.planned.visible = false;
   }
 
   private addLink(group: Group, link: number, mesh: Mesh): void {
@@ -103,6 +118,14 @@ export class RobotView {
   update(): void {
     for (const { link, mesh } of this.links) {
       mesh.matrix.copy(this.kinematics.worldFromLink[link]);
+      mesh.matrixWorldNeedsUpdate = true;
+    }
+  }
+
+  placePlanned(configuration: Float32Array): void {
+    this.ghostKinematics.update(configuration);
+    for (const { link, mesh } of this.plannedLinks) {
+      mesh.matrix.copy(this.ghostKinematics.worldFromLink[link]);
       mesh.matrixWorldNeedsUpdate = true;
     }
   }

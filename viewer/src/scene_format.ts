@@ -83,6 +83,8 @@ export interface PlanDescription {
   /** Nothing moves between configurations, and times mean nothing. */
   stances_only?: boolean;
   reference?: string;
+  /** What was measured when a plan was carried out; the reference is where that had the robot. */
+  recorded?: boolean;
   torques?: string;
   ids?: number[];
   executed?: number;

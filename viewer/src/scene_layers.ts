@@ -37,6 +37,7 @@ export function addSceneLayers(
   }
   const ghosts = plan?.steps ? 'Ghosts of all stances' : 'Ghosts of key configurations';
   show('ghosts', ghosts, 'g', robot?.ghosts, (plan?.count ?? 0) > 1, false);
+  show('planned', 'Ghost where the plan has it', 'h', robot?.planned, plan?.recorded ?? false);
   const contacts = (track?.most ?? 0) > 0;
   show('dots', 'Contact path', 'd', path?.dots, contacts && plan!.count > 1);
   if (contacts && plan!.count > 1) {

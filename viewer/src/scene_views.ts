@@ -36,6 +36,7 @@ export class SceneViews {
   readonly torques: Float32Array | null;
 
   private readonly ghostKinematics: Kinematics | null = null;
+  private readonly planned: Float32Array;
   private readonly base = new Vector3();
   private readonly centre = new Vector3();
   private readonly standing = new Box3();
@@ -47,7 +48,7 @@ export class SceneViews {
       this.kinematics = new Kinematics(scene.robot);
       this.ghostKinematics = new Kinematics(scene.robot);
       this.robot = new RobotView(scene.robot, this.kinematics, this.ghostKinematics);
-      drawing.add(this.robot.group, this.robot.ghosts);
+      drawing.add(this.robot.group, this.robot.ghosts, this.robot.planned);
     }
     if (scene.plan && this.kinematics) {
       this.plan = new Plan(scene.plan, this.kinematics.floating, scene.stances);
@@ -64,6 +65,7 @@ export class SceneViews {
     const size = Math.max(this.plan?.size ?? 0, this.kinematics?.configurationSize ?? 0, 1);
     this.configuration = new Float32Array(size);
     if (this.kinematics?.floating) this.configuration[6] = 1;
+    this.planned = new Float32Array(size);
     this.velocities = new Float32Array(size);
     const torques = this.plan?.torques || (this.track?.hasForces && this.kinematics!.mass > 0);
     this.torques = torques ? new Float32Array(size) : null;
@@ -203,6 +205,10 @@ export class SceneViews {
       this.plan?.sample(time, this.configuration);
       this.kinematics.update(this.configuration);
       this.robot.update();
+      if (this.plan?.recorded && this.robot.planned.visible) {
+        this.plan.planned(time, this.planned);
+        this.robot.placePlanned(this.planned);
+      }
       this.track?.update(time, this.kinematics);
       this.contactView?.update();
       this.base.setFromMatrixPosition(this.worldFromBase!);

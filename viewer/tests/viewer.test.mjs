@@ -81,6 +81,25 @@ describe('viewer', () => {
       },
     ));
 
+  it('shows where the plan had a robot that was recorded, as a ghost', () => {
+    const scene = planScene();
+    // Half a metre above where it was.
+    const bytes = Buffer.from(scene.plan.reference, 'base64');
+    const planned = new Float32Array(new Uint8Array(bytes).buffer);
+    for (let i = 2; i < planned.length; i += scene.plan.configuration_size) planned[i] += 0.5;
+    Object.assign(scene.plan, { reference: pack(planned), recorded: true });
+    const hash = '#t=5&view=side&ui=0&hide=contacts,forces,com,base,dots,map,reference';
+    const teal = (r, g) => g > r + 30;
+    return shown(scene, { hash }, async ({ page, state }) => {
+      assert.ok((await state()).layers.planned);
+      const seen = () => browser.pixels(page).then((p) => share(p, [0.2, 0, 0.8, 0.8], teal));
+      const there = await seen();
+      await page.keyboard.press('h');
+      assert.ok((await state()).layers.planned === false);
+      assert.ok(there > (await seen()) + 0.02, `${there}`);
+    });
+  });
+
   it('keeps what is near the robot in the picture, and narrows when it has passed', () =>
     shown(
       farScene(),
