@@ -141,7 +141,7 @@ WholeBodyController::WholeBodyController(const Robot& robot, std::span<const End
   rows_ = Eigen::MatrixXd::Zero(most, n);
   wanted_ = Eigen::VectorXd::Zero(most);
   diagonal_ = gradient_ = bias_ = error_ = planned_force_ = acceleration_ = torques_full_ =
-      small_step_ = rotated_ = Eigen::VectorXd::Zero(n);
+      small_step_ = Eigen::VectorXd::Zero(n);
   ahead_configuration_ = Eigen::VectorXd::Zero(robot.configuration_size());
   torques_ = Eigen::VectorXd::Zero(joints);
   mass_ = cost_ = Eigen::MatrixXd::Zero(n, n);
@@ -190,8 +190,7 @@ void WholeBodyController::follow_joints_and_base(const Eigen::VectorXd& v,
                                             2.0 * joint * (reference.velocity[k] - v[k]));
   }
   const double place = options_.centre_rate, turning = options_.base_rate;
-  const Eigen::Matrix3d here_from_planned =
-      rotation_of(ahead_configuration_).transpose() * rotation_of(reference.configuration);
+  const Eigen::Matrix3d here_from_planned = base_from_world_ * rotation_of(reference.configuration);
   const Eigen::Vector3d linear = here_from_planned * reference.velocity.head<3>() - v.head<3>();
   const Eigen::Vector3d angular =
       here_from_planned * reference.velocity.segment<3>(3) - v.segment<3>(3);
@@ -220,8 +219,7 @@ void WholeBodyController::follow_centre_of_mass(const Eigen::VectorXd& v,
   wanted.noalias() -= 2.0 * rate * (centre_jacobian_ * v);
   three_rows_ = mass_.topRows<3>() / mass;
   const Eigen::Vector3d along_base =
-      rotation_of(ahead_configuration_).transpose() * (wanted - standard_gravity()) -
-      bias_.head<3>() / mass;
+      base_from_world_ * (wanted - standard_gravity()) - bias_.head<3>() / mass;
   add_rows(three_rows_, along_base, options_.centre_weight);
 }
 
@@ -335,7 +333,7 @@ void WholeBodyController::collect_tasks(const Eigen::VectorXd& q, const Eigen::V
   ahead_.update(ahead_configuration_.data());
   dynamics_.mass_matrix(state_, mass_);
   dynamics_.bias_forces(state_, v, bias_);
-  ahead_configuration_ = q;  // the rotations of the base below are those of now
+  base_from_world_ = rotation_of(q).transpose();
   used_ = 0;
   follow_joints_and_base(v, reference);
   follow_centre_of_mass(v, reference);

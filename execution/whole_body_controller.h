@@ -125,7 +125,8 @@ class WholeBodyController final : public TorqueController {
   Eigen::VectorXd bias_, error_, planned_force_, acceleration_, torques_full_, torques_;
   Eigen::LLT<Eigen::MatrixXd> factor_;
   Eigen::MatrixXd base_rows_, mass_by_base_, torque_by_base_;
-  Eigen::VectorXd small_step_, ahead_configuration_, rotated_;
+  Eigen::VectorXd small_step_, ahead_configuration_;
+  Eigen::Matrix3d base_from_world_;
   Eigen::Matrix<double, 3, Eigen::Dynamic> centre_jacobian_;
   Eigen::Matrix<double, 3, Eigen::Dynamic> three_rows_;
   Matrix6 base_cost_;

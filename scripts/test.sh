@@ -33,7 +33,7 @@ configure_sanitized build-asan address,undefined
 mapfile -t unit_tests < <(
   cd "$root/tests"
   sed -n 's/^locograph_test(\([a-z_]*\).*/\1/p' \
-    {common,core,solvers,types,robots,world,check,plugins,planners}/CMakeLists.txt |
+    {common,core,solvers,types,robots,world,check,plugins,planners,execution}/CMakeLists.txt |
     grep -vx '.*_thread_tests'
 )
 build build-asan --target "${unit_tests[@]}" header_examples

@@ -138,5 +138,17 @@ TEST_F(SimulateTest, WritesTheRecordUpToAFall) {
   EXPECT_NEAR(info.json()["record"]["duration_s"], fallen.json()["time_s"], 0.05);
 }
 
+TEST(Simulate, CampaignsCarryPlansOutWhereThatIsAskedFor) {
+  const CommandRunner runner;
+  const Outcome outcome =
+      runner.run("campaign centauro_drive --runs 2 --simulate --csv runs.csv --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["carried_out"]["mean"], 1.0);
+  EXPECT_LE(outcome.json()["max_torque_ratio"]["max"], 1.0);
+  EXPECT_EQ(runner.run("campaign centauro_drive --runs 2 --csv runs.csv").exit_code, 2)
+      << "another campaign's table";
+  EXPECT_EQ(runner.run("campaign standing_up --runs 1 --simulate --stances-only").exit_code, 2);
+}
+
 }  // namespace
 }  // namespace locograph
