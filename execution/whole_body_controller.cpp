@@ -101,7 +101,8 @@ WholeBodyController::WholeBodyController(const Robot& robot, std::span<const End
       state_(robot),
       ahead_(robot),
       planned_(robot),
-      dynamics_(robot) {
+      dynamics_(robot),
+      factor_(robot.tangent_size()) {
   options.validate();
   if (!robot.floating_base()) throw Error("a whole-body controller needs a floating base");
   const int n = robot.tangent_size(), joints = robot.active_joint_count();
@@ -152,7 +153,6 @@ WholeBodyController::WholeBodyController(const Robot& robot, std::span<const End
   torque_rows_ = Eigen::MatrixXd::Zero(joints, unknowns);
   centre_jacobian_.setZero(3, n);
   three_rows_.setZero(3, n);
-  factor_ = Eigen::LLT<Eigen::MatrixXd>(n);
 }
 
 const Eigen::Matrix<double, 6, 1>& WholeBodyController::wrench(int effector) const {
