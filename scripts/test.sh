@@ -14,7 +14,8 @@ run_tests() {
 }
 
 install_missing
-configure build -DLOCOGRAPH_BENCHMARKS=ON -DLOCOGRAPH_UNITY_TESTS=ON
+# Benchmarks are built by scripts/lint.sh.
+configure build -DLOCOGRAPH_UNITY_TESTS=ON
 build build
 
 say "checking the layout of the sources"
