@@ -23,13 +23,6 @@ bool is_sound(const SimulationSample& sample) {
                              [](const auto& m) { return within(m, ranges::kWrench); });
 }
 
-std::size_t effector_of(std::span<const EndEffector> effectors, const Contact& contact) {
-  const auto named = std::ranges::find_if(effectors, [&](const EndEffector& effector) {
-    return (effector.name.empty() ? effector.link : effector.name) == contact.name();
-  });
-  return static_cast<std::size_t>(named - effectors.begin());
-}
-
 /// Along the axes of each contact of the stance, about its point.
 StanceWrenches wrenches_of(const SimulationSample& sample, const RobotState& state,
                            const StanceParameter& stance, std::span<const EndEffector> effectors) {
@@ -80,7 +73,7 @@ std::vector<std::string> columns(const Robot& robot, std::span<const EndEffector
   }
   for (const EndEffector& effector : effectors) {
     for (const char* axis : {"_x", "_y", "_z"}) {
-      names.push_back("force_" + (effector.name.empty() ? effector.link : effector.name) + axis);
+      names.push_back("force_" + name_of(effector) + axis);
     }
   }
   return names;

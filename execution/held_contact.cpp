@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <vector>
 
 namespace locograph {
 namespace {
@@ -40,6 +41,17 @@ Range across(const std::vector<PlanePoint>& hull, double x) {
 }
 
 }  // namespace
+
+const std::string& name_of(const EndEffector& effector) {
+  return effector.name.empty() ? effector.link : effector.name;
+}
+
+std::size_t effector_of(std::span<const EndEffector> effectors, const Contact& contact) {
+  const auto named = std::find_if(
+      effectors.begin(), effectors.end(),
+      [&](const EndEffector& effector) { return name_of(effector) == contact.name(); });
+  return static_cast<std::size_t>(named - effectors.begin());
+}
 
 void HoldingShares::validate() const {
   check_option(friction > 0.0 && friction <= 1.0, "friction", "above 0, at most 1");

@@ -15,9 +15,14 @@
 #include <Eigen/Core>
 #include <memory>
 #include <span>
-#include <vector>
+#include <string>
 
 namespace locograph {
+
+/// Its name, or its link's, as Contact::name().
+const std::string& name_of(const EndEffector& effector);
+/// The one that a contact is of, by its name; their count: none is.
+std::size_t effector_of(std::span<const EndEffector> effectors, const Contact& contact);
 
 /// What is used of what contacts have.
 struct HoldingShares {

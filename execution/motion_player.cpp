@@ -70,7 +70,7 @@ MotionPlayer::MotionPlayer(const Robot& robot, std::span<const EndEffector> effe
     }
   }
   for (const EndEffector& effector : effectors) {
-    names_.push_back(effector.name.empty() ? effector.link : effector.name);
+    names_.push_back(name_of(effector));
   }
   for (std::size_t i = 0; i + 1 < count; ++i) steps_.push_back(curve_.step(static_cast<int>(i)));
   find_what_holds(world, effectors);
@@ -121,11 +121,11 @@ void MotionPlayer::find_intervals(std::span<const EndEffector> effectors) {
     interval.opens.assign(effectors.size(), 0);
     const Stance& stance = motion_.stances[static_cast<std::size_t>(stance_from(i))];
     for (std::size_t c = 0; c < stance.contacts.size(); ++c) {
-      const auto named = std::find(names_.begin(), names_.end(), stance.contacts[c].name());
-      if (named == names_.end()) {
+      const std::size_t effector = effector_of(effectors, stance.contacts[c]);
+      if (effector == effectors.size()) {
         throw Error("contact of '" + stance.contacts[c].name() + "', which is no end effector");
       }
-      interval.contact[static_cast<std::size_t>(named - names_.begin())] = static_cast<int>(c);
+      interval.contact[effector] = static_cast<int>(c);
     }
   }
   for (std::size_t k = 0; k < intervals_.size(); ++k) {

@@ -26,10 +26,6 @@ double processor_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-const std::string& name_of(const EndEffector& effector) {
-  return effector.name.empty() ? effector.link : effector.name;
-}
-
 std::string millimetres(double metres) {
   return std::to_string(static_cast<int>(std::lround(1000.0 * metres))) + " mm";
 }
@@ -327,10 +323,7 @@ class Run {
     planned_.update(motion.configurations.back().data());
     const Stance& stance = motion.stances[static_cast<std::size_t>(motion.stance_from.back())];
     for (const Contact& contact : stance.contacts) {
-      const auto named = std::find_if(
-          effectors_.begin(), effectors_.end(),
-          [&](const EndEffector& effector) { return name_of(effector) == contact.name(); });
-      const auto e = static_cast<std::size_t>(named - effectors_.begin());
+      const std::size_t e = effector_of(effectors_, contact);
       const double off_m =
           (meter_.touching(state_, e, contact) - meter_.touching(planned_, e, contact)).norm();
       if (off_m > kThere_m) {
@@ -371,15 +364,13 @@ class Run {
 std::vector<EndEffector> effectors_of(const Motion& motion, std::vector<EndEffector> known) {
   for (const Stance& stance : motion.stances) {
     for (const Contact& contact : stance.contacts) {
-      const auto named = std::find_if(known.begin(), known.end(), [&](const EndEffector& own) {
-        return name_of(own) == contact.name();
-      });
-      if (named == known.end()) {
+      const std::size_t at = effector_of(known, contact);
+      if (at == known.size()) {
         known.push_back(contact.effector);
       } else if (contact.effector.friction > 0.0) {
-        named->friction = named->friction > 0.0
-                              ? std::min(named->friction, contact.effector.friction)
-                              : contact.effector.friction;
+        double& friction = known[at].friction;
+        friction = friction > 0.0 ? std::min(friction, contact.effector.friction)
+                                  : contact.effector.friction;
       }
     }
   }

@@ -373,7 +373,7 @@ void WholeBodyController::solve_accelerations() {
 }
 
 /// Wrenches and slack in parts of the weight and of the efforts.
-bool WholeBodyController::solve_wrenches(std::span<const ContactCommand> contacts) {
+void WholeBodyController::solve_wrenches(std::span<const ContactCommand> contacts) {
   const int joints = robot_.active_joint_count(), unknowns = static_cast<int>(by_wrench_.cols());
   const double scale = base_cost_.trace() / kBaseRows;
   const Matrix6 metric = base_cost_ / scale;
@@ -483,7 +483,6 @@ bool WholeBodyController::solve_wrenches(std::span<const ContactCommand> contact
           own.wrench[components[k]] * own.along_axes.row(static_cast<Eigen::Index>(k)).transpose();
     }
   }
-  return solved;
 }
 
 /// Whether there are new ones.

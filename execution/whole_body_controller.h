@@ -102,7 +102,7 @@ class WholeBodyController final : public TorqueController {
             const CurvePoint& reference);
   void swing(Effector& effector, const CurvePoint& reference);
   void solve_accelerations();
-  bool solve_wrenches(std::span<const ContactCommand> contacts);
+  void solve_wrenches(std::span<const ContactCommand> contacts);
   bool take_in_limits(const Eigen::VectorXd& q, const Eigen::VectorXd& v);
 
   const Robot& robot_;
@@ -120,7 +120,7 @@ class WholeBodyController final : public TorqueController {
   Eigen::VectorXd diagonal_, gradient_;  ///< of what concerns single coordinates
   std::vector<char> joint_taken_, torque_taken_;
 
-  Eigen::MatrixXd mass_, cost_, by_base_;    ///< by_base_: Q^-1 M_b', then times W
+  Eigen::MatrixXd mass_, cost_, by_base_;    ///< by_base_: Q^-1 M_b'
   Eigen::MatrixXd by_wrench_, torque_rows_;  ///< G; torques by wrenches
   Eigen::VectorXd bias_, error_, planned_force_, acceleration_, torques_full_, torques_;
   Eigen::LLT<Eigen::MatrixXd> factor_;
