@@ -324,8 +324,12 @@ class Run {
     const Stance& stance = motion.stances[static_cast<std::size_t>(motion.stance_from.back())];
     for (const Contact& contact : stance.contacts) {
       const std::size_t e = effector_of(effectors_, contact);
-      const double off_m =
-          (meter_.touching(state_, e, contact) - meter_.touching(planned_, e, contact)).norm();
+      // What rolls ends where the last configuration has it, all else where the contact says.
+      const bool rolls = is_ball(contact.effector) ||
+                         (contact.effector.kind == ContactKind::kWheel && !contact.locked);
+      const Eigen::Vector3d place =
+          rolls ? meter_.touching(planned_, e, contact) : contact.position;
+      const double off_m = (meter_.touching(state_, e, contact) - place).norm();
       if (off_m > kThere_m) {
         result_.reason = "contact of " + contact.name() + " ends " + millimetres(off_m) + " off";
       } else if (contact.bears_load &&

@@ -11,7 +11,8 @@
 ///
 /// It falls when its base is further from the reference than kFallen_m or kFallen_rad, or when the
 /// engine gives up. It has reached the goal when, at the end, every contact of the last stance
-/// bears and touches within kThere_m of where the last configuration has it, and the base is within
+/// bears and touches within kThere_m of its place (of a ball or a wheel that rolls, of where the
+/// last configuration has it), and the base is within
 /// kBaseThere_m and kBaseThere_rad. The motion is carried out when it has reached the goal, no
 /// contact ever slipped by more than kMostSlip_m while it was held, and nothing else has touched.
 

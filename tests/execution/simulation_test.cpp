@@ -81,6 +81,15 @@ TEST_F(Simulations, OnIceItSlipsAndThatIsTold) {
   EXPECT_FALSE(result.reason.empty());
 }
 
+TEST_F(Simulations, ContactsThatAreSaidToBeElsewhereAreNotReached) {
+  Motion motion = coman.standing();
+  motion.stances[0].contacts[1].position.x() += 0.05;
+  const SimulationResult result = run(motion);
+  EXPECT_FALSE(result.reached_goal);
+  EXPECT_NE(result.reason.find("contact of right_foot ends 50 mm off"), std::string::npos)
+      << result.reason;
+}
+
 TEST_F(Simulations, RefuseWhatCannotBeCarriedOut) {
   Motion motion = coman.standing();
   motion.time_s.back() = 0.0;
