@@ -110,6 +110,7 @@ HeldContact::HeldContact(const Contact& contact, std::span<const Eigen::Vector2d
   effector.friction *= shares.friction;
   effector.half_x_m *= shares.area;
   effector.half_y_m *= shares.area;
+  if (effector.kind == ContactKind::kSurface) half_m_ = {effector.half_x_m, effector.half_y_m};
   cone_ = contact_kind_entry(effector.kind)
               .wrench_cone(used, {.cone = FrictionCone::kInner, .facets = kFacets});
 }

@@ -42,12 +42,14 @@ class HeldContact {
 
   const Contact& contact() const { return contact_; }
   const WrenchCone& cone() const { return *cone_; }
+  /// Half of the sides of what of a surface contact is counted on, along its axes [m].
+  const Eigen::Vector2d& half_m() const { return half_m_; }
   /// Of the cone, for a wrench about the contact's point along its axes.
   WrenchRow row(int i) const;
 
  private:
   Contact contact_;
-  Eigen::Vector2d middle_ = Eigen::Vector2d::Zero();
+  Eigen::Vector2d middle_ = Eigen::Vector2d::Zero(), half_m_ = Eigen::Vector2d::Zero();
   std::shared_ptr<const WrenchCone> cone_;
 };
 

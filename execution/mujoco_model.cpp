@@ -14,7 +14,8 @@
 namespace locograph {
 namespace {
 
-constexpr double kPlateHalf_m = 0.01;    // half the thickness of soles and surfaces
+constexpr double kSoleHalf_m = 0.01;     // half the thickness of soles
+constexpr double kPlateHalf_m = 0.001;   // of surfaces, which the judge knows no thickness of
 constexpr double kBarePoint_m = 0.005;   // radius of a point without one
 constexpr double kEndless_m = 1000.0;    // half the length of a surface without an end
 constexpr double kOtherFriction = 0.5;   // where neither world nor end effectors state any
@@ -260,8 +261,8 @@ class ModelWriter {
     switch (effector.kind) {
       case ContactKind::kSurface:
         text_ << " type=\"box\" size=\"" << effector.half_x_m << ' ' << effector.half_y_m << ' '
-              << kPlateHalf_m << '"';
-        pose.translation() += kPlateHalf_m * pose.linear().col(2);
+              << kSoleHalf_m << '"';
+        pose.translation() += kSoleHalf_m * pose.linear().col(2);
         break;
       case ContactKind::kPoint:
         if (effector.radius_m > 0.0) {

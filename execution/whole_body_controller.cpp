@@ -20,6 +20,7 @@ constexpr double kMostWeights = 2.0;   // that one contact bears
 constexpr double kOverEffort = 100.0;  // cost of torques beyond the efforts, of one times those
 constexpr double kOverEffortTold = 1e-3;
 constexpr double kLittle = 1e-3;
+constexpr double kLine_m = 0.005;  // soles that bear on less than twice this may turn about it
 constexpr double kMostSteering_rad = 0.3;
 constexpr double kRolling_m_s = 0.02;  // from which on steering gets a wheel anywhere
 constexpr int kRounds = 3;             // of limits that are taken in
@@ -60,6 +61,7 @@ void WholeBodyOptions::validate() const {
   not_negative(swing_rate, "swing_rate");
   not_negative(base_rate, "base_rate");
   not_negative(joint_rate, "joint_rate");
+  not_negative(tilt_rate, "tilt_rate");
   not_negative(contact_damping, "contact_damping");
   not_negative(wheel_weight, "wheel_weight");
   not_negative(wheel_rate, "wheel_rate");
@@ -254,7 +256,8 @@ void WholeBodyController::hold(Effector& own, const ContactCommand& command,
   }
   add_rows(own.touching.topRows<3>(), linear - drift.head<3>(), weight);
   if (own.surface) {
-    add_rows(own.touching.bottomRows<3>(), -damping * velocity.tail<3>() - drift.tail<3>(),
+    const Eigen::Vector3d back = upright(own, *command.held, velocity.tail<3>());
+    add_rows(own.touching.bottomRows<3>(), back - damping * velocity.tail<3>() - drift.tail<3>(),
              kTurning * weight);
   }
   const Eigen::Vector3d off = planned_.world_from_link(own.link) * own.effector.point - centre;
@@ -271,6 +274,23 @@ void WholeBodyController::hold(Effector& own, const ContactCommand& command,
     own.along_axes.row(static_cast<Eigen::Index>(k)).noalias() =
         own.axes.col(component % 3).transpose() * own.touching.middleRows<3>(component < 3 ? 0 : 3);
   }
+}
+
+/// A sole on a bar turns about it freely: nothing but the ankle keeps it as it was planned, against
+/// moments of forces that are not quite where they are thought to be.
+Eigen::Vector3d WholeBodyController::upright(const Effector& own, const HeldContact& held,
+                                             const Eigen::Vector3d& angular) const {
+  const Eigen::Vector3d off =
+      turn(state_.world_from_link(own.link).linear(), planned_.world_from_link(own.link).linear());
+  const double rate = options_.tilt_rate;
+  Eigen::Vector3d back = Eigen::Vector3d::Zero();
+  for (int axis = 0; axis < 2; ++axis) {
+    if (held.half_m()[1 - axis] >= kLine_m) continue;
+    const Eigen::Vector3d about = own.axes.col(axis);
+    const double damping = 2.0 * rate - options_.contact_damping;
+    back += (rate * rate * about.dot(off) - damping * about.dot(angular)) * about;
+  }
+  return back;
 }
 
 /// A wheel keeps to its place along its way by rolling, and beside it by steering against it.

@@ -54,6 +54,7 @@ struct WholeBodyOptions {
   double joint_rate = 15.0;
   double wheel_rate = 8.0;
   double steering_per_m = 3.0;    ///< of a wheel that is beside its way [rad/m]
+  double tilt_rate = 80.0;        ///< of soles that bear along a line
   double contact_damping = 30.0;  ///< of the velocity of what should stay [1/s]
   double seeking_m_s = 0.04;      ///< with which a contact that is late is looked for
   double seeking_rate = 200.0;    ///< of that velocity [1/s]; times it, what presses then
@@ -98,6 +99,8 @@ class WholeBodyController final : public TorqueController {
   void follow_joints_and_base(const Eigen::VectorXd& v, const CurvePoint& reference);
   void follow_centre_of_mass(const Eigen::VectorXd& v, const CurvePoint& reference);
   void hold(Effector& effector, const ContactCommand& command, const CurvePoint& reference);
+  Eigen::Vector3d upright(const Effector& effector, const HeldContact& held,
+                          const Eigen::Vector3d& angular) const;
   void roll(Effector& effector, const Eigen::Vector3d& normal, const Eigen::Vector3d& off,
             const CurvePoint& reference);
   void swing(Effector& effector, const CurvePoint& reference);

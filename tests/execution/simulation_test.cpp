@@ -1,6 +1,7 @@
 // What simulate() makes of bad input, of perturbations, and of robots that fall.
 #include <gtest/gtest.h>
 #include <locograph/common/error.h>
+#include <locograph/execution/engine.h>
 #include <locograph/execution/simulation.h>
 
 #include <cmath>
@@ -62,6 +63,56 @@ TEST_F(Simulations, ForcesAndMomentsThatAreMeasuredHoldTheRobot) {
   }
   EXPECT_LT((force - coman.weight_N() * Eigen::Vector3d::UnitZ()).norm(), 0.01 * coman.weight_N());
   EXPECT_LT(moment.norm(), 0.005 * coman.weight_N());
+}
+
+TEST_F(Simulations, SurfacesAreThinFromBelow) {
+  const EndEffector ball = {.name = "hand",
+                            .link = "LBall",
+                            .kind = ContactKind::kPoint,
+                            .point = {0.0, 0.0, -0.0105},
+                            .radius_m = 0.071,
+                            .friction = 0.6,
+                            .max_force_N = 100.0};
+  RobotState state(coman.robot);
+  state.update(coman.configuration.data());
+  const Eigen::Vector3d centre =
+      state.world_from_link(coman.robot.link_index(ball.link)) * ball.point;
+  Surface shelf = ground();
+  shelf.half_x_m = shelf.half_y_m = 0.1;
+  const auto penetration_m = [&](double above_m) {
+    shelf.world_from_surface.translation() =
+        centre + (ball.radius_m + above_m) * Eigen::Vector3d::UnitZ();
+    Engine engine(coman.robot, {&ball, 1}, {.surfaces = {shelf}});
+    engine.set_state(coman.configuration, Eigen::VectorXd::Zero(coman.robot.tangent_size()));
+    return engine.penetration_m();
+  };
+  EXPECT_EQ(penetration_m(0.004), 0.0);
+  EXPECT_GT(penetration_m(-0.004), 0.003);
+}
+
+TEST_F(Simulations, ASoleOnABarIsKeptAsItWasPlanned) {
+  Surface right = ground();
+  right.half_x_m = 1.0;
+  right.half_y_m = 0.5;
+  right.world_from_surface.translation().y() = -0.5;
+  const Eigen::Vector3d left = coman.sole(0, coman.configuration);
+  const Bar bar = {.name = "bar",
+                   .from = {left.x(), 0.05, left.z() - 0.02},
+                   .to = {left.x(), 0.6, left.z() - 0.02},
+                   .radius_m = 0.02,
+                   .friction = 0.6};
+  Motion motion = coman.standing();
+  motion.time_s.back() = 10.0;
+  const SimulationResult result =
+      simulate(coman.robot, coman.effectors, {.surfaces = {right}, .bars = {bar}}, motion,
+               {.initial_error_rad = 0.01, .seed = 3, .record_every_s = 1.0});
+  EXPECT_TRUE(result.carried_out) << result.reason;
+  RobotState state(coman.robot);
+  state.update(result.samples.back().configuration.data());
+  const int link = coman.robot.link_index("l_sole");
+  const Eigen::Vector3d up = state.world_from_link(link).linear().col(2);
+  state.update(coman.configuration.data());
+  EXPECT_LT(angle_between(state.world_from_link(link).linear().col(2), up), 0.03);
 }
 
 TEST_F(Simulations, ARobotThatStandsOnNothingFalls) {
