@@ -28,7 +28,7 @@ struct CommandOptions {
   WorldOptions world;
   double friction = 1.0, mass_error = 0.0, contact_error_m = 0.0, initial_error_rad = 0.005;
   unsigned seed = 0;
-  bool json = false;
+  bool estimate = false, json = false;
 };
 
 #ifdef LOCOGRAPH_WITH_MUJOCO
@@ -59,12 +59,13 @@ SimulationOptions simulation_options(const CommandOptions& command) {
                             .initial_error_rad = command.initial_error_rad,
                             .seed = command.seed};
   read_push(command.push, options);
+  if (command.estimate) options.sensors.emplace();
   if (!command.output.empty() || !command.csv.empty()) options.record_every_s = kRecordEvery_s;
   options.validate();
   return options;
 }
 
-Json result_json(const SimulationResult& result) {
+Json result_json(const SimulationResult& result, bool estimated) {
   Json json = {
       {"upright", result.upright},
       {"reached_goal", result.reached_goal},
@@ -81,9 +82,15 @@ Json result_json(const SimulationResult& result) {
       {"other_link", result.other_link},
       {"other_touch_N", result.other_touch_N},
       {"max_torque_ratio", result.max_torque_ratio},
+      {"max_estimate_error_m", nullptr},
+      {"max_estimate_error_rad", nullptr},
       {"pushed_at_s", nullptr},
       {"controller_time", statistics_json(result.controller_s)},
       {"real_time_factor", result.processor_s > 0.0 ? result.time_s / result.processor_s : 0.0}};
+  if (estimated) {
+    json["max_estimate_error_m"] = result.max_estimate_error_m;
+    json["max_estimate_error_rad"] = result.max_estimate_error_rad;
+  }
   if (result.pushed_at_s >= 0.0) json["pushed_at_s"] = result.pushed_at_s;
   return json;
 }
@@ -141,7 +148,7 @@ ExitCode simulate_plan(const CommandOptions& command) {
   progress.emplace("writing " + (command.output.empty() ? command.csv : command.output));
   write_record(command, file, judging, effectors, result);
   progress.reset();
-  Json json = result_json(result);
+  Json json = result_json(result, command.estimate);
   if (!command.output.empty()) json["output"] = command.output;
   if (!command.csv.empty()) json["csv"] = command.csv;
   print_result(json, command.json);
@@ -183,6 +190,8 @@ Command add_simulate(OptionParser& app) {
       .add_option("--initial-error", o.initial_error_rad,
                   "By how much each joint may be off at the start [rad]")
       .show_default();
+  parser.add_flag("--estimate", o.estimate,
+                  "The controller knows its sensors only: encoders, attitude and rates, forces");
   parser.add_option("--seed", o.seed, "Of all that is drawn at random").show_default();
   parser.add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] { return simulate_plan(*options); }};

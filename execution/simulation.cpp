@@ -162,10 +162,16 @@ class Run {
         controller_(make_controller()),
         state_(robot),
         planned_(robot),
+        estimated_(robot),
         meter_(robot, effectors),
+        felt_(robot, effectors),
         touches_(effectors.size()),
         error_(robot.tangent_size()) {
     require_start(world, motion);
+    if (options.sensors) {
+      sensors_.emplace(robot, *options.sensors, options.seed);
+      estimator_.emplace(robot, effectors, motion.configurations.front(), options.player.cycle_s);
+    }
     engine_.set_state(perturbed_.start(), Eigen::VectorXd::Zero(robot.tangent_size()));
   }
 
@@ -221,10 +227,12 @@ class Run {
     const Eigen::VectorXd q = engine_.configuration(), v = engine_.velocity();
     state_.update(q.data());
     measure(v);
+    estimate(q, v);
     player_.advance(touches_);
     const double before = processor_seconds();
-    const Eigen::VectorXd& torques =
-        controller_->torques(q, v, player_.reference(), player_.contacts());
+    const Eigen::VectorXd& torques = controller_->torques(
+        estimator_ ? estimator_->configuration() : q, estimator_ ? estimator_->velocity() : v,
+        player_.reference(), player_.contacts());
     result_.controller_s.push_back(processor_seconds() - before);
     engine_.set_torques(torques);
     push();
@@ -233,20 +241,44 @@ class Run {
     watch(q, torques);
   }
 
+  /// null: not held, or not pressed.
+  const Contact* held(std::size_t e) const {
+    const HeldContact* command = player_.contacts()[e].held;
+    return command && touches_[e].pressing_N > kTouched_N ? &command->contact() : nullptr;
+  }
+
   void measure(const Eigen::VectorXd& v) {
     for (std::size_t e = 0; e < effectors_.size(); ++e) {
       const HeldContact* command = player_.contacts()[e].held;
-      const Contact* held = command ? &command->contact() : nullptr;
       const Eigen::Vector3d force = engine_.contact_force(static_cast<int>(e));
-      touches_[e].pressing_N = held ? force.dot(held->normal.normalized()) : force.norm();
-      const bool bears = touches_[e].pressing_N > kTouched_N;
-      const double slip_m =
-          meter_.measure(state_, v, e, bears ? held : nullptr, options_.player.cycle_s);
+      touches_[e].pressing_N =
+          command ? force.dot(command->contact().normal.normalized()) : force.norm();
+      const double slip_m = meter_.measure(state_, v, e, held(e), options_.player.cycle_s);
       touches_[e].slip_m = slip_m;
       if (slip_m <= result_.max_contact_slip_m) continue;
       result_.max_contact_slip_m = slip_m;
       result_.slip_at_s = player_.plan_time_s();
       result_.slipping = name_of(effectors_[e]);
+    }
+  }
+
+  /// A robot knows no more of how its contacts slip than of where it is.
+  void estimate(const Eigen::VectorXd& q, const Eigen::VectorXd& v) {
+    if (!estimator_) return;
+    SensorReadings& readings = sensors_->read(q, v);
+    readings.pressing_N.resize(effectors_.size());
+    for (std::size_t e = 0; e < effectors_.size(); ++e) {
+      readings.pressing_N[e] = touches_[e].pressing_N;
+    }
+    estimator_->update(readings, player_.contacts());
+    robot_.difference(estimator_->configuration().data(), q.data(), error_.data());
+    result_.max_estimate_error_m = std::max(result_.max_estimate_error_m, error_.head<3>().norm());
+    result_.max_estimate_error_rad =
+        std::max(result_.max_estimate_error_rad, error_.segment<3>(3).norm());
+    estimated_.update(estimator_->configuration().data());
+    for (std::size_t e = 0; e < effectors_.size(); ++e) {
+      touches_[e].slip_m =
+          felt_.measure(estimated_, estimator_->velocity(), e, held(e), options_.player.cycle_s);
     }
   }
 
@@ -355,8 +387,10 @@ class Run {
   Engine engine_;
   MotionPlayer player_;
   std::unique_ptr<TorqueController> controller_;
-  RobotState state_, planned_;
-  SlipMeter meter_;
+  std::optional<SimulatedSensors> sensors_;
+  std::optional<StateEstimator> estimator_;
+  RobotState state_, planned_, estimated_;
+  SlipMeter meter_, felt_;  // by the truth, by what is estimated
   std::vector<TouchMeasurement> touches_;
   Eigen::VectorXd error_;
   SimulationResult result_;
@@ -399,6 +433,7 @@ void SimulationOptions::validate() const {
   in(push_s, 0.0, 60.0, "push_s", "0 to 60 s");
   in(initial_error_rad, 0.0, 0.5, "initial_error_rad", "0 to 0.5 rad");
   in(record_every_s, 0.0, 60.0, "record_every_s", "0 to 60 s");
+  if (sensors) sensors->validate();
 }
 
 SimulationResult simulate(const Robot& robot, std::span<const EndEffector> effectors,

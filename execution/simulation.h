@@ -19,11 +19,13 @@
 #include <locograph/check/motion.h>
 #include <locograph/execution/joint_impedance_controller.h>
 #include <locograph/execution/motion_player.h>
+#include <locograph/execution/simulated_sensors.h>
 #include <locograph/execution/whole_body_controller.h>
 #include <locograph/robots/robot.h>
 #include <locograph/world/world.h>
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -46,7 +48,9 @@ struct SimulationOptions {
   double push_s = 0.2;             ///< for how long
   double initial_error_rad = 0.0;  ///< of each joint; metres for prismatic joints
   unsigned seed = 0;               ///< of all that is drawn at random
-  double record_every_s = 0.0;     ///< 0: nothing is recorded
+  /// The controller gets what a StateEstimator makes of sensors with these errors; none: the truth.
+  std::optional<SensorErrors> sensors = std::nullopt;
+  double record_every_s = 0.0;  ///< 0: nothing is recorded
 
   /// Throws Error naming the number that makes no sense.
   void validate() const;
@@ -74,11 +78,12 @@ struct SimulationResult {
   double time_s = 0.0, plan_time_s = 0.0, waited_s = 0.0;
   double max_joint_error_rad = 0.0, max_base_error_m = 0.0, max_base_error_rad = 0.0;
   double max_contact_slip_m = 0.0, max_torque_ratio = 0.0, other_touch_N = 0.0;
-  std::string slipping = {}, other_link = {};        ///< what did
-  double slip_at_s = -1.0, other_touch_at_s = -1.0;  ///< of the plan; -1: never
-  double pushed_at_s = -1.0;                         ///< -1: it was not
-  std::vector<double> controller_s;                  ///< processor time of each cycle
-  double processor_s = 0.0;                          ///< of all of it
+  std::string slipping = {}, other_link = {};                       ///< what did
+  double max_estimate_error_m = 0.0, max_estimate_error_rad = 0.0;  ///< of the base
+  double slip_at_s = -1.0, other_touch_at_s = -1.0;                 ///< of the plan; -1: never
+  double pushed_at_s = -1.0;                                        ///< -1: it was not
+  std::vector<double> controller_s;  ///< processor time of each cycle
+  double processor_s = 0.0;          ///< of all of it
   std::vector<SimulationSample> samples;
 };
 

@@ -9,6 +9,7 @@
 //   contact    each surface, box and bar 2 mm along its normal, in either direction
 //   push       30 N for 0.2 s at the root link, in a random horizontal direction at a random time
 //   all        all of these at once
+//   estimate   the controller knows what sensors with their errors tell, not the true state
 //   rough      twice all of them, and 60 N: what margins are told apart by
 // --robustness: of each plan, as `check` tells it, and how well it tells falls from survivals in
 // all these runs (area under the curve). Prints one JSON object.
@@ -41,6 +42,7 @@ SimulationOptions options_of(const std::string& kind, unsigned seed) {
   if (kind == "mass" || all) options.mass_error = 0.05;
   if (kind == "contact" || all) options.contact_error_m = 0.002;
   if (kind == "push" || all) options.push_N = 30.0;
+  if (kind == "estimate") options.sensors.emplace();
   if (rough) {
     options.friction_factor = 0.6;
     options.mass_error = 0.1;
@@ -183,11 +185,11 @@ std::vector<std::string> words_of(const std::string& list) {
   std::vector<std::string> words;
   std::istringstream in(list);
   for (std::string word; std::getline(in, word, ',');) {
-    static const std::vector<std::string> known = {"nominal", "friction", "mass", "contact",
-                                                   "push",    "all",      "rough"};
+    static const std::vector<std::string> known = {"nominal", "friction", "mass",  "contact",
+                                                   "push",    "all",      "rough", "estimate"};
     if (std::find(known.begin(), known.end(), word) == known.end()) {
       throw Error("a run of kind '" + word + "'",
-                  "nominal, friction, mass, contact, push, all or rough");
+                  "nominal, friction, mass, contact, push, all, rough or estimate");
     }
     words.push_back(word);
   }

@@ -128,6 +128,15 @@ TEST_F(SimulateTest, RefusesBadOutputsBeforeItBegins) {
   EXPECT_FALSE(runner->exists("a.g2o"));
 }
 
+TEST_F(SimulateTest, EstimatesByItsSensorsWhereItIs) {
+  EXPECT_TRUE(simulated.json()["max_estimate_error_m"].is_null());
+  const Outcome outcome = runner->run("simulate drive.g2o --estimate --json");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["carried_out"], true) << outcome.json()["reason"];
+  EXPECT_GT(outcome.json()["max_estimate_error_m"], 0.0);
+  EXPECT_LT(outcome.json()["max_estimate_error_rad"], 0.01);
+}
+
 TEST_F(SimulateTest, WritesTheRecordUpToAFall) {
   const Outcome fallen = runner->run("simulate drive.g2o --push 3000,1 -o f.g2o --json");
   EXPECT_EQ(fallen.exit_code, 1);

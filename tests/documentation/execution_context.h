@@ -28,6 +28,11 @@ struct Context {
   MotionPlayer player{robot, effectors, world, motion};
   WholeBodyController controller{robot, effectors};
   Engine engine{robot, effectors, world};
+  const Eigen::VectorXd& start = configuration;
+  const unsigned seed = 1;
+  StateEstimator estimator{robot, effectors, start, 0.001};
+  SimulatedSensors sensors{robot, {}, seed};
+  const SensorReadings readings = standing_still();
   const std::vector<TouchMeasurement> measured = std::vector<TouchMeasurement>(1);
 
  private:
@@ -40,6 +45,11 @@ struct Context {
     RobotState state(robot);
     state.update(q.data());
     return state.world_from_link(robot.link_index("l_sole")).translation();
+  }
+  SensorReadings standing_still() {
+    SensorReadings result = sensors.read(configuration, velocity);
+    result.pressing_N = {0.0};
+    return result;
   }
   Motion standing() const {
     const Contact contact{.effector = effectors.front(),
