@@ -92,13 +92,19 @@ ExitCode check(const CommandOptions& options) {
                                 {"start_draws", judging.moves.draws}};
     }
     json["stances_only"] = file.plan.stances_only;
+    json["says_stances_only"] = file.plan.says_stances_only;
     json["incomplete"] = file.plan.incomplete;
     json["time"] = {{"total", total.seconds()}};
     print_result(json, true);
   } else {
+    const bool is_motion_after_all = file.plan.says_stances_only && !file.plan.stances_only;
     print_text(file.name + ": " + (report.feasible ? "feasible" : "NOT feasible") + ", " +
                counted(report.configurations, "configuration", "configurations") +
                (file.plan.stances_only ? " of a plan of stances" : "") +
+               (is_motion_after_all ? ", judged as a motion: it says stances_only, but its times "
+                                      "are not 0, 1, 2, …, it has segments, or a step does not "
+                                      "change one contact"
+                                    : "") +
                (file.plan.incomplete ? ", the first part of an incomplete plan" : "") + '\n' +
                task_text(judging, report) + check_text(report, ids, options.all));
   }

@@ -189,6 +189,22 @@ std::optional<Bar> bar_to_roll_round(const World& world, const JudgedContact& ba
   return *nearest;
 }
 
+/// What a ball rolls round is what the world has there, whatever the contact says.
+bool claims_another_bar(const World& world, const JudgedContact& judged) {
+  if (!judged.contact.bar || !has_places(world)) return false;
+  const double claimed_m = judged.contact.bar->radius_m;
+  return std::ranges::none_of(judged.bars, [&](int b) {
+    return std::abs(world.bars[std::size_t(b)].radius_m - claimed_m) <= limits::kClosed_m;
+  });
+}
+
+std::string another_bar(const JudgedContact& judged) {
+  char text[96];
+  std::snprintf(text, sizeof text, " claims a bar of radius %.4g m, the world has %s there",
+                judged.contact.bar->radius_m, judged.bars.empty() ? "none" : "another");
+  return text;
+}
+
 Eigen::Vector3d centre_of(const JudgedContact& contact,
                           std::span<const Eigen::Isometry3d> world_from_link) {
   return world_from_link[std::size_t(contact.link)] * contact.contact.effector.point;
@@ -279,6 +295,7 @@ JudgedStance::JudgedStance(const Robot& robot, const World& world, const Stance&
     }
     place(world, judged);
     if (judged.is_ball()) judged.rolls_round = bar_to_roll_round(world, judged);
+    if (claims_another_bar(world, judged)) larger.push_back(contact.name() + another_bar(judged));
     contacts.push_back(std::move(judged));
   }
 }

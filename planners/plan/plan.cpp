@@ -237,7 +237,8 @@ Plan plan_of(const Graph& graph) {
   plan.world = only<WorldParameter>(parameters);
   if (plan.world) plan.world_number = *parameters.number_of<WorldParameter>();
   only<RobotParameter>(parameters);
-  plan.stances_only = format->stances_only && is_stance_sequence(graph, plan.slots);
+  plan.says_stances_only = format->stances_only;
+  plan.stances_only = plan.says_stances_only && is_stance_sequence(graph, plan.slots);
   if (!plan.stances_only) {
     std::stable_sort(plan.slots.begin(), plan.slots.end(), [&graph](int a, int b) {
       return configuration(graph, a).time_s < configuration(graph, b).time_s;

@@ -38,11 +38,12 @@ struct Plan {
   /// Its file says so, and its times are 0, 1, 2, …, each step changes one contact, and it has no
   /// segments: else it is a motion.
   bool stances_only = false;
-  bool incomplete = false;       ///< it ends before its goal
-  bool recorded = false;         ///< no plan: the record of one carried out (record.h)
-  bool states_wrenches = false;  ///< it has some
-  ContactMoves moves;            ///< how its start and goals differ from its scenario's
-  PlanIndex index;               ///< where all of this is in the graph
+  bool says_stances_only = false;  ///< its file does, whatever it is
+  bool incomplete = false;         ///< it ends before its goal
+  bool recorded = false;           ///< no plan: the record of one carried out (record.h)
+  bool states_wrenches = false;    ///< it has some
+  ContactMoves moves;              ///< how its start and goals differ from its scenario's
+  PlanIndex index;                 ///< where all of this is in the graph
   /// From the first configuration to the last; none: the plan does not say.
   std::vector<PlanSegment> segments;
 };

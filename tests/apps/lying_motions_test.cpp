@@ -114,6 +114,14 @@ TEST(LyingMotion, APlanOfStancesHasSegments) {
   plan.configurations[3].time_s = plan.configurations[2].time_s + 1e-3;
   plan.configurations[3].q[20] += 0.3;
   EXPECT_NE(violated_by(plan).find(" velocity_limits "), std::string::npos);
+  // And it is told so.
+  const CommandRunner runner;
+  runner.write("plan.g2o", plan.text());
+  const Outcome text = runner.run("check plan.g2o"), json = runner.run("check plan.g2o --json");
+  EXPECT_NE(text.out.find("judged as a motion: it says stances_only"), std::string::npos)
+      << text.out;
+  EXPECT_EQ(json.json()["stances_only"], false);
+  EXPECT_EQ(json.json()["says_stances_only"], true);
 }
 
 TEST(LyingMotion, WrenchesActWhereNoStanceIs) {

@@ -210,6 +210,20 @@ TEST_F(Ball, RollsRoundABarAndItsNormalGoesAlong) {
   EXPECT_NEAR(slip(report), kBall_m * 0.5, 1e-6);
 }
 
+TEST_F(Ball, OnABarThatIsNotThereIsALie) {
+  const double angle = 0.8, turn = angle * (kBar_m + kBall_m) / kBall_m;
+  CheckOptions options;
+  options.known = {on_the_bar().effector};
+  Motion motion = round_the_bar(angle, turn);
+  motion.stances[0].contacts[0].bar = RoundBar{Vector3d::UnitY(), kBar_m};
+  EXPECT_EQ(violated(check(motion, bar_along_y(), options)), Names{});
+  motion.stances[0].contacts[0].bar->radius_m = 2.0 * kBar_m;
+  EXPECT_EQ(violated(check(motion, bar_along_y(), options)), Names{"contact_claims"});
+  motion = on_the_floor(0.3, Vector3d(0.0, 0.3 / kBall_m, 0.0));
+  motion.stances[0].contacts[0].bar = RoundBar{Vector3d::UnitY(), kBar_m};
+  EXPECT_EQ(violated(check(motion, floor(), options)), Names{"contact_claims"});
+}
+
 TEST_F(Ball, RollsAlongABarToItsEnd) {
   const auto along = [](double way) {
     std::vector<Eigen::VectorXd> all;
