@@ -3,6 +3,7 @@
 #include <locograph/robots/body_inertia.h>
 #include <locograph/robots/kinematic_tree.h>
 #include <locograph/robots/statics.h>
+#include <locograph/world/stl_vertices.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -38,6 +39,7 @@ class ModelWriter {
 
   std::string write() {
     write_options();
+    write_meshes();
     text_ << "<worldbody>\n";
     write_world();
     write_body(0);
@@ -236,15 +238,12 @@ class ModelWriter {
   }
 
   void write_shapes(int body) {
-    bool touches = false;
     for (std::size_t i = 0; i < effectors_.size(); ++i) {
       const EndEffector& effector = effectors_[i];
       const int link = robot_.link_index(effector.link);
-      if (body_of(link) != body) continue;
-      touches = true;
-      write_effector(i, effector, tree_.body_from_link(link));
+      if (body_of(link) == body) write_effector(i, effector, tree_.body_from_link(link));
     }
-    if (touches) return;
+    if (has_effector(body)) return;
     for (std::size_t link = 0; link < robot_.links().size(); ++link) {
       if (tree_.body_of_link[link] != body) continue;
       for (const CollisionShape& shape : robot_.links()[link].collision) write_shape(shape);
@@ -283,8 +282,37 @@ class ModelWriter {
     end_robot_geom();
   }
 
+  bool has_effector(int body) const {
+    return std::any_of(effectors_.begin(), effectors_.end(), [&](const EndEffector& effector) {
+      return body_of(robot_.link_index(effector.link)) == body;
+    });
+  }
+
+  // MuJoCo makes their convex hulls, as the judge does.
+  void write_meshes() {
+    text_ << "<asset>\n";
+    for (std::size_t link = 0; link < robot_.links().size(); ++link) {
+      if (has_effector(tree_.body_of_link[link])) continue;
+      for (const CollisionShape& shape : robot_.links()[link].collision) {
+        if (shape.type != ShapeType::kMesh || !shape.mesh_found) continue;
+        text_ << "<mesh name=\"" << mesh_name(shape) << "\" vertex=\"";
+        for (const Eigen::Vector3d& corner : stl_vertices(shape.mesh_file)) {
+          text_ << row(corner.cwiseProduct(shape.size)) << ' ';
+        }
+        text_ << "\"/>\n";
+      }
+    }
+    text_ << "</asset>\n";
+  }
+
+  std::string mesh_name(const CollisionShape& shape) const {
+    const std::vector<CollisionShape>& all =
+        robot_.links()[static_cast<std::size_t>(shape.link)].collision;
+    return "mesh_" + std::to_string(shape.link) + '_' + std::to_string(&shape - all.data());
+  }
+
   void write_shape(const CollisionShape& shape) {
-    if (shape.type == ShapeType::kMesh) return;
+    if (shape.type == ShapeType::kMesh && !shape.mesh_found) return;
     text_ << "<geom";
     switch (shape.type) {
       case ShapeType::kSphere:
@@ -299,6 +327,7 @@ class ModelWriter {
         text_ << " type=\"box\" size=\"" << row(0.5 * shape.size) << '"';
         break;
       case ShapeType::kMesh:
+        text_ << " type=\"mesh\" mesh=\"" << mesh_name(shape) << '"';
         break;
     }
     write_pose(tree_.body_from_link(shape.link) * shape.link_from_shape);

@@ -167,6 +167,7 @@ class Run {
         felt_(robot, effectors),
         touches_(effectors.size()),
         error_(robot.tangent_size()) {
+    require_shapes();
     require_start(world, motion);
     if (options.sensors) {
       sensors_.emplace(robot, *options.sensors, options.seed);
@@ -210,6 +211,17 @@ class Run {
       return std::make_unique<JointImpedanceController>(robot_, effectors_, own);
     }
     return std::make_unique<WholeBodyController>(robot_, effectors_, options_.whole_body);
+  }
+
+  void require_shapes() const {
+    for (const Link& link : robot_.links()) {
+      for (const CollisionShape& shape : link.collision) {
+        if (shape.type != ShapeType::kMesh || shape.mesh_found) continue;
+        throw Error(robot_.urdf_file().string(), shape.line,
+                    "collision mesh " + shape.mesh_file.string() + " was not found",
+                    "a readable STL file");
+      }
+    }
   }
 
   /// The motion's own start in the world that it was planned in.

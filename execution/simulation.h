@@ -89,7 +89,7 @@ struct SimulationResult {
 
 /// effectors: those of the robot's task; where the motion has contacts of others, it is refused.
 /// Throws Error for options that make no sense, as Engine, MotionPlayer and the controller do, and
-/// for a motion that begins in penetration.
+/// for a motion that begins in penetration and collision meshes that were not found.
 SimulationResult simulate(const Robot& robot, std::span<const EndEffector> effectors,
                           const World& world, const Motion& motion,
                           const SimulationOptions& options = {});

@@ -182,6 +182,43 @@ TEST(Engine, RefusesNumbersThatAreNone) {
   }
 }
 
+TEST(Engine, MeshesTouchWithTheirHulls) {
+  const TemporaryFolder folder;
+  std::string stl = "solid wedge\n";  // of 0.2 m, its edge on top of the middle, scaled by half
+  const auto facet = [&](const std::string& a, const std::string& b, const std::string& c) {
+    stl += "facet normal 0 0 0\nouter loop\nvertex " + a + "\nvertex " + b + "\nvertex " + c +
+           "\nendloop\nendfacet\n";
+  };
+  facet("-0.2 -0.2 0", "0.2 -0.2 0", "0.2 0.2 0");
+  facet("-0.2 -0.2 0", "0.2 0.2 0", "-0.2 0.2 0");
+  facet("-0.2 -0.2 0", "0.2 -0.2 0", "0 0 0.4");
+  facet("0.2 0.2 0", "-0.2 0.2 0", "0 0 0.4");
+  folder.write("wedge.stl", stl + "endsolid wedge\n");
+  const Robot robot = Robot::load(
+      folder.write("wedge.urdf",
+                   "<robot name='wedge'><link name='wedge'><inertial><mass value='1'/><inertia "
+                   "ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial><collision>"
+                   "<origin xyz='0 0 0.1'/><geometry><mesh filename='wedge.stl' "
+                   "scale='0.5 0.5 0.5'/></geometry></collision></link></robot>"),
+      {}, {.floating_base = true});
+  World world;
+  world.surfaces.emplace_back();  // the plane z = 0
+  const auto penetration_m = [&](double z, const Eigen::Quaterniond& turned) {
+    Engine engine(robot, {}, world);
+    Eigen::VectorXd q = robot.neutral_configuration();
+    q[2] = z;
+    q.segment<4>(3) = turned.coeffs();
+    engine.set_state(q, Eigen::VectorXd::Zero(robot.tangent_size()));
+    return engine.penetration_m();
+  };
+  const Eigen::Quaterniond upright = Eigen::Quaterniond::Identity();
+  const Eigen::Quaterniond on_its_head(0.0, 1.0, 0.0, 0.0);
+  EXPECT_EQ(penetration_m(-0.099, upright), 0.0);
+  EXPECT_NEAR(penetration_m(-0.101, upright), 0.001, 1e-5);
+  EXPECT_EQ(penetration_m(0.301, on_its_head), 0.0);
+  EXPECT_NEAR(penetration_m(0.299, on_its_head), 0.001, 1e-5);
+}
+
 TEST(Engine, KeepsTorquesWithinTheEfforts) {
   const TemporaryFolder folder;
   const Robot robot = Robot::load(folder.write("small.urdf", small_robot_urdf()));
