@@ -19,6 +19,8 @@ namespace {
 constexpr double kTouched_N = 1.0;
 constexpr double kMostPenetration_m = 0.003;
 constexpr double kLongest = 5.0;  // of the motion's time, and a minute
+/// An end effector that should be free: after it has been held, and for how long it touches.
+constexpr double kLeaving_s = 0.3, kBrief_s = 0.05;
 
 double processor_seconds() {
   timespec now;
@@ -166,6 +168,7 @@ class Run {
         meter_(robot, effectors),
         felt_(robot, effectors),
         touches_(effectors.size()),
+        free_(effectors.size()),
         error_(robot.tangent_size()) {
     require_shapes();
     require_start(world, motion);
@@ -338,11 +341,10 @@ class Run {
       }
     }
     const Engine::OtherTouch other = engine_.other_touch();
-    if (other.pressing_N > std::max(kTouched_N, result_.other_touch_N)) {
-      result_.other_touch_N = other.pressing_N;
-      result_.other_touch_at_s = player_.plan_time_s();
-      result_.other_link = robot_.links()[static_cast<std::size_t>(other.link)].name;
+    if (other.pressing_N > kTouched_N) {
+      tell_touch(other.pressing_N, robot_.links()[static_cast<std::size_t>(other.link)].name);
     }
+    watch_free_effectors();
     if (engine_.diverged()) {
       result_.upright = false;
       result_.reason = "the engine gives up";
@@ -353,6 +355,31 @@ class Run {
     }
     if (!result_.upright && !player_.halted().empty()) {
       result_.reason += ", after " + player_.halted();
+    }
+  }
+
+  void tell_touch(double pressing_N, const std::string& link) {
+    if (pressing_N <= result_.other_touch_N) return;
+    result_.other_touch_N = pressing_N;
+    result_.other_touch_at_s = player_.plan_time_s();
+    result_.other_link = link;
+  }
+
+  /// Those that touch nothing by the plan. Just after they were held, or before they are taken,
+  /// they may.
+  void watch_free_effectors() {
+    for (std::size_t e = 0; e < effectors_.size(); ++e) {
+      Free& own = free_[e];
+      if (player_.contacts()[e].held) {
+        own = {};
+        continue;
+      }
+      const double force_N = engine_.contact_force(static_cast<int>(e)).norm();
+      own.free_s += options_.player.cycle_s;
+      own.pressed_s = force_N > kTouched_N ? own.pressed_s + options_.player.cycle_s : 0.0;
+      if (own.free_s > kLeaving_s && own.pressed_s > kBrief_s) {
+        tell_touch(force_N, effectors_[e].link);
+      }
     }
   }
 
@@ -404,6 +431,10 @@ class Run {
   RobotState state_, planned_, estimated_;
   SlipMeter meter_, felt_;  // by the truth, by what is estimated
   std::vector<TouchMeasurement> touches_;
+  struct Free {
+    double free_s = 0.0, pressed_s = 0.0;  ///< so far
+  };
+  std::vector<Free> free_;
   Eigen::VectorXd error_;
   SimulationResult result_;
   double next_record_s_ = 0.0;

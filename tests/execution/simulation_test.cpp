@@ -25,6 +25,20 @@ void expect_error(F&& job, const std::string& words) {
 class Simulations : public testing::Test {
  protected:
   StandingComan coman;
+  EndEffector hand() const {
+    return {.name = "hand",
+            .link = "LBall",
+            .kind = ContactKind::kPoint,
+            .point = {0.0, 0.0, -0.0105},
+            .radius_m = 0.071,
+            .friction = 0.6,
+            .max_force_N = 100.0};
+  }
+  Eigen::Vector3d hand_centre() const {
+    RobotState state(coman.robot);
+    state.update(coman.configuration.data());
+    return state.world_from_link(coman.robot.link_index(hand().link)) * hand().point;
+  }
   SimulationResult run(const Motion& motion, const SimulationOptions& options = {}) const {
     return simulate(coman.robot, coman.effectors, coman.world, motion, options);
   }
@@ -66,17 +80,8 @@ TEST_F(Simulations, ForcesAndMomentsThatAreMeasuredHoldTheRobot) {
 }
 
 TEST_F(Simulations, SurfacesAreThinFromBelow) {
-  const EndEffector ball = {.name = "hand",
-                            .link = "LBall",
-                            .kind = ContactKind::kPoint,
-                            .point = {0.0, 0.0, -0.0105},
-                            .radius_m = 0.071,
-                            .friction = 0.6,
-                            .max_force_N = 100.0};
-  RobotState state(coman.robot);
-  state.update(coman.configuration.data());
-  const Eigen::Vector3d centre =
-      state.world_from_link(coman.robot.link_index(ball.link)) * ball.point;
+  const EndEffector ball = hand();
+  const Eigen::Vector3d centre = hand_centre();
   Surface shelf = ground();
   shelf.half_x_m = shelf.half_y_m = 0.1;
   const auto penetration_m = [&](double above_m) {
@@ -88,6 +93,21 @@ TEST_F(Simulations, SurfacesAreThinFromBelow) {
   };
   EXPECT_EQ(penetration_m(0.004), 0.0);
   EXPECT_GT(penetration_m(-0.004), 0.003);
+}
+
+TEST_F(Simulations, AFreeHandThatTouchesIsTold) {
+  std::vector<EndEffector> effectors = coman.effectors;
+  effectors.push_back(hand());
+  Surface shelf = ground();
+  shelf.half_x_m = shelf.half_y_m = 0.05;
+  const auto link_that_touches = [&](double above_m) {
+    shelf.world_from_surface.translation() =
+        hand_centre() - (hand().radius_m + above_m) * Eigen::Vector3d::UnitZ();
+    return simulate(coman.robot, effectors, {.surfaces = {ground(), shelf}}, coman.standing())
+        .other_link;
+  };
+  EXPECT_EQ(link_that_touches(-0.0028), "LBall");
+  EXPECT_EQ(link_that_touches(0.01), "");
 }
 
 TEST_F(Simulations, ASoleOnABarIsKeptAsItWasPlanned) {
