@@ -55,6 +55,8 @@ std::size_t effector_of(std::span<const EndEffector> effectors, const Contact& c
 
 void HoldingShares::validate() const {
   check_option(friction > 0.0 && friction <= 1.0, "friction", "above 0, at most 1");
+  check_option(most_friction >= friction && most_friction <= 1.0, "most_friction",
+               "no less than friction, at most 1");
   check_option(area > 0.0 && area <= 1.0, "area", "above 0, at most 1");
 }
 
@@ -107,18 +109,26 @@ HeldContact::HeldContact(const Contact& contact, std::span<const Eigen::Vector2d
     effector.half_x_m = 0.5 * (inner.upper.x() - inner.lower.x());
     effector.half_y_m = 0.5 * (inner.upper.y() - inner.lower.y());
   }
-  effector.friction *= shares.friction;
   effector.half_x_m *= shares.area;
   effector.half_y_m *= shares.area;
   if (effector.kind == ContactKind::kSurface) half_m_ = {effector.half_x_m, effector.half_y_m};
-  cone_ = contact_kind_entry(effector.kind)
-              .wrench_cone(used, {.cone = FrictionCone::kInner, .facets = kFacets});
+  const double friction = effector.friction;
+  const auto cone_with = [&](double share) {
+    effector.friction = share * friction;
+    return contact_kind_entry(effector.kind)
+        .wrench_cone(used, {.cone = FrictionCone::kInner, .facets = kFacets});
+  };
+  cone_ = cone_with(shares.friction);
+  widest_ = cone_with(shares.most_friction);
 }
 
 /// About the middle c the moment is m - c x f.
-WrenchRow HeldContact::row(int i) const {
+WrenchRow HeldContact::row(int i, double reserve) const {
   static constexpr double kZero[6] = {};
   WrenchRow limit = cone_->row(i, kZero);
+  const WrenchRow widest = widest_->row(i, kZero);
+  limit.gradient += reserve * (widest.gradient - limit.gradient);
+  limit.offset += reserve * (widest.offset - limit.offset);
   if (middle_.isZero()) return limit;
   const Eigen::Vector3d moment = limit.gradient.tail<3>();
   const Eigen::Vector3d middle(middle_.x(), middle_.y(), 0.0);

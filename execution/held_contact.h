@@ -26,8 +26,9 @@ std::size_t effector_of(std::span<const EndEffector> effectors, const Contact& c
 
 /// What is used of what contacts have.
 struct HoldingShares {
-  double friction = 0.9;
-  double area = 0.95;  ///< of lengths, about its middle
+  double friction = 0.7;
+  double area = 0.95;          ///< of lengths, about its middle
+  double most_friction = 1.0;  ///< where that does not hold the robot
 
   /// Throws Error naming the share that is not above 0, or above 1.
   void validate() const;
@@ -44,13 +45,14 @@ class HeldContact {
   const WrenchCone& cone() const { return *cone_; }
   /// Half of the sides of what of a surface contact is counted on, along its axes [m].
   const Eigen::Vector2d& half_m() const { return half_m_; }
-  /// Of the cone, for a wrench about the contact's point along its axes.
-  WrenchRow row(int i) const;
+  /// Of the cone, for a wrench about the contact's point along its axes. reserve: from 0, friction
+  /// as it is used, to 1, the most of it.
+  WrenchRow row(int i, double reserve = 0.0) const;
 
  private:
   Contact contact_;
   Eigen::Vector2d middle_ = Eigen::Vector2d::Zero(), half_m_ = Eigen::Vector2d::Zero();
-  std::shared_ptr<const WrenchCone> cone_;
+  std::shared_ptr<const WrenchCone> cone_, widest_;
 };
 
 /// The largest rectangle along the axes inside the convex hull of some points, as two opposite

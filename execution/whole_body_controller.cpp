@@ -20,6 +20,9 @@ constexpr double kMostWeights = 2.0;   // that one contact bears
 constexpr double kOverEffort = 100.0;  // cost of torques beyond the efforts, of one times those
 constexpr double kOverEffortTold = 1e-3;
 constexpr double kLittle = 1e-3;
+/// Where the base misses more than this part of the weight, contacts give more of their friction:
+/// all of it within so many cycles, and less again when it is not missed.
+constexpr double kMissing = 0.005, kReserveUp = 1.0 / 20, kReserveDown = 1.0 / 500;
 constexpr double kLine_m = 0.005;  // soles that bear on less than twice this may turn about it
 constexpr double kMostSteering_rad = 0.3;
 constexpr double kRolling_m_s = 0.02;  // from which on steering gets a wheel anywhere
@@ -442,7 +445,7 @@ void WholeBodyController::solve_wrenches(std::span<const ContactCommand> contact
         qp_->bound(at, -kUnbounded, kUnbounded);
         continue;
       }
-      const WrenchRow limit = command.held->row(r);
+      const WrenchRow limit = command.held->row(r, reserve_);
       for (std::size_t k = 0; k < components.size(); ++k) {
         qp_->row(at)[own.unknown + static_cast<int>(k)] = limit.gradient[components[k]];
       }
@@ -557,6 +560,8 @@ const Eigen::VectorXd& WholeBodyController::torques(const Eigen::VectorXd& q,
     solve_wrenches(contacts);
     if (!take_in_limits(q, v)) break;
   }
+  const bool misses = missing_.norm() > kMissing * weight_N_;
+  reserve_ = std::clamp(reserve_ + (misses ? kReserveUp : -kReserveDown), 0.0, 1.0);
   for (int i = 0; i < torques_.size(); ++i) {
     const double effort = effort_[static_cast<std::size_t>(i)];
     torques_[i] = std::clamp(torques_full_[kBaseRows + i], -effort, effort);

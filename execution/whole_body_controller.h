@@ -17,9 +17,10 @@
 ///   1/2 |G w - F|^2_W + 1/2 sum_c r / share_c^2 |w_c - planned_c|^2
 ///
 /// over all wrenches within cones, areas, least and largest forces, and torques within the efforts
-/// is a small quadratic programme (solvers/dense_qp.h) of six unknowns a sole, three a ball. Joints
-/// that would get beyond their limits, and torques that no wrench brings within the efforts, become
-/// tasks of the first cost, and both steps are done again.
+/// (with less friction than there is, as long as that will do) is a small quadratic programme
+/// (solvers/dense_qp.h) of six unknowns a sole, three a ball. Joints that would get beyond their
+/// limits, and torques that no wrench brings within the efforts, become tasks of the first cost,
+/// and both steps are done again.
 ///
 /// Throws Error for end effectors that are not sound, and as RobotDynamics does. Keeps a pointer to
 /// the robot, which must outlive it. torques() does not allocate. Thread-safety: one per thread.
@@ -136,6 +137,7 @@ class WholeBodyController final : public TorqueController {
   Vector6 asked_ = Vector6::Zero(), missing_ = Vector6::Zero();
   std::unique_ptr<DenseQp> qp_;
   int torque_rows_from_ = 0;
+  double reserve_ = 0.0;  ///< of friction that is used
 };
 
 }  // namespace locograph

@@ -71,6 +71,34 @@ TEST_F(Controllers, WrenchesStayInsideConesAndAreas) {
   }
 }
 
+TEST_F(Controllers, TakeMoreOfFrictionWhileTheRestWillNotDo) {
+  constexpr double kSlippery = 0.1;
+  const auto slippery = [&](std::size_t i) {
+    Contact contact = coman.contact(i);
+    contact.effector.friction = kSlippery;
+    return HeldContact(contact, {});
+  };
+  const HeldContact one = slippery(0), other = slippery(1);
+  commands = {{.held = &one}, {.held = &other}};
+  CurvePoint fast = rest;
+  fast.acceleration[0] = 3.0;
+  const auto used_after = [&](int cycles) {
+    for (int i = 0; i < cycles; ++i) {
+      whole_body.torques(coman.configuration, zero(), fast, commands);
+    }
+    const auto share = [&](int foot) {
+      return whole_body.wrench(foot).head<2>().norm() / whole_body.wrench(foot)[2] / kSlippery;
+    };
+    return std::max(share(0), share(1));
+  };
+  EXPECT_LE(used_after(1), 0.7 + 1e-6);
+  const double all = used_after(30);
+  EXPECT_GT(all, 0.85);
+  EXPECT_LE(all, 1.0 + 1e-6);
+  for (int i = 0; i < 600; ++i) torques();
+  EXPECT_LE(used_after(1), 0.7 + 1e-6);
+}
+
 TEST_F(Controllers, TorquesKeepToTheEfforts) {
   CurvePoint fast = rest;
   fast.acceleration.tail(coman.robot.active_joint_count()).setConstant(500.0);

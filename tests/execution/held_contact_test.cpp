@@ -65,6 +65,18 @@ TEST(HeldContact, SharesAreUsed) {
   Eigen::Matrix<double, 6, 1> sliding = pressed_at(0.0, 0.0);
   sliding[0] = 30.0;
   EXPECT_GT(beyond(held, sliding), 0.0);
+  // The reserve has all friction, and no more area.
+  const auto with_reserve = [&](const Eigen::Matrix<double, 6, 1>& wrench) {
+    double worst = -1e9;
+    for (int i = 0; i < held.cone().rows(); ++i) {
+      const WrenchRow row = held.row(i, 1.0);
+      worst = std::max(worst, row.gradient.dot(wrench) + row.offset);
+    }
+    return worst;
+  };
+  EXPECT_LT(with_reserve(sliding), 0.0);
+  EXPECT_GT(with_reserve(pressed_at(0.06, 0.0)), 0.0);
+  EXPECT_THROW(HeldContact(kSole, {}, {.friction = 0.8, .most_friction = 0.7}), Error);
   EXPECT_THROW(HeldContact(kSole, {}, {.friction = 0.0}), Error);
   EXPECT_THROW(HeldContact(kSole, {}, {.area = 1.1}), Error);
 }
