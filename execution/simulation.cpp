@@ -19,8 +19,9 @@ namespace {
 constexpr double kTouched_N = 1.0;
 constexpr double kMostPenetration_m = 0.003;
 constexpr double kLongest = 5.0;  // of the motion's time, and a minute
-/// An end effector that should be free: after it has been held, and for how long it touches.
-constexpr double kLeaving_s = 0.3, kBrief_s = 0.05;
+/// An end effector that should be free may touch for so long, and so near a contact that it has
+/// just left or is about to hold.
+constexpr double kBrief_s = 0.05, kNearContact_m = 0.03;
 
 double processor_seconds() {
   timespec now;
@@ -168,7 +169,7 @@ class Run {
         meter_(robot, effectors),
         felt_(robot, effectors),
         touches_(effectors.size()),
-        free_(effectors.size()),
+        touches_free_s_(effectors.size()),
         error_(robot.tangent_size()) {
     require_shapes();
     require_start(world, motion);
@@ -365,19 +366,28 @@ class Run {
     result_.other_link = link;
   }
 
-  /// Those that touch nothing by the plan. Just after they were held, or before they are taken,
-  /// they may.
+  bool is_near_contact(std::size_t e) const {
+    const MotionPlayer::Neighbours near = player_.neighbours(e);
+    for (const Contact* contact : {near.before, near.after}) {
+      if (contact &&
+          (meter_.touching(state_, e, *contact) - contact->position).norm() < kNearContact_m) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Those that touch nothing by the plan.
   void watch_free_effectors() {
     for (std::size_t e = 0; e < effectors_.size(); ++e) {
-      Free& own = free_[e];
+      double& own = touches_free_s_[e];
       if (player_.contacts()[e].held) {
-        own = {};
+        own = 0.0;
         continue;
       }
       const double force_N = engine_.contact_force(static_cast<int>(e)).norm();
-      own.free_s += options_.player.cycle_s;
-      own.pressed_s = force_N > kTouched_N ? own.pressed_s + options_.player.cycle_s : 0.0;
-      if (own.free_s > kLeaving_s && own.pressed_s > kBrief_s) {
+      own = force_N > kTouched_N ? own + options_.player.cycle_s : 0.0;
+      if (own > kBrief_s && !is_near_contact(e)) {
         tell_touch(force_N, effectors_[e].link);
       }
     }
@@ -431,10 +441,7 @@ class Run {
   RobotState state_, planned_, estimated_;
   SlipMeter meter_, felt_;  // by the truth, by what is estimated
   std::vector<TouchMeasurement> touches_;
-  struct Free {
-    double free_s = 0.0, pressed_s = 0.0;  ///< so far
-  };
-  std::vector<Free> free_;
+  std::vector<double> touches_free_s_;  // of each end effector: touches, and should not
   Eigen::VectorXd error_;
   SimulationResult result_;
   double next_record_s_ = 0.0;
