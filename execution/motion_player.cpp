@@ -175,11 +175,9 @@ const HeldContact* MotionPlayer::contact_of(std::size_t interval, std::size_t ef
   return &held_[static_cast<std::size_t>(stance)][static_cast<std::size_t>(contact)];
 }
 
-MotionPlayer::Neighbours MotionPlayer::neighbours(std::size_t effector) const {
-  const HeldContact* before = now_ > 0 ? contact_of(now_ - 1, effector) : nullptr;
-  const HeldContact* after =
-      now_ + 1 < intervals_.size() ? contact_of(now_ + 1, effector) : nullptr;
-  return {before ? &before->contact() : nullptr, after ? &after->contact() : nullptr};
+const Contact* MotionPlayer::next_contact(std::size_t effector) const {
+  const HeldContact* next = now_ + 1 < intervals_.size() ? contact_of(now_ + 1, effector) : nullptr;
+  return next ? &next->contact() : nullptr;
 }
 
 int MotionPlayer::stance() const {

@@ -70,12 +70,8 @@ class MotionPlayer {
   std::span<const ContactCommand> contacts() const { return commands_; }
   const Motion& motion() const { return motion_; }
 
-  /// The contacts that an end effector holds in the stance before and in the next one; null: none.
-  struct Neighbours {
-    const Contact* before = nullptr;
-    const Contact* after = nullptr;
-  };
-  Neighbours neighbours(std::size_t effector) const;
+  /// That an end effector holds in the next stance; null: none.
+  const Contact* next_contact(std::size_t effector) const;
 
   double plan_time_s() const { return time_s_; }
   /// The stance that is held now, into motion().stances.

@@ -102,6 +102,9 @@ class SlipMeter {
     for (const EndEffector& effector : effectors) links_.push_back(robot.link_index(effector.link));
   }
 
+  Eigen::Vector3d centre(const RobotState& state, std::size_t e) const {
+    return state.world_from_link(links_[e]) * effectors_[e].point;
+  }
   Eigen::Vector3d touching(const RobotState& state, std::size_t e, const Contact& contact) const {
     return centre(state, e) + arm(state, e, contact);
   }
@@ -130,9 +133,6 @@ class SlipMeter {
     Eigen::Vector3d by = Eigen::Vector3d::Zero();
   };
 
-  Eigen::Vector3d centre(const RobotState& state, std::size_t e) const {
-    return state.world_from_link(links_[e]) * effectors_[e].point;
-  }
   Eigen::Vector3d normal_of(const RobotState& state, std::size_t e, const Contact& contact) const {
     if (is_ball(effectors_[e])) return BallTrack(contact).normal(centre(state, e));
     return contact.normal.normalized();
@@ -169,7 +169,7 @@ class Run {
         meter_(robot, effectors),
         felt_(robot, effectors),
         touches_(effectors.size()),
-        touches_free_s_(effectors.size()),
+        free_(effectors.size()),
         error_(robot.tangent_size()) {
     require_shapes();
     require_start(world, motion);
@@ -367,27 +367,22 @@ class Run {
   }
 
   bool is_near_contact(std::size_t e) const {
-    const MotionPlayer::Neighbours near = player_.neighbours(e);
-    for (const Contact* contact : {near.before, near.after}) {
-      if (contact &&
-          (meter_.touching(state_, e, *contact) - contact->position).norm() < kNearContact_m) {
-        return true;
-      }
-    }
-    return false;
+    if ((meter_.centre(state_, e) - free_[e].left).norm() < kNearContact_m) return true;
+    const Contact* next = player_.next_contact(e);
+    return next && (meter_.touching(state_, e, *next) - next->position).norm() < kNearContact_m;
   }
 
   /// Those that touch nothing by the plan.
   void watch_free_effectors() {
     for (std::size_t e = 0; e < effectors_.size(); ++e) {
-      double& own = touches_free_s_[e];
+      Free& own = free_[e];
       if (player_.contacts()[e].held) {
-        own = 0.0;
+        own = {0.0, meter_.centre(state_, e)};
         continue;
       }
       const double force_N = engine_.contact_force(static_cast<int>(e)).norm();
-      own = force_N > kTouched_N ? own + options_.player.cycle_s : 0.0;
-      if (own > kBrief_s && !is_near_contact(e)) {
+      own.touches_s = force_N > kTouched_N ? own.touches_s + options_.player.cycle_s : 0.0;
+      if (own.touches_s > kBrief_s && !is_near_contact(e)) {
         tell_touch(force_N, effectors_[e].link);
       }
     }
@@ -441,7 +436,12 @@ class Run {
   RobotState state_, planned_, estimated_;
   SlipMeter meter_, felt_;  // by the truth, by what is estimated
   std::vector<TouchMeasurement> touches_;
-  std::vector<double> touches_free_s_;  // of each end effector: touches, and should not
+  /// Of an end effector that should be free.
+  struct Free {
+    double touches_s = 0.0;                                          ///< so far
+    Eigen::Vector3d left = Eigen::Vector3d::Constant(std::nan(""));  ///< where it was held last
+  };
+  std::vector<Free> free_;
   Eigen::VectorXd error_;
   SimulationResult result_;
   double next_record_s_ = 0.0;
