@@ -296,13 +296,40 @@ class ModelWriter {
       for (const CollisionShape& shape : robot_.links()[link].collision) {
         if (shape.type != ShapeType::kMesh || !shape.mesh_found) continue;
         text_ << "<mesh name=\"" << mesh_name(shape) << "\" vertex=\"";
-        for (const Eigen::Vector3d& corner : stl_vertices(shape.mesh_file)) {
-          text_ << row(corner.cwiseProduct(shape.size)) << ' ';
-        }
+        for (const Eigen::Vector3d& corner : solid_corners(shape)) text_ << row(corner) << ' ';
         text_ << "\"/>\n";
       }
     }
     text_ << "</asset>\n";
+  }
+
+  // MuJoCo refuses what has no volume: meshes that are flat get the thickness of a plate.
+  static std::vector<Eigen::Vector3d> solid_corners(const CollisionShape& shape) {
+    std::vector<Eigen::Vector3d> corners = stl_vertices(shape.mesh_file);
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (Eigen::Vector3d& corner : corners) {
+      corner = corner.cwiseProduct(shape.size).eval();
+      mean += corner / static_cast<double>(corners.size());
+    }
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const Eigen::Vector3d& corner : corners) {
+      spread += (corner - mean) * (corner - mean).transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(spread);
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d axis = principal.eigenvectors().col(k);
+      double extent_m = 0.0;
+      for (const Eigen::Vector3d& corner : corners) {
+        extent_m = std::max(extent_m, std::abs(axis.dot(corner - mean)));
+      }
+      if (extent_m > kPlateHalf_m) continue;
+      const std::size_t count = corners.size();
+      for (std::size_t i = 0; i < count; ++i) {
+        corners.push_back(corners[i] + kPlateHalf_m * axis);
+        corners[i] -= kPlateHalf_m * axis;
+      }
+    }
+    return corners;
   }
 
   std::string mesh_name(const CollisionShape& shape) const {

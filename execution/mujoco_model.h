@@ -16,11 +16,11 @@
 ///               give flickering contacts on boxes)
 ///
 /// The robot touches the world, not itself. A body with end effectors touches with these only; the
-/// others touch with all their collision shapes, of meshes with their convex hulls; meshes that
-/// were not found are left out. Grasps hold nothing yet. Friction is that of the world, MuJoCo
-/// takes the larger one of two: of surfaces and bars their own, of a box the least of its faces,
-/// and where none is stated the least of the end effectors. A surface without any end is a plane,
-/// another one a box of 2 mm below it. Maps are left out.
+/// others touch with all their collision shapes, of meshes with their convex hulls, flat ones
+/// 2 mm thick; meshes that were not found are left out. Grasps hold nothing yet. Friction is that
+/// of the world, MuJoCo takes the larger one of two: of surfaces and bars their own, of a box the
+/// least of its faces, and where none is stated the least of the end effectors. A surface without
+/// any end is a plane, another one a box of 2 mm below it. Maps are left out.
 ///
 /// Errors: those of options, of body_inertias() and of require_sound_effector(); links of bodies
 /// without mass or inertia; mimic joints; kinds of contact that are not ours; obstacles that move

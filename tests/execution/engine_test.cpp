@@ -219,6 +219,28 @@ TEST(Engine, MeshesTouchWithTheirHulls) {
   EXPECT_NEAR(penetration_m(0.299, on_its_head), 0.001, 1e-5);
 }
 
+TEST(Engine, FlatMeshesArePlates) {
+  const TemporaryFolder folder;
+  folder.write("flat.stl",
+               "solid flat\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0.2 0 0\n"
+               "vertex 0 0.2 0\nendloop\nendfacet\nendsolid flat\n");
+  const Robot robot = Robot::load(
+      folder.write("flat.urdf",
+                   "<robot name='flat'><link name='flat'><inertial><mass value='1'/><inertia "
+                   "ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial><collision>"
+                   "<geometry><mesh filename='flat.stl'/></geometry></collision></link></robot>"),
+      {}, {.floating_base = true});
+  World world;
+  world.surfaces.emplace_back();
+  Engine engine(robot, {}, world);
+  Eigen::VectorXd q = robot.neutral_configuration();
+  for (const auto& [z, deep_m] : {std::pair(0.002, 0.0), std::pair(-0.001, 0.002)}) {
+    q[2] = z;
+    engine.set_state(q, Eigen::VectorXd::Zero(robot.tangent_size()));
+    EXPECT_NEAR(engine.penetration_m(), deep_m, 1e-5);
+  }
+}
+
 TEST(Engine, KeepsTorquesWithinTheEfforts) {
   const TemporaryFolder folder;
   const Robot robot = Robot::load(folder.write("small.urdf", small_robot_urdf()));
