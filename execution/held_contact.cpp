@@ -1,6 +1,7 @@
 #include <locograph/common/check_option.h>
 #include <locograph/execution/held_contact.h>
 #include <locograph/robots/contact_kinds.h>
+#include <locograph/robots/rolling_ball.h>
 #include <locograph/world/convex_hull.h>
 
 #include <algorithm>
@@ -51,6 +52,15 @@ std::size_t effector_of(std::span<const EndEffector> effectors, const Contact& c
       effectors.begin(), effectors.end(),
       [&](const EndEffector& effector) { return name_of(effector) == contact.name(); });
   return static_cast<std::size_t>(named - effectors.begin());
+}
+
+double rolling_radius_m(const EndEffector& effector) {
+  return is_ball(effector) || effector.kind == ContactKind::kWheel ? effector.radius_m : 0.0;
+}
+
+Eigen::Vector3d normal_at(const Contact& contact, const Eigen::Vector3d& point) {
+  return is_ball(contact.effector) ? BallTrack(contact).normal(point)
+                                   : Eigen::Vector3d(contact.normal.normalized());
 }
 
 void HoldingShares::validate() const {

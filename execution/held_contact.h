@@ -24,6 +24,11 @@ const std::string& name_of(const EndEffector& effector);
 /// The one that a contact is of, by its name; their count: none is.
 std::size_t effector_of(std::span<const EndEffector> effectors, const Contact& contact);
 
+/// Of what rolls, a ball or a wheel; 0: it does not.
+double rolling_radius_m(const EndEffector& effector);
+/// Of what a contact touches where its end effector's point is: of a bar it goes along with a ball.
+Eigen::Vector3d normal_at(const Contact& contact, const Eigen::Vector3d& point);
+
 /// What is used of what contacts have.
 struct HoldingShares {
   double friction = 0.7;

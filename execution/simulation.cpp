@@ -4,6 +4,7 @@
 #include <locograph/execution/simulation.h>
 #include <locograph/robots/robot_state.h>
 #include <locograph/robots/rolling_ball.h>
+#include <locograph/world/link_solid.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -119,7 +120,7 @@ class SlipMeter {
     frame.translation() = effectors_[e].point;
     state.frame_jacobian(links_[e], frame, jacobian_);
     const Eigen::Matrix<double, 6, 1> moves = jacobian_ * velocity;
-    const Eigen::Vector3d normal = normal_of(state, e, *held);
+    const Eigen::Vector3d normal = normal_at(*held, centre(state, e));
     Eigen::Vector3d slides =
         moves.head<3>() + Eigen::Vector3d(moves.tail<3>()).cross(arm(state, e, *held));
     slides -= slides.dot(normal) * normal;
@@ -133,14 +134,8 @@ class SlipMeter {
     Eigen::Vector3d by = Eigen::Vector3d::Zero();
   };
 
-  Eigen::Vector3d normal_of(const RobotState& state, std::size_t e, const Contact& contact) const {
-    if (is_ball(effectors_[e])) return BallTrack(contact).normal(centre(state, e));
-    return contact.normal.normalized();
-  }
   Eigen::Vector3d arm(const RobotState& state, std::size_t e, const Contact& contact) const {
-    const bool round = is_ball(effectors_[e]) || effectors_[e].kind == ContactKind::kWheel;
-    if (!round) return Eigen::Vector3d::Zero();
-    return -effectors_[e].radius_m * normal_of(state, e, contact);
+    return -rolling_radius_m(effectors_[e]) * normal_at(contact, centre(state, e));
   }
 
   std::span<const EndEffector> effectors_;
@@ -220,10 +215,8 @@ class Run {
   void require_shapes() const {
     for (const Link& link : robot_.links()) {
       for (const CollisionShape& shape : link.collision) {
-        if (shape.type != ShapeType::kMesh || shape.mesh_found) continue;
-        throw Error(robot_.urdf_file().string(), shape.line,
-                    "collision mesh " + shape.mesh_file.string() + " was not found",
-                    "a readable STL file");
+        if (shape.type == ShapeType::kMesh && !shape.mesh_found)
+          link_solid(robot_, shape);  // throws
       }
     }
   }

@@ -13,19 +13,6 @@ constexpr double kDrawn_s = 0.02;     // in which the base is drawn to its conta
 constexpr double kAgrees_m_s = 0.02;  // contacts that are off by this count half
 constexpr int kVotes = 4;
 
-bool is_round(const EndEffector& effector) {
-  return is_ball(effector) || effector.kind == ContactKind::kWheel;
-}
-
-double radius_of(const EndEffector& effector) {
-  return is_round(effector) ? effector.radius_m : 0.0;
-}
-
-Eigen::Vector3d normal_at(const Contact& contact, const Eigen::Vector3d& centre) {
-  return is_ball(contact.effector) ? BallTrack(contact).normal(centre)
-                                   : Eigen::Vector3d(contact.normal.normalized());
-}
-
 /// The point, moved along the normal so that the contact is closed.
 Eigen::Vector3d closed(const Contact& contact, const Eigen::Vector3d& centre) {
   const Eigen::Vector3d normal = normal_at(contact, centre);
@@ -33,7 +20,7 @@ Eigen::Vector3d closed(const Contact& contact, const Eigen::Vector3d& centre) {
   if (contact.bar && is_ball(contact.effector)) {
     touched += contact.bar->radius_m * (normal - contact.normal.normalized());
   }
-  return centre + (normal.dot(touched - centre) + radius_of(contact.effector)) * normal;
+  return centre + (normal.dot(touched - centre) + rolling_radius_m(contact.effector)) * normal;
 }
 
 }  // namespace
@@ -94,11 +81,8 @@ void StateEstimator::look(const SensorReadings& readings,
     state_.frame_jacobian(own.link, frame, jacobian_);
     const Eigen::Matrix<double, 6, 1> moves = jacobian_ * velocity_;
     own.moves = moves.head<3>();
-    own.rolls.setZero();
-    if (is_round(effectors_[e])) {
-      const Eigen::Vector3d normal = normal_at(*held, own.centre);
-      own.rolls = effectors_[e].radius_m * Eigen::Vector3d(moves.tail<3>()).cross(normal);
-    }
+    own.rolls = rolling_radius_m(effectors_[e]) *
+                Eigen::Vector3d(moves.tail<3>()).cross(normal_at(*held, own.centre));
     // Contacts go on through a change of stance.
     if (own.contact == nullptr && !own.since_start) own.anchor = own.centre;
     own.since_start = false;
