@@ -58,10 +58,17 @@ class Coordinates {
   Coordinates(const Robot& robot, const mjModel& model) : robot_(&robot) {
     for (int i = 0; i < robot.base_tangent_size(); ++i) dof_.push_back(i);
     for (int i = 0; i < robot.active_joint_count(); ++i) {
-      const std::string axis = "axis_" + std::to_string(robot.axes_of(i).front());
-      const int joint = id_of(model, mjOBJ_JOINT, axis);
-      position_.push_back(model.jnt_qposadr[joint]);
-      dof_.push_back(model.jnt_dofadr[joint]);
+      for (const int axis : robot.axes_of(i)) {
+        const int joint = id_of(model, mjOBJ_JOINT, "axis_" + std::to_string(axis));
+        const Axis& of = robot.axes()[static_cast<std::size_t>(axis)];
+        const int position = model.jnt_qposadr[joint], dof = model.jnt_dofadr[joint];
+        if (axis == robot.axes_of(i).front()) {
+          position_.push_back(position);
+          dof_.push_back(dof);
+        } else {
+          followers_.push_back({position, dof, i, of.multiplier, of.offset});
+        }
+      }
     }
   }
 
@@ -72,6 +79,10 @@ class Coordinates {
     }
     for (std::size_t i = 0; i < position_.size(); ++i) {
       positions[position_[i]] = q[robot_->base_configuration_size() + static_cast<int>(i)];
+    }
+    for (const Follower& own : followers_) {
+      positions[own.position] =
+          own.multiplier * q[robot_->base_configuration_size() + own.active] + own.offset;
     }
   }
 
@@ -90,17 +101,51 @@ class Coordinates {
 
   /// From a tangent of ours.
   Eigen::VectorXd dofs(const double* positions, const Eigen::VectorXd& tangent) const {
-    Eigen::VectorXd result(tangent.size());
+    Eigen::VectorXd result(dof_.size() + followers_.size());
     for (std::size_t i = 0; i < dof_.size(); ++i) {
       result[dof_[i]] = tangent[static_cast<Eigen::Index>(i)];
+    }
+    for (const Follower& own : followers_) {
+      result[own.dof] = own.multiplier * tangent[robot_->base_tangent_size() + own.active];
     }
     if (robot_->floating_base()) result.head<3>() = rotation(positions) * tangent.head<3>();
     return result;
   }
 
-  /// Of velocities, forces, and matrices of such columns: one row for each entry of our tangent.
-  Eigen::MatrixXd tangent_rows(const double* positions, const Eigen::MatrixXd& dofs) const {
-    Eigen::MatrixXd result(dofs.rows(), dofs.cols());
+  Eigen::VectorXd tangent(const double* positions, const Eigen::VectorXd& dofs) const {
+    return own_rows(positions, dofs);
+  }
+
+  /// Of forces, and matrices of such columns: one row for each entry of our tangent, what acts on
+  /// mimic joints acts on the ones that they follow.
+  Eigen::MatrixXd force_rows(const double* positions, const Eigen::MatrixXd& dofs) const {
+    Eigen::MatrixXd result = own_rows(positions, dofs);
+    for (const Follower& own : followers_) {
+      result.row(robot_->base_tangent_size() + own.active) += own.multiplier * dofs.row(own.dof);
+    }
+    return result;
+  }
+
+  /// d/dt of dofs() at a constant tangent: the linear velocity turns with the base.
+  Eigen::VectorXd drift(const double* positions, const Eigen::VectorXd& tangent) const {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(dof_.size() + followers_.size());
+    if (robot_->floating_base()) {
+      const Eigen::Vector3d linear = tangent.head<3>(), angular = tangent.segment<3>(3);
+      result.head<3>() = rotation(positions) * angular.cross(linear);
+    }
+    return result;
+  }
+
+ private:
+  /// A mimic joint.
+  struct Follower {
+    int position, dof;  ///< MuJoCo's
+    int active;         ///< that it follows
+    double multiplier, offset;
+  };
+
+  Eigen::MatrixXd own_rows(const double* positions, const Eigen::MatrixXd& dofs) const {
+    Eigen::MatrixXd result(dof_.size(), dofs.cols());
     for (std::size_t i = 0; i < dof_.size(); ++i) {
       result.row(static_cast<Eigen::Index>(i)) = dofs.row(dof_[i]);
     }
@@ -110,17 +155,6 @@ class Coordinates {
     return result;
   }
 
-  /// d/dt of dofs() at a constant tangent: the linear velocity turns with the base.
-  Eigen::VectorXd drift(const double* positions, const Eigen::VectorXd& tangent) const {
-    Eigen::VectorXd result = Eigen::VectorXd::Zero(tangent.size());
-    if (robot_->floating_base()) {
-      const Eigen::Vector3d linear = tangent.head<3>(), angular = tangent.segment<3>(3);
-      result.head<3>() = rotation(positions) * angular.cross(linear);
-    }
-    return result;
-  }
-
- private:
   static Eigen::Matrix3d rotation(const double* positions) {
     return Eigen::Quaterniond(positions[3], positions[4], positions[5], positions[6])
         .normalized()
@@ -130,6 +164,7 @@ class Coordinates {
   const Robot* robot_;
   std::vector<int> position_;  // of each active joint among MuJoCo's positions
   std::vector<int> dof_;       // of each entry of the tangent among MuJoCo's velocities
+  std::vector<Follower> followers_;
 };
 
 void require_numbers(const std::string& what, const Eigen::VectorXd& numbers, int expected) {
@@ -157,6 +192,7 @@ class Engine::Implementation {
         model(compile(mujoco_model(robot, effectors, world, options))),
         data(mj_makeData(model.get())),
         coordinates(robot, *model),
+        obstacles(world.obstacles),
         forces(effectors.size(), Eigen::Vector3d::Zero()),
         moments(effectors.size(), Eigen::Vector3d::Zero()) {
     if (!data) throw Error("no memory for a state of MuJoCo");
@@ -171,13 +207,64 @@ class Engine::Implementation {
     for (std::size_t b = 0; b < robot.tree().bodies.size(); ++b) {
       body.push_back(id_of(*model, mjOBJ_BODY, "body_" + std::to_string(b)));
     }
-    for (const EndEffector& effector : effectors) {
+    for (std::size_t i = 0; i < effectors.size(); ++i) {
+      const EndEffector& effector = effectors[i];
       const int link = robot.link_index(effector.link);
       const int at = robot.tree().body_of_link[static_cast<std::size_t>(link)];
-      points.emplace_back(body[static_cast<std::size_t>(at)],
-                          robot.tree().body_from_link(link) * effector.point);
+      const Eigen::Isometry3d body_from_link = robot.tree().body_from_link(link);
+      points.emplace_back(body[static_cast<std::size_t>(at)], body_from_link * effector.point);
+      Grasp& grasp = grasps.emplace_back();
+      if (effector.kind != ContactKind::kGrasp) continue;
+      grasp.bar = body_from_link.linear() * axes_in_link(effector).col(1);
+      const std::string name = "grasp_" + std::to_string(i);
+      grasp.first = id_of(*model, mjOBJ_EQUALITY, name + "_0");
+      grasp.second = id_of(*model, mjOBJ_EQUALITY, name + "_1");
+      if (grasp.second >= 0) grasp.half_m = kGraspHalf_m;
     }
+    set_obstacle_time(0.0);
     mj_forward(model.get(), data.get());
+  }
+
+  void set_obstacle_time(double time_s) {
+    for (std::size_t i = 0; i < obstacles.size(); ++i) {
+      const Obstacle& obstacle = obstacles[i];
+      if (is_at_rest(obstacle)) continue;
+      const std::string name = "obstacle_" + std::to_string(i);
+      model->geom_conaffinity[id_of(*model, mjOBJ_GEOM, name)] = obstacle.is_there(time_s) ? 1 : 0;
+      const int at = model->body_mocapid[id_of(*model, mjOBJ_BODY, name)];
+      const Eigen::Isometry3d pose = obstacle.pose_at(time_s);
+      const Eigen::Quaterniond q(pose.linear());
+      const double wxyz[] = {q.w(), q.x(), q.y(), q.z()};
+      std::copy(pose.translation().begin(), pose.translation().end(), data->mocap_pos + 3 * at);
+      std::copy(std::begin(wxyz), std::end(wxyz), data->mocap_quat + 4 * at);
+    }
+  }
+
+  /// Throws for an end effector that is no grasp.
+  void grasp(std::size_t effector, const Eigen::Vector3d& held, const Eigen::Vector3d& axis) {
+    refresh();
+    const Grasp& own = grasps[effector];
+    const auto& [at, in_body] = points[effector];
+    if (own.first < 0) throw Error("end effector " + std::to_string(effector) + " is no grasp");
+    Eigen::Vector3d along = axis.normalized();
+    if (along.dot(rotation(at) * own.bar) < 0.0) along = -along;
+    const auto hold = [&](int equality, double aside_m) {
+      if (equality < 0) return;
+      const Eigen::Vector3d hand = in_body + aside_m * own.bar, bar = held + aside_m * along;
+      double* numbers = model->eq_data + mjNEQDATA * equality;
+      std::copy(hand.begin(), hand.end(), numbers);
+      std::copy(bar.begin(), bar.end(), numbers + 3);
+      model->eq_active[equality] = 1;
+    };
+    hold(own.first, -own.half_m);
+    hold(own.second, own.half_m);
+  }
+
+  void release(std::size_t effector) {
+    const Grasp& own = grasps[effector];
+    for (const int equality : {own.first, own.second}) {
+      if (equality >= 0) model->eq_active[equality] = 0;
+    }
   }
 
   /// A step leaves what MuJoCo derives from the state as it was before: brought up to date when it
@@ -194,6 +281,7 @@ class Engine::Implementation {
     std::fill(moments.begin(), moments.end(), Eigen::Vector3d::Zero());
     total.setZero();
     other = {};
+    measure_grasps();
     for (int i = 0; i < data->ncon; ++i) {
       const mjContact& contact = data->contact[i];
       if (contact.efc_address < 0) continue;
@@ -222,12 +310,35 @@ class Engine::Implementation {
     }
   }
 
+  /// The three rows of a held point are its force on the hand, along the axes of the world.
+  void measure_grasps() {
+    for (std::size_t e = 0; e < grasps.size(); ++e) {
+      const Grasp& own = grasps[e];
+      if (own.first < 0 || !model->eq_active[own.first]) continue;
+      for (int row = 0; row < data->ne; ++row) {
+        const bool first = data->efc_id[row] == own.first;
+        if (data->efc_type[row] != mjCNSTR_EQUALITY || (!first && data->efc_id[row] != own.second))
+          continue;
+        const Eigen::Map<const Eigen::Vector3d> force(data->efc_force + row);
+        const Eigen::Vector3d arm =
+            rotation(points[e].first) * own.bar * (first ? -own.half_m : own.half_m);
+        forces[e] += force;
+        moments[e] += arm.cross(force);
+        total += force;
+        row += 2;
+      }
+    }
+  }
+
+  Eigen::Matrix3d rotation(int mujoco_body) const {
+    return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data->xmat +
+                                                                          9 * mujoco_body);
+  }
+
   /// Of an end effector, in the world, when MuJoCo looked for contacts.
   Eigen::Vector3d point(std::size_t effector) const {
     const auto& [at, in_body] = points[effector];
-    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> rotation(data->xmat +
-                                                                                  9 * at);
-    return rotation * in_body + Eigen::Map<const Eigen::Vector3d>(data->xpos + 3 * at);
+    return rotation(at) * in_body + Eigen::Map<const Eigen::Vector3d>(data->xpos + 3 * at);
   }
 
   int link_of_body(int mujoco_body) const {
@@ -235,12 +346,13 @@ class Engine::Implementation {
     return robot.tree().link_of_body[static_cast<std::size_t>(at - body.begin())];
   }
 
-  Eigen::MatrixXd tangent_rows(const Eigen::MatrixXd& dofs) const {
-    return coordinates.tangent_rows(data->qpos, dofs);
+  Eigen::MatrixXd force_rows(const Eigen::MatrixXd& dofs) const {
+    return coordinates.force_rows(data->qpos, dofs);
   }
 
   Eigen::VectorXd velocity() const {
-    return tangent_rows(Eigen::Map<const Eigen::VectorXd>(data->qvel, model->nv));
+    return coordinates.tangent(data->qpos,
+                               Eigen::Map<const Eigen::VectorXd>(data->qvel, model->nv));
   }
 
   Eigen::VectorXd inverse_dynamics(const Eigen::VectorXd& acceleration) {
@@ -250,8 +362,15 @@ class Engine::Implementation {
     std::copy(dofs.begin(), dofs.end(), data->qacc);
     Eigen::VectorXd torques(model->nv);
     mj_rne(model.get(), data.get(), 1, torques.data());
-    return tangent_rows(torques);
+    return force_rows(torques);
   }
+
+  /// Of an end effector that is no grasp there are none.
+  struct Grasp {
+    int first = -1, second = -1;                    ///< the equalities; -1: none
+    double half_m = 0.0;                            ///< of the way between them
+    Eigen::Vector3d bar = Eigen::Vector3d::Zero();  ///< in the body
+  };
 
   const Robot& robot;
   Model model;
@@ -261,6 +380,8 @@ class Engine::Implementation {
   std::vector<int> effector_of_geom;                    // -1: none
   std::vector<int> body;                                // MuJoCo's, of each body of the tree
   std::vector<std::pair<int, Eigen::Vector3d>> points;  // of end effectors: MuJoCo's body, in it
+  std::vector<Grasp> grasps;                            // of end effectors
+  const std::vector<Obstacle> obstacles;
   std::vector<Eigen::Vector3d> forces, moments;
   Eigen::Vector3d total = Eigen::Vector3d::Zero();
   OtherTouch other;
@@ -301,6 +422,26 @@ void Engine::set_push(const Eigen::Vector3d& force) {
   require_numbers("a push", force, 3);
   double* applied = implementation_->data->xfrc_applied + 6 * implementation_->body.front();
   std::copy(force.begin(), force.end(), applied);
+}
+
+void Engine::set_obstacle_time(double time_s) { implementation_->set_obstacle_time(time_s); }
+
+void Engine::grasp(int effector, const Eigen::Vector3d& point, const Eigen::Vector3d& axis) {
+  require_index("end effector", effector, implementation_->grasps.size());
+  require_numbers("a point of a bar", point, 3);
+  require_numbers("the axis of a bar", axis, 3);
+  implementation_->grasp(static_cast<std::size_t>(effector), point, axis);
+}
+
+void Engine::release(int effector) {
+  require_index("end effector", effector, implementation_->grasps.size());
+  implementation_->release(static_cast<std::size_t>(effector));
+}
+
+bool Engine::grasps(int effector) const {
+  require_index("end effector", effector, implementation_->grasps.size());
+  const auto& own = implementation_->grasps[static_cast<std::size_t>(effector)];
+  return own.first >= 0 && implementation_->model->eq_active[own.first];
 }
 
 void Engine::step() {
@@ -353,7 +494,7 @@ Eigen::MatrixXd Engine::mass_matrix() const {
   own.refresh();
   RowMajor full(own.model->nv, own.model->nv);
   mj_fullM(own.model.get(), full.data(), own.data->qM);
-  return own.tangent_rows(own.tangent_rows(full).transpose());
+  return own.force_rows(own.force_rows(full).transpose());
 }
 
 Eigen::VectorXd Engine::bias_forces() const {
@@ -373,14 +514,12 @@ Eigen::MatrixXd Engine::frame_jacobian(int link, const Eigen::Vector3d& point) c
   own.refresh();
   const int body_of_link = tree.body_of_link[static_cast<std::size_t>(link)];
   const int body = own.body[static_cast<std::size_t>(body_of_link)];
-  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> rotation(own.data->xmat +
-                                                                                9 * body);
-  const Eigen::Vector3d in_world = rotation * (tree.body_from_link(link) * point) +
+  const Eigen::Vector3d in_world = own.rotation(body) * (tree.body_from_link(link) * point) +
                                    Eigen::Map<const Eigen::Vector3d>(own.data->xpos + 3 * body);
   RowMajor jacobian(6, own.model->nv);
   mj_jac(own.model.get(), own.data.get(), jacobian.data(), jacobian.data() + 3 * own.model->nv,
          in_world.data(), body);
-  return own.tangent_rows(jacobian.transpose()).transpose();
+  return own.force_rows(jacobian.transpose()).transpose();
 }
 
 }  // namespace locograph

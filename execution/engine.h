@@ -8,7 +8,8 @@
 ///     const Eigen::Vector3d force = engine.contact_force(0);
 ///
 /// Configurations, velocities and torques are those of robot.h and dynamics.h, whatever MuJoCo's
-/// own order and axes. What is read is that of the state now, but for contact forces, which are
+/// own order and axes; mimic joints move with the joints that they follow as an equality makes
+/// them. What is read is that of the state now, but for contact forces, which are
 /// those that the last step was made with. Quantities of motion (mass matrix, bias, Jacobians,
 /// inverse dynamics) are computed by MuJoCo.
 ///
@@ -43,6 +44,14 @@ class Engine {
   /// On the root link, at its centre of mass [N, world axes], until it is set again. All else that
   /// acts are torques, gravity and contacts.
   void set_push(const Eigen::Vector3d& force);
+  /// Where obstacles that move are, or are not, at a time of theirs [s]; 0 until it is set.
+  void set_obstacle_time(double time_s);
+  /// From now on the hand of an end effector, a grasp, holds the bar where it is: its point at a
+  /// point of the bar's axis, its own y along it, about which it turns freely. The world drags the
+  /// hand there. It holds whatever the force. Throws Error for an end effector that is no grasp.
+  void grasp(int effector, const Eigen::Vector3d& point, const Eigen::Vector3d& axis);
+  void release(int effector);
+  bool grasps(int effector) const;
   void step();
 
   double time_s() const;  ///< of all steps

@@ -123,10 +123,13 @@ HeldContact::HeldContact(const Contact& contact, std::span<const Eigen::Vector2d
   effector.half_y_m *= shares.area;
   if (effector.kind == ContactKind::kSurface) half_m_ = {effector.half_x_m, effector.half_y_m};
   const double friction = effector.friction;
+  const ContactKindEntry& kind = contact_kind_entry(effector.kind);
+  pressed_ = kind.pressed;
+  FrictionModel model;
+  if (pressed_) model = {.cone = FrictionCone::kInner, .facets = kFacets};
   const auto cone_with = [&](double share) {
     effector.friction = share * friction;
-    return contact_kind_entry(effector.kind)
-        .wrench_cone(used, {.cone = FrictionCone::kInner, .facets = kFacets});
+    return kind.wrench_cone(used, model);
   };
   cone_ = cone_with(shares.friction);
   widest_ = cone_with(shares.most_friction);

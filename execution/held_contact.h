@@ -51,13 +51,17 @@ class HeldContact {
   /// Half of the sides of what of a surface contact is counted on, along its axes [m].
   const Eigen::Vector2d& half_m() const { return half_m_; }
   /// Of the cone, for a wrench about the contact's point along its axes. reserve: from 0, friction
-  /// as it is used, to 1, the most of it.
+  /// as it is used, to 1, the most of it. Of a contact that may pull, too, the same holds for the
+  /// wrench with the other sign.
   WrenchRow row(int i, double reserve = 0.0) const;
+  /// Whether it can only be pressed; a grasp may be pulled at.
+  bool pressed() const { return pressed_; }
 
  private:
   Contact contact_;
   Eigen::Vector2d middle_ = Eigen::Vector2d::Zero(), half_m_ = Eigen::Vector2d::Zero();
   std::shared_ptr<const WrenchCone> cone_, widest_;
+  bool pressed_;
 };
 
 /// The largest rectangle along the axes inside the convex hull of some points, as two opposite

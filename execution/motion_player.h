@@ -50,8 +50,8 @@ struct PlayerOptions {
 
 /// Of one end effector.
 struct TouchMeasurement {
-  double pressing_N = 0.0;
-  double slip_m = 0.0;  ///< since it was held
+  double pressing_N = 0.0;  ///< of a grasp: infinite while the hand is closed round the bar
+  double slip_m = 0.0;      ///< since it was held
 };
 
 class MotionPlayer {

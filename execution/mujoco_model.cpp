@@ -7,19 +7,24 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <locale>
+#include <map>
 #include <sstream>
 
 namespace locograph {
 namespace {
 
-constexpr double kSoleHalf_m = 0.01;     // half the thickness of soles
-constexpr double kPlateHalf_m = 0.001;   // of surfaces, which the judge knows no thickness of
-constexpr double kBarePoint_m = 0.005;   // radius of a point without one
-constexpr double kEndless_m = 1000.0;    // half the length of a surface without an end
-constexpr double kOtherFriction = 0.5;   // where neither world nor end effectors state any
+constexpr double kSoleHalf_m = 0.01;    // half the thickness of soles
+constexpr double kPlateHalf_m = 0.001;  // of surfaces, which the judge knows no thickness of
+constexpr double kBarePoint_m = 0.005;  // radius of a point without one
+constexpr double kEndless_m = 1000.0;   // half the length of a surface without an end
+constexpr double kOtherFriction = 0.5;  // where neither world nor end effectors state any
+constexpr double kBlock_m = 0.25;       // of a map, in one body
+// Of contacts and equalities: near what integrating in steps of 1 ms allows.
+constexpr const char* kStiff = " solref=\"0.004 1\" solimp=\"0.95 0.99 0.001 0.5 2\"";
 constexpr double kLeastInertia = 1e-14;  // kg m^2; MuJoCo wants more than 1e-15
 
 class ModelWriter {
@@ -45,26 +50,16 @@ class ModelWriter {
     write_body(0);
     text_ << "</worldbody>\n<actuator>\n";
     write_motors();
-    text_ << "</actuator>\n</mujoco>\n";
+    text_ << "</actuator>\n<equality>\n";
+    write_grasps();
+    write_mimic_joints();
+    text_ << "</equality>\n</mujoco>\n";
     return text_.str();
   }
 
  private:
   void require_what_it_can_write() const {
     for (const EndEffector& effector : effectors_) require_sound_effector(robot_, effector);
-    for (const Joint& joint : robot_.joints()) {
-      if (joint.mimics >= 0) {
-        throw Error("mimic joint '" + joint.name + "' in a model for MuJoCo",
-                    "a robot without mimic joints");
-      }
-    }
-    for (const Obstacle& obstacle : world_.obstacles) {
-      if (!obstacle.motion.empty() || std::isfinite(obstacle.appears_s) ||
-          std::isfinite(obstacle.vanishes_s)) {
-        throw Error("obstacle '" + obstacle.name + "' moves or is not always there",
-                    "obstacles at rest");
-      }
-    }
     std::string without;
     for (std::size_t b = robot_.floating_base() ? 0 : 1; b < inertias_.size(); ++b) {
       if (inertias_[b].mass > 0.0 && inertias_[b].inertia.trace() > 0.0) continue;
@@ -92,8 +87,7 @@ class ModelWriter {
           << "impratio=\"10\">\n";
     if (!options_.constraints) text_ << "<flag constraint=\"disable\"/>\n";
     text_ << "</option>\n<size nconmax=\"200\" njmax=\"600\"/>\n"
-          << "<default><geom condim=\"3\" solref=\"0.004 1\" solimp=\"0.95 0.99 0.001 0.5 2\"/>"
-          << "</default>\n";
+          << "<default><geom condim=\"3\"" << kStiff << "/><equality" << kStiff << "/></default>\n";
   }
 
   void write_pose(const Eigen::Isometry3d& pose) {
@@ -170,6 +164,8 @@ class ModelWriter {
     for (std::size_t i = 0; i < world_.obstacles.size(); ++i) {
       const Obstacle& obstacle = world_.obstacles[i];
       const Eigen::Vector3d& size = obstacle.size;
+      const bool rests = is_at_rest(obstacle);
+      if (!rests) text_ << "<body name=\"obstacle_" << i << "\" mocap=\"true\">\n";
       text_ << "<geom name=\"obstacle_" << i << '"';
       switch (obstacle.shape) {
         case Obstacle::Shape::kBox:
@@ -182,8 +178,36 @@ class ModelWriter {
           text_ << " type=\"cylinder\" size=\"" << size.x() << ' ' << 0.5 * size.y() << '"';
           break;
       }
-      write_pose(obstacle.world_from_obstacle);
+      if (rests) write_pose(obstacle.world_from_obstacle);
       end_world_geom(0.0);
+      if (!rests) text_ << "</body>\n";
+    }
+    write_map();
+  }
+
+  // Cells that are near each other are one body: MuJoCo sorts bodies by where they are.
+  void write_map() {
+    if (!world_.map) return;
+    const octomap::OcTree& map = *world_.map;
+    std::map<std::array<int, 3>, std::vector<std::pair<Eigen::Vector3d, double>>> blocks;
+    for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
+      if (!map.isNodeOccupied(*leaf)) continue;
+      const Eigen::Vector3d centre(leaf.getX(), leaf.getY(), leaf.getZ());
+      const double half_m = 0.5 * leaf.getSize();
+      const Eigen::Vector3d halves = Eigen::Vector3d::Constant(half_m);
+      if (!options_.reach.intersects({centre - halves, centre + halves})) continue;
+      const auto block = [&](int i) { return static_cast<int>(std::floor(centre[i] / kBlock_m)); };
+      blocks[{block(0), block(1), block(2)}].emplace_back(centre, half_m);
+    }
+    int count = 0;
+    for (const auto& [at, cells] : blocks) {
+      text_ << "<body name=\"map_" << count++ << "\">\n";
+      for (const auto& [centre, half_m] : cells) {
+        text_ << "<geom type=\"box\" size=\"" << row(Eigen::Vector3d::Constant(half_m))
+              << "\" pos=\"" << row(centre) << '"';
+        end_world_geom(0.0);
+      }
+      text_ << "</body>\n";
     }
   }
 
@@ -364,13 +388,34 @@ class ModelWriter {
   void write_motors() {
     for (std::size_t axis = 0; axis < robot_.axes().size(); ++axis) {
       const Joint& joint = joint_of(axis + 1);
-      if (joint.max_effort <= 0.0) continue;
+      if (joint.max_effort <= 0.0 || joint.mimics >= 0) continue;
       text_ << "<motor name=\"motor_" << joint.index << "\" joint=\"axis_" << axis << '"';
       if (std::isfinite(joint.max_effort)) {
         text_ << " ctrllimited=\"true\" ctrlrange=\"" << -joint.max_effort << ' '
               << joint.max_effort << '"';
       }
       text_ << "/>\n";
+    }
+  }
+
+  void write_grasps() {
+    for (std::size_t i = 0; i < effectors_.size(); ++i) {
+      if (effectors_[i].kind != ContactKind::kGrasp) continue;
+      for (int k = 0; k < (effectors_[i].max_moment_Nm > 0.0 ? 2 : 1); ++k) {
+        text_ << "<connect name=\"grasp_" << i << '_' << k << "\" body1=\"body_"
+              << body_of(robot_.link_index(effectors_[i].link))
+              << "\" anchor=\"0 0 0\" active=\"false\"/>\n";
+      }
+    }
+  }
+
+  void write_mimic_joints() {
+    for (std::size_t axis = 0; axis < robot_.axes().size(); ++axis) {
+      const Axis& follows = robot_.axes()[axis];
+      if (joint_of(axis + 1).mimics < 0) continue;
+      text_ << "<joint joint1=\"axis_" << axis << "\" joint2=\"axis_"
+            << robot_.axes_of(follows.active).front() << "\" polycoef=\"" << follows.offset << ' '
+            << follows.multiplier << " 0 0 0\"/>\n";
     }
   }
 
@@ -384,6 +429,11 @@ class ModelWriter {
 };
 
 }  // namespace
+
+bool is_at_rest(const Obstacle& obstacle) {
+  return obstacle.motion.empty() && !std::isfinite(obstacle.appears_s) &&
+         !std::isfinite(obstacle.vanishes_s);
+}
 
 void MujocoModelOptions::validate() const {
   check_option(timestep_s > 0.0 && timestep_s <= 0.1, "timestep_s", "above 0, up to 0.1 s");

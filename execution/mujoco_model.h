@@ -14,17 +14,23 @@
 ///   effector_E  what end effector E touches with: a sole is a box 2 cm thick, a ball a sphere, a
 ///               bare point a sphere of 5 mm above it, a wheel a sphere of its radius (cylinders
 ///               give flickering contacts on boxes)
+///   grasp_E_0, grasp_E_1
+///               equalities that hold two points of the body of a grasp E at points of the world;
+///               off until they are switched on. They are to be 2 kGraspHalf_m apart along the bar,
+///               about which the hand turns freely; one, where the grasp bears no moments
+///   obstacle_O  obstacle O; a body, too, that is to be moved, where it moves or is not always
+///   there map_...     cells of the map within the options' reach
 ///
 /// The robot touches the world, not itself. A body with end effectors touches with these only; the
 /// others touch with all their collision shapes, of meshes with their convex hulls, flat ones
-/// 2 mm thick; meshes that were not found are left out. Grasps hold nothing yet. Friction is that
-/// of the world, MuJoCo takes the larger one of two: of surfaces and bars their own, of a box the
-/// least of its faces, and where none is stated the least of the end effectors. A surface without
-/// any end is a plane, another one a box of 2 mm below it. Maps are left out.
+/// 2 mm thick; meshes that were not found are left out. Friction is that of the world, MuJoCo takes
+/// the larger one of two: of surfaces and bars their own, of a box the least of its faces, and
+/// where none is stated the least of the end effectors. A surface without any end is a plane,
+/// another one a box of 2 mm below it. A mimic joint is an equality with the joint that it follows.
 ///
 /// Errors: those of options, of body_inertias() and of require_sound_effector(); links of bodies
-/// without mass or inertia; mimic joints; kinds of contact that are not ours; obstacles that move
-/// or are not always there; meshes that stl_vertices() cannot read.
+/// without mass or inertia; kinds of contact that are not ours; meshes that stl_vertices() cannot
+/// read.
 
 #include <locograph/robots/contact.h>
 #include <locograph/world/world.h>
@@ -35,6 +41,11 @@
 
 namespace locograph {
 
+inline constexpr double kGraspHalf_m = 0.04;  ///< of the width of a hand round a bar
+
+/// Whether an obstacle is at the same place all the time.
+bool is_at_rest(const Obstacle& obstacle);
+
 enum class Integrator { kEuler, kRungeKutta4 };  ///< semi-implicit Euler
 
 struct MujocoModelOptions {
@@ -44,6 +55,8 @@ struct MujocoModelOptions {
   double friction_factor = 1.0;  ///< of all friction of the world
   /// Of masses and inertias, one for each link; none: as the URDF has them.
   std::vector<double> link_mass_factors = {};
+  /// Cells of the map that do not reach into it are left out [m, world].
+  Eigen::AlignedBox3d reach = {Eigen::Vector3d::Constant(-1e9), Eigen::Vector3d::Constant(1e9)};
 
   /// Throws Error for a time step that is not above 0, or longer than 0.1 s, and a factor of
   /// friction that is negative.

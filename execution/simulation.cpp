@@ -1,3 +1,4 @@
+#include <locograph/check/bar_contact.h>
 #include <locograph/common/check_option.h>
 #include <locograph/common/error.h>
 #include <locograph/execution/engine.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <random>
@@ -23,6 +25,10 @@ constexpr double kLongest = 5.0;  // of the motion's time, and a minute
 /// An end effector that should be free may touch for so long, and so near a contact that it has
 /// just left or is about to hold.
 constexpr double kBrief_s = 0.05, kNearContact_m = 0.03;
+/// A hand may be so far off the axis of a bar that it closes round.
+constexpr double kHandOff_m = 0.01, kHandOff_rad = 0.1;
+constexpr double kBeyond_s = 0.01;  // for which it may bear more than it can
+constexpr double kReach_m = 2.5;    // from the base to where a map is in the way
 
 double processor_seconds() {
   timespec now;
@@ -32,6 +38,17 @@ double processor_seconds() {
 
 std::string millimetres(double metres) {
   return std::to_string(static_cast<int>(std::lround(1000.0 * metres))) + " mm";
+}
+
+/// Of all that the robot may get to.
+Eigen::AlignedBox3d reach_of(const Robot& robot, const Motion& motion) {
+  Eigen::AlignedBox3d box(Eigen::Vector3d::Zero());
+  if (robot.floating_base()) box.setEmpty();
+  for (const Eigen::VectorXd& configuration : motion.configurations) {
+    if (robot.floating_base()) box.extend(Eigen::Vector3d(configuration.head<3>()));
+  }
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(kReach_m);
+  return {box.min() - reach, box.max() + reach};
 }
 
 /// What a run draws at random, always in the same order.
@@ -106,6 +123,9 @@ class SlipMeter {
   Eigen::Vector3d centre(const RobotState& state, std::size_t e) const {
     return state.world_from_link(links_[e]) * effectors_[e].point;
   }
+  const Eigen::Isometry3d& world_from_link(const RobotState& state, std::size_t e) const {
+    return state.world_from_link(links_[e]);
+  }
   Eigen::Vector3d touching(const RobotState& state, std::size_t e, const Contact& contact) const {
     return centre(state, e) + arm(state, e, contact);
   }
@@ -155,7 +175,8 @@ class Run {
         engine_(robot, effectors, perturbed_.world(),
                 {.timestep_s = options.player.cycle_s,
                  .friction_factor = options.friction_factor,
-                 .link_mass_factors = perturbed_.mass_factors()}),
+                 .link_mass_factors = perturbed_.mass_factors(),
+                 .reach = reach_of(robot_, motion)}),
         player_(robot, effectors, world, motion, options.player),
         controller_(make_controller()),
         state_(robot),
@@ -164,6 +185,7 @@ class Run {
         meter_(robot, effectors),
         felt_(robot, effectors),
         touches_(effectors.size()),
+        hands_(effectors.size()),
         free_(effectors.size()),
         error_(robot.tangent_size()) {
     require_shapes();
@@ -223,7 +245,8 @@ class Run {
 
   /// The motion's own start in the world that it was planned in.
   void require_start(const World& world, const Motion& motion) const {
-    Engine as_planned(robot_, effectors_, world);
+    Engine as_planned(robot_, effectors_, world, {.reach = reach_of(robot_, motion)});
+    as_planned.set_obstacle_time(motion.time_s.front());
     as_planned.set_state(motion.configurations.front(),
                          Eigen::VectorXd::Zero(robot_.tangent_size()));
     if (as_planned.penetration_m() <= kMostPenetration_m) return;
@@ -235,6 +258,7 @@ class Run {
   void cycle() {
     const Eigen::VectorXd q = engine_.configuration(), v = engine_.velocity();
     state_.update(q.data());
+    close_and_open_hands();
     measure(v);
     estimate(q, v);
     player_.advance(touches_);
@@ -245,9 +269,62 @@ class Run {
     result_.controller_s.push_back(processor_seconds() - before);
     engine_.set_torques(torques);
     push();
+    // What moves does not wait for the robot.
+    engine_.set_obstacle_time(player_.motion().time_s.front() +
+                              std::max(0.0, engine_.time_s() - options_.player.settle_s));
     record(q, v, torques);
     engine_.step();
     watch(q, torques);
+  }
+
+  bool is_grasp(std::size_t e) const { return effectors_[e].kind == ContactKind::kGrasp; }
+
+  /// The bar that a hand is round, if it is.
+  const Bar* bar_in_hand(std::size_t e) const {
+    const Eigen::Vector3d at = meter_.centre(state_, e);
+    const Eigen::Vector3d along =
+        meter_.world_from_link(state_, e).linear() * axes_in_link(effectors_[e]).col(1);
+    for (const Bar& bar : perturbed_.world().bars) {
+      const Eigen::Vector3d axis = (bar.to - bar.from).normalized();
+      const bool beside = axis.cross(at - bar.from).norm() > kHandOff_m;
+      if (!beside && axis.cross(along).norm() <= kHandOff_rad && beyond_ends_m(bar, at) <= 0.0) {
+        return &bar;
+      }
+    }
+    return nullptr;
+  }
+
+  /// A hand closes where its stance lists it and it is round a bar, and opens where it does not.
+  /// One that bears more than it can gives way, and does not close again in that stance.
+  void close_and_open_hands() {
+    for (std::size_t e = 0; e < effectors_.size(); ++e) {
+      if (!is_grasp(e)) continue;
+      const int index = static_cast<int>(e);
+      const HeldContact* command = player_.contacts()[e].held;
+      if (engine_.grasps(index)) {
+        Hand& hand = hands_[e];
+        hand.beyond_s = bears_in_hand(e) ? 0.0 : hand.beyond_s + options_.player.cycle_s;
+        if (command && hand.beyond_s <= kBeyond_s) continue;
+        engine_.release(index);
+        hand = {0.0, command};
+      } else if (command && hands_[e].gave_way != command) {
+        const Bar* bar = bar_in_hand(e);
+        if (!bar) continue;
+        const Eigen::Vector3d axis = (bar->to - bar->from).normalized();
+        engine_.grasp(index, bar->from + axis.dot(meter_.centre(state_, e) - bar->from) * axis,
+                      axis);
+      }
+    }
+  }
+
+  bool bears_in_hand(std::size_t e) const {
+    const Eigen::Matrix3d axes =
+        meter_.world_from_link(state_, e).linear() * axes_in_link(effectors_[e]);
+    const int index = static_cast<int>(e);
+    const Eigen::Vector3d force = axes.transpose() * engine_.contact_force(index);
+    const Eigen::Vector3d moment = axes.transpose() * engine_.contact_moment(index);
+    return force.cwiseAbs().maxCoeff() <= effectors_[e].max_force_N &&
+           std::max(std::abs(moment.x()), std::abs(moment.z())) <= effectors_[e].max_moment_Nm;
   }
 
   /// null: not held, or not pressed.
@@ -262,6 +339,10 @@ class Run {
       const Eigen::Vector3d force = engine_.contact_force(static_cast<int>(e));
       touches_[e].pressing_N =
           command ? force.dot(command->contact().normal.normalized()) : force.norm();
+      if (is_grasp(e)) {
+        touches_[e].pressing_N =
+            engine_.grasps(static_cast<int>(e)) ? std::numeric_limits<double>::infinity() : 0.0;
+      }
       const double slip_m = meter_.measure(state_, v, e, held(e), options_.player.cycle_s);
       touches_[e].slip_m = slip_m;
       if (slip_m <= result_.max_contact_slip_m) continue;
@@ -401,7 +482,7 @@ class Run {
       const double off_m = (meter_.touching(state_, e, contact) - place).norm();
       if (off_m > kThere_m) {
         result_.reason = "contact of " + contact.name() + " ends " + millimetres(off_m) + " off";
-      } else if (contact.bears_load &&
+      } else if (contact.bears_load && !engine_.grasps(static_cast<int>(e)) &&
                  !(engine_.contact_force(static_cast<int>(e)).norm() > kTouched_N)) {
         result_.reason = "contact of " + contact.name() + " does not bear at the end";
       }
@@ -429,6 +510,12 @@ class Run {
   RobotState state_, planned_, estimated_;
   SlipMeter meter_, felt_;  // by the truth, by what is estimated
   std::vector<TouchMeasurement> touches_;
+  /// Of a grasp.
+  struct Hand {
+    double beyond_s = 0.0;                  ///< for which it has borne more than it can
+    const HeldContact* gave_way = nullptr;  ///< what it could not hold
+  };
+  std::vector<Hand> hands_;
   /// Of an end effector that should be free.
   struct Free {
     double touches_s = 0.0;                                          ///< so far

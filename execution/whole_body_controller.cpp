@@ -1,7 +1,6 @@
 #include <locograph/common/check_option.h>
 #include <locograph/common/error.h>
 #include <locograph/execution/whole_body_controller.h>
-#include <locograph/robots/contact_kinds.h>
 #include <locograph/robots/rolling_ball.h>
 
 #include <Eigen/Geometry>
@@ -81,7 +80,7 @@ void WholeBodyOptions::validate() const {
 struct WholeBodyController::Effector {
   EndEffector effector;
   int link = 0;
-  bool surface = false, round = false, ball = false;
+  bool surface = false, round = false, ball = false, grasp = false;
   Eigen::Vector3d axle = Eigen::Vector3d::UnitY();  ///< of a wheel, in its link
   int wheel_joint = -1;                             ///< the active joint that turns it
   std::vector<int> components;                      ///< of its wrenches
@@ -118,6 +117,7 @@ WholeBodyController::WholeBodyController(const Robot& robot, std::span<const End
     own.effector = given;
     own.link = robot.link_index(given.link);
     own.surface = given.kind == ContactKind::kSurface;
+    own.grasp = given.kind == ContactKind::kGrasp;
     own.ball = is_ball(given);
     own.round = own.ball || given.kind == ContactKind::kWheel;
     if (given.kind == ContactKind::kWheel) {
@@ -240,7 +240,7 @@ void WholeBodyController::hold(Effector& own, const ContactCommand& command,
     own.axes = Eigen::Quaterniond::FromTwoVectors(normal, there).toRotationMatrix() * own.axes;
     normal = there;
   }
-  if (own.surface) own.axes = world_from_link.linear() * axes_in_link(own.effector);
+  if (own.surface || own.grasp) own.axes = world_from_link.linear() * axes_in_link(own.effector);
   if (own.round) arm = -own.effector.radius_m * normal;
   // Of what touches: its velocity, and how that changes while the normal stays.
   own.touching = own.jacobian;
@@ -249,6 +249,47 @@ void WholeBodyController::hold(Effector& own, const ContactCommand& command,
   velocity.head<3>() += own.velocity.tail<3>().cross(arm);
   drift.head<3>() += own.drift.tail<3>().cross(arm);
 
+  if (own.grasp) {
+    hold_bar(own, command.touches, reference);
+  } else {
+    hold_against(own, command, normal, velocity, drift);
+  }
+  const Eigen::Vector3d off = planned_.world_from_link(own.link) * own.effector.point - centre;
+  if (own.round && contact.locked) {
+    add_rows(own.jacobian.topRows<3>(),
+             100.0 * off - options_.contact_damping * own.velocity.head<3>() - own.drift.head<3>(),
+             kTurning * options_.contact_weight);
+  } else if (own.effector.kind == ContactKind::kWheel) {
+    roll(own, contact.normal.normalized(), off, reference);
+  }
+  const std::vector<int>& components = own.components;
+  for (std::size_t k = 0; k < components.size(); ++k) {
+    const int component = components[k];
+    own.along_axes.row(static_cast<Eigen::Index>(k)).noalias() =
+        own.axes.col(component % 3).transpose() * own.touching.middleRows<3>(component < 3 ? 0 : 3);
+  }
+}
+
+/// A hand that is not closed yet is brought to where it will be; one that is turns about the bar.
+void WholeBodyController::hold_bar(Effector& own, bool closed, const CurvePoint& reference) {
+  if (!closed) {
+    swing(own, reference);
+    return;
+  }
+  const double damping = options_.contact_damping;
+  const Vector6 wanted = -damping * own.velocity - own.drift;
+  add_rows(own.touching.topRows<3>(), wanted.head<3>(), options_.contact_weight);
+  for (const int axis : {0, 2}) {  // y is the bar
+    const Eigen::Vector3d about = own.axes.col(axis);
+    add_row(about, own.touching.bottomRows<3>(), about.dot(wanted.tail<3>()),
+            kTurning * options_.contact_weight);
+  }
+}
+
+/// What is pressed stays, or comes nearer until it touches. velocity, drift: of what touches.
+void WholeBodyController::hold_against(Effector& own, const ContactCommand& command,
+                                       const Eigen::Vector3d& normal, const Vector6& velocity,
+                                       const Vector6& drift) {
   const double damping = options_.contact_damping;
   Eigen::Vector3d linear = -damping * velocity.head<3>();
   double weight = options_.contact_weight;
@@ -262,20 +303,6 @@ void WholeBodyController::hold(Effector& own, const ContactCommand& command,
     const Eigen::Vector3d back = upright(own, *command.held, velocity.tail<3>());
     add_rows(own.touching.bottomRows<3>(), back - damping * velocity.tail<3>() - drift.tail<3>(),
              kTurning * weight);
-  }
-  const Eigen::Vector3d off = planned_.world_from_link(own.link) * own.effector.point - centre;
-  if (own.round && contact.locked) {
-    add_rows(own.jacobian.topRows<3>(),
-             100.0 * off - damping * own.velocity.head<3>() - own.drift.head<3>(),
-             kTurning * options_.contact_weight);
-  } else if (own.effector.kind == ContactKind::kWheel) {
-    roll(own, contact.normal.normalized(), off, reference);
-  }
-  const std::vector<int>& components = own.components;
-  for (std::size_t k = 0; k < components.size(); ++k) {
-    const int component = components[k];
-    own.along_axes.row(static_cast<Eigen::Index>(k)).noalias() =
-        own.axes.col(component % 3).transpose() * own.touching.middleRows<3>(component < 3 ? 0 : 3);
   }
 }
 
@@ -340,7 +367,7 @@ void WholeBodyController::swing(Effector& own, const CurvePoint& reference) {
   Vector6 wanted = rate * rate * off - 2.0 * rate * own.velocity - own.drift;
   wanted.noalias() += own.ahead * (reference.acceleration + 2.0 * rate * reference.velocity);
   add_rows(own.jacobian.topRows<3>(), wanted.head<3>(), options_.swing_weight);
-  if (own.surface) {
+  if (own.surface || own.grasp) {
     add_rows(own.jacobian.bottomRows<3>(), wanted.tail<3>(), kTurning * options_.swing_weight);
   }
 }
@@ -450,11 +477,12 @@ void WholeBodyController::solve_wrenches(std::span<const ContactCommand> contact
         qp_->row(at)[own.unknown + static_cast<int>(k)] = limit.gradient[components[k]];
       }
       double bound = -limit.offset / weight_N_;
-      const bool pressed = contact_kind_entry(own.effector.kind).pressed;
+      const bool pressed = command.held->pressed();
       const double least = command.touches ? share * options_.least_force : 0.0;
       if (pressed && r == 0) bound = -least;
       if (pressed && r == 1) bound = std::max(share * std::min(bound, kMostWeights), least);
-      qp_->bound(at, -kUnbounded, bound);
+      if (!pressed) bound *= share;
+      qp_->bound(at, pressed ? -kUnbounded : -bound, bound);
     }
   }
   for (int i = 0; i < joints; ++i) {

@@ -100,6 +100,9 @@ class WholeBodyController final : public TorqueController {
   void follow_joints_and_base(const Eigen::VectorXd& v, const CurvePoint& reference);
   void follow_centre_of_mass(const Eigen::VectorXd& v, const CurvePoint& reference);
   void hold(Effector& effector, const ContactCommand& command, const CurvePoint& reference);
+  void hold_bar(Effector& effector, bool closed, const CurvePoint& reference);
+  void hold_against(Effector& effector, const ContactCommand& command,
+                    const Eigen::Vector3d& normal, const Vector6& velocity, const Vector6& drift);
   Eigen::Vector3d upright(const Effector& effector, const HeldContact& held,
                           const Eigen::Vector3d& angular) const;
   void roll(Effector& effector, const Eigen::Vector3d& normal, const Eigen::Vector3d& off,

@@ -1,4 +1,5 @@
 // Robots that are dropped come to rest, and what they stand on bears their weight.
+#include <locograph/common/error.h>
 #include <locograph/execution/engine.h>
 #include <locograph/robots/robot_state.h>
 
@@ -72,6 +73,83 @@ class DroppedRobots : public testing::TestWithParam<Dropped> {
     RecordProperty("velocity", scientific(engine.velocity().norm()));
   }
 };
+
+/// COMAN+ by both hands on a bar, its head down.
+TEST(HangingRobot, IsHeldByItsHandsUntilTheyOpen) {
+  const Robot robot =
+      Robot::load(model("coman_plus/coman_plus.urdf"), model("coman_plus/coman_plus.srdf"),
+                  {.active_joints = {"WaistYaw"}});
+  std::vector<EndEffector> hands;
+  for (const char* link : {"LBall", "RBall"}) {
+    hands.push_back({.name = link,
+                     .link = link,
+                     .kind = ContactKind::kGrasp,
+                     .max_force_N = 1000.0,
+                     .max_moment_Nm = 100.0});
+  }
+  Eigen::VectorXd q = robot.named_configuration("home");
+  RobotState state(robot);
+  state.update(q.data());
+  const auto hand = [&](std::size_t i) {
+    return state.world_from_link(robot.link_index(hands[i].link)).translation().eval();
+  };
+  // Turned about the bar so that its centre of mass is under it.
+  const Eigen::Vector3d bar = (hand(0) - hand(1)).normalized();
+  const Eigen::Vector3d middle = 0.5 * (hand(0) + hand(1));
+  Eigen::Vector3d hangs = state.center_of_mass() - middle;
+  hangs -= hangs.dot(bar) * bar;
+  Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();
+  down -= down.dot(bar) * bar;
+  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(hangs, down);
+  q.segment<4>(3) = (turn * Eigen::Quaterniond(q[6], q[3], q[4], q[5])).coeffs();
+  state.update(q.data());
+  for (EndEffector& effector : hands) {
+    const Eigen::Matrix3d link = state.world_from_link(robot.link_index(effector.link)).linear();
+    const Eigen::Vector3d along = (hand(0) - hand(1)).normalized();
+    effector.normal = link.transpose() * along.unitOrthogonal();
+    effector.forward = link.transpose() * along.cross(along.unitOrthogonal());
+  }
+  Engine engine(robot, hands, {});
+  engine.set_state(q, Eigen::VectorXd::Zero(robot.tangent_size()));
+  EXPECT_FALSE(engine.grasps(0));
+  const Eigen::Vector3d left = hand(0), right = hand(1);
+  engine.grasp(0, left, left - right);
+  engine.grasp(1, right, right - left);
+  EXPECT_TRUE(engine.grasps(0));
+  const double weight = 9.81 * robot.total_mass();
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  const auto hold_waist = [&] {
+    const double torque =
+        -500.0 * engine.configuration().tail<1>()[0] - 20.0 * engine.velocity().tail<1>()[0];
+    engine.set_torques(Eigen::VectorXd::Constant(1, torque));
+  };
+  for (int i = 0; i < 2000; ++i) {
+    hold_waist();
+    engine.step();
+    const Eigen::Vector3d both = engine.contact_force(0) + engine.contact_force(1);
+    EXPECT_LT((both - engine.total_contact_force()).norm(), 1e-9 * weight);
+    if (i >= 1000) mean += both / 1000.0;
+  }
+  ASSERT_FALSE(engine.diverged());
+  EXPECT_LT((mean - weight * Eigen::Vector3d::UnitZ()).norm(), 0.01 * weight) << mean.transpose();
+  state.update(engine.configuration().data());
+  EXPECT_LT((hand(0) - left).norm(), 2e-3);
+  EXPECT_LT((hand(1) - right).norm(), 2e-3);
+  // Forces and moments hold it about its centre of mass, too.
+  Eigen::Vector3d moment = engine.contact_moment(0) + engine.contact_moment(1);
+  moment += (hand(0) - state.center_of_mass()).cross(engine.contact_force(0));
+  moment += (hand(1) - state.center_of_mass()).cross(engine.contact_force(1));
+  EXPECT_LT(moment.norm(), 0.02 * weight);
+
+  engine.release(0);
+  engine.release(1);
+  EXPECT_FALSE(engine.grasps(0));
+  const double height = engine.configuration()[2];
+  for (int i = 0; i < 200; ++i) engine.step();
+  EXPECT_EQ(engine.total_contact_force().norm(), 0.0);
+  EXPECT_LT(engine.configuration()[2], height - 0.15);
+  EXPECT_THROW(engine.grasp(2, left, right), Error);
+}
 
 TEST_P(DroppedRobots, RestOnAPlane) { expect_rest_on({.surfaces = {ground()}}, 0.0); }
 

@@ -146,6 +146,75 @@ INSTANTIATE_TEST_SUITE_P(All, DynamicsOfMujoco,
                                           testing::Bool()),
                          floating_or_fixed<RobotFile>);
 
+class EngineWithMimicJoints : public ComparedTest<bool> {};
+
+TEST_P(EngineWithMimicJoints, HasOurDynamicsAndKeepsThemTogether) {
+  const TemporaryFolder folder;
+  const Robot robot = Robot::load(folder.write("mimic.urdf", mimic_robot_urdf()), {},
+                                  {.floating_base = GetParam()});
+  RobotState state(robot);
+  RobotDynamics dynamics(robot);
+  Engine engine(robot, {}, {});
+  std::mt19937 random(31);
+  const int size = robot.tangent_size();
+  for (int sample = 0; sample < 10; ++sample) {
+    const Eigen::VectorXd q = random_configuration(robot, random);
+    const Eigen::VectorXd velocity = random_vector(size, 1.0, random);
+    const Eigen::VectorXd acceleration = random_vector(size, 10.0, random);
+    state.update(q.data());
+    engine.set_state(q, velocity);
+    compare(engine.configuration(), q, 1e-15);
+    compare(engine.velocity(), velocity, 1e-14);
+    Eigen::MatrixXd mass(size, size);
+    dynamics.mass_matrix(state, mass);
+    compare(engine.mass_matrix(), mass, kTolerance);
+    Eigen::VectorXd torques(size);
+    dynamics.inverse_dynamics(state, velocity, acceleration, {}, torques);
+    compare(engine.inverse_dynamics(acceleration), torques, kTolerance);
+    Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(6, size);
+    const int thumb = robot.link_index("thumb");
+    state.frame_jacobian(thumb, Eigen::Isometry3d::Identity(), jacobian);
+    compare(engine.frame_jacobian(thumb, Eigen::Vector3d::Zero()), jacobian, kTolerance);
+  }
+  // Moved by gravity, the thumb is where the joints that lead say.
+  engine.set_state(robot.neutral_configuration(), Eigen::VectorXd::Zero(size));
+  for (int i = 0; i < 200; ++i) engine.step();
+  const Eigen::VectorXd q = engine.configuration();
+  EXPECT_GT((q - robot.neutral_configuration()).norm(), 0.05);
+  state.update(q.data());
+  Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(6, size);
+  const int thumb = robot.link_index("thumb");
+  state.frame_jacobian(thumb, Eigen::Isometry3d::Identity(), jacobian);
+  compare(engine.frame_jacobian(thumb, Eigen::Vector3d::Zero()), jacobian, 5e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(FixedOrFloating, EngineWithMimicJoints, testing::Bool());
+
+TEST(Engine, ObstaclesMoveAndComeAndGo) {
+  const Robot robot = Robot::load(model("go2/go2.urdf"), {}, {.floating_base = true});
+  Obstacle cart;
+  cart.size = Eigen::Vector3d::Constant(0.2);
+  cart.world_from_obstacle.translation().x() = 3.0;
+  cart.motion = {{.time_s = 1.0}, {.time_s = 2.0}};  // at the base
+  cart.motion[1].pose.translation().x() = 3.0;
+  cart.vanishes_s = 2.5;
+  Obstacle ball;
+  ball.shape = Obstacle::Shape::kSphere;
+  ball.size.x() = 0.1;
+  ball.appears_s = 4.0;
+  Engine engine(robot, {}, {.obstacles = {cart, ball}});
+  const auto penetration_m = [&](double time_s) {
+    engine.set_obstacle_time(time_s);
+    engine.set_state(robot.neutral_configuration(), Eigen::VectorXd::Zero(robot.tangent_size()));
+    return engine.penetration_m();
+  };
+  EXPECT_EQ(penetration_m(0.0), 0.0);
+  EXPECT_GT(penetration_m(1.0), 0.05);
+  EXPECT_EQ(penetration_m(2.4), 0.0);
+  EXPECT_EQ(penetration_m(3.0), 0.0);
+  EXPECT_GT(penetration_m(4.5), 0.05);
+}
+
 TEST(Engine, RefusesVectorsOfAnotherSize) {
   const Robot robot = Robot::load(model("go2/go2.urdf"));
   Engine engine(robot, {}, {});

@@ -51,6 +51,24 @@ TEST(HeldContact, BearsWhereItLiesOnSomethingOnly) {
   EXPECT_LT(beyond(part, sideways), 0.0);
 }
 
+TEST(HeldContact, AGraspMayBePulledAt) {
+  const HeldContact held({.effector = {.name = "hand",
+                                       .link = "hand",
+                                       .kind = ContactKind::kGrasp,
+                                       .max_force_N = 200.0,
+                                       .max_moment_Nm = 5.0},
+                          .forward = Eigen::Vector3d::UnitX()},
+                         {});
+  EXPECT_FALSE(held.pressed());
+  EXPECT_TRUE(HeldContact(kSole, {}).pressed());
+  Eigen::Matrix<double, 6, 1> wrench;
+  wrench << -150.0, 0.0, -150.0, 4.0, 0.0, -4.0;
+  EXPECT_LT(beyond(held, wrench), 0.0);
+  EXPECT_LT(beyond(held, -wrench), 0.0);
+  wrench[3] = 6.0;
+  EXPECT_GT(std::max(beyond(held, wrench), beyond(held, -wrench)), 0.0);
+}
+
 TEST(HeldContact, OnALineItDoesNotTurnAboutIt) {
   const std::vector<Eigen::Vector2d> line = {{0.03, -0.05}, {0.03, 0.05}};
   const HeldContact held(kSole, line, {.friction = 1.0, .area = 1.0});

@@ -2,6 +2,8 @@
 #include <locograph/common/error.h>
 #include <locograph/execution/engine.h>
 
+#include <memory>
+
 #include "robots/robot_test_support.h"
 
 namespace locograph::test {
@@ -40,21 +42,26 @@ TEST_F(MujocoModel, NamesLinksWithoutInertia) {
       << refusal(robot);
 }
 
-TEST_F(MujocoModel, RefusesMimicJoints) {
-  EXPECT_NE(refusal(robot_of(mimic_robot_urdf())).find("mimic joint"), std::string::npos);
-}
-
-TEST_F(MujocoModel, RefusesObstaclesThatMoveOrComeAndGo) {
+TEST_F(MujocoModel, HoldsCellsOfAMapThatAreWithinReach) {
   const Robot robot = robot_of(small_robot_urdf());
-  Obstacle cart;
-  cart.name = "cart";
-  cart.size = Eigen::Vector3d::Ones();
-  EXPECT_EQ(refusal(robot, {.obstacles = {cart}}), "");
-  cart.motion = {{.time_s = 1.0}};
-  EXPECT_NE(refusal(robot, {.obstacles = {cart}}).find("'cart'"), std::string::npos);
-  cart.motion.clear();
-  cart.vanishes_s = 3.0;
-  EXPECT_NE(refusal(robot, {.obstacles = {cart}}).find("'cart'"), std::string::npos);
+  const auto map = std::make_shared<octomap::OcTree>(0.1);
+  map->updateNode(octomap::point3d(0.55F, 0.05F, 0.05F), true);
+  map->updateNode(octomap::point3d(9.05F, 0.05F, 0.05F), true);
+  map->updateNode(octomap::point3d(0.55F, 0.55F, 0.05F), false);  // free
+  const auto cells = [&](const MujocoModelOptions& options) {
+    const std::string text = mujoco_model(robot, {}, {.map = map}, options);
+    int count = 0;
+    for (std::size_t at = text.find("size=\"0.05"); at != std::string::npos;
+         at = text.find("size=\"0.05", at + 1)) {
+      ++count;
+    }
+    return count;
+  };
+  EXPECT_EQ(cells({}), 2);
+  const Eigen::Vector3d one = Eigen::Vector3d::Ones();
+  EXPECT_EQ(cells({.reach = {-one, one}}), 1);
+  EXPECT_EQ(cells({.reach = {-0.4 * one, 0.4 * one}}), 0);
+  EXPECT_NO_THROW(Engine(robot, {}, {.map = map}));
 }
 
 TEST_F(MujocoModel, HoldsTheWorldOnce) {

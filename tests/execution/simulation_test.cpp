@@ -110,6 +110,122 @@ TEST_F(Simulations, AFreeHandThatTouchesIsTold) {
   EXPECT_EQ(link_that_touches(0.01), "");
 }
 
+/// COMAN+ stands, one hand round a bar, which it holds in the second half or all the time.
+struct HandOnABar {
+  StandingComan coman;
+  EndEffector hand{.name = "grip",
+                   .link = "LBall",
+                   .kind = ContactKind::kGrasp,
+                   .point = {0.0, 0.0, -0.08},
+                   .friction = 0.6,
+                   .max_force_N = 300.0,
+                   .max_moment_Nm = 20.0};
+  Bar bar{.name = "rail", .radius_m = 0.02};
+  Motion motion = coman.standing();
+
+  HandOnABar() {
+    RobotState state(coman.robot);
+    state.update(coman.configuration.data());
+    const Eigen::Isometry3d& pose = state.world_from_link(coman.robot.link_index(hand.link));
+    const Eigen::Vector3d at = pose * hand.point;
+    // The bar lies across; the hand's own axes are those that fit.
+    hand.normal = pose.linear().transpose() * Eigen::Vector3d::UnitZ();
+    hand.forward = pose.linear().transpose() * Eigen::Vector3d::UnitX();
+    bar.from = at - 0.1 * Eigen::Vector3d::UnitY();
+    bar.to = at + 0.1 * Eigen::Vector3d::UnitY();
+    Stance held = coman.both_feet();
+    held.contacts.push_back(
+        {.effector = hand, .position = at, .forward = Eigen::Vector3d::UnitX()});
+    motion.stances = {held};
+  }
+  SimulationResult run(const SimulationOptions& options = {}) const {
+    std::vector<EndEffector> effectors = coman.effectors;
+    effectors.push_back(hand);
+    return simulate(coman.robot, effectors, {.surfaces = {ground()}, .bars = {bar}}, motion,
+                    options);
+  }
+};
+
+TEST(Grasps, HoldARobotThatIsPushed) {
+  HandOnABar held;
+  held.motion.time_s.back() = 4.0;
+  const SimulationOptions push{.push_N = 150.0, .push_s = 0.3, .seed = 2, .record_every_s = 0.01};
+  const SimulationResult with = held.run(push);
+  EXPECT_TRUE(with.carried_out) << with.reason;
+  double most_N = 0.0;
+  for (const SimulationSample& sample : with.samples) {
+    most_N = std::max(most_N, sample.forces[2].norm());
+  }
+  EXPECT_GT(most_N, 50.0);
+  held.motion.stances[0].contacts.pop_back();
+  EXPECT_FALSE(held.run(push).carried_out);
+}
+
+TEST(Grasps, CloseWhenTheirStanceListsThemAndOpenAfterIt) {
+  HandOnABar held;
+  const Eigen::VectorXd q = held.coman.configuration;
+  held.motion.time_s = {0.0, 2.0, 4.0, 6.0};
+  held.motion.configurations = {q, q, q, q};
+  held.motion.stances = {held.coman.both_feet(), held.motion.stances[0]};
+  held.motion.stance_from = {0, 1, 0, 0};
+  const SimulationResult result = held.run({.record_every_s = 0.02});
+  EXPECT_TRUE(result.carried_out) << result.reason;
+  bool held_in_between = false;
+  for (const SimulationSample& sample : result.samples) {
+    const double force_N = sample.forces[2].norm();
+    if (sample.stance == 0) {
+      EXPECT_EQ(force_N, 0.0) << sample.plan_time_s;
+    }
+    held_in_between = held_in_between || force_N > 0.01;
+  }
+  EXPECT_TRUE(held_in_between);
+}
+
+TEST(Grasps, GiveWayBeyondTheirLimits) {
+  HandOnABar held;
+  held.hand.max_force_N = 20.0;
+  held.motion.stances[0].contacts.back().effector.max_force_N = 20.0;
+  held.motion.time_s.back() = 4.0;
+  const SimulationResult result =
+      held.run({.push_N = 150.0, .push_s = 0.3, .seed = 2, .record_every_s = 0.01});
+  EXPECT_FALSE(result.carried_out);
+  EXPECT_FALSE(result.samples.back().forces[2].norm() > 0.0);
+}
+
+TEST(Grasps, HoldNothingWhereThereIsNoBar) {
+  HandOnABar held;
+  held.bar.from.z() += 0.05;
+  held.bar.to.z() += 0.05;
+  EXPECT_FALSE(held.run().carried_out);
+}
+
+TEST_F(Simulations, ObstaclesDoNotWaitForTheRobot) {
+  Obstacle cart;
+  cart.size = Eigen::Vector3d(0.2, 0.2, 0.4);
+  cart.world_from_obstacle.translation() = Eigen::Vector3d(-3.0, 0.0, 1.0);
+  cart.motion = {{.time_s = 1.5}};
+  cart.motion[0].pose.translation() = Eigen::Vector3d(0.0, 0.0, 1.0);
+  const auto run_past = [&](double x) {
+    cart.motion[0].pose.translation().x() = x;
+    return simulate(coman.robot, coman.effectors, {.obstacles = {cart}, .surfaces = {ground()}},
+                    coman.standing());
+  };
+  EXPECT_FALSE(run_past(0.0).carried_out);
+  EXPECT_TRUE(run_past(-1.0).carried_out);
+}
+
+TEST_F(Simulations, MapsAreInTheWay) {
+  const auto map = std::make_shared<octomap::OcTree>(0.05);
+  const Eigen::Vector3f at = hand_centre().cast<float>();
+  map->updateNode(octomap::point3d(at.x(), at.y(), at.z()), true);
+  expect_error(
+      [&] {
+        simulate(coman.robot, coman.effectors, {.map = map, .surfaces = {ground()}},
+                 coman.standing());
+      },
+      "deep");
+}
+
 TEST_F(Simulations, ASoleOnABarIsKeptAsItWasPlanned) {
   Surface right = ground();
   right.half_x_m = 1.0;
