@@ -17,6 +17,8 @@
 #include <locograph/common/stop_signals.h>
 #include <locograph/solvers/kernels.h>
 
+#include <cstdlib>
+#include <string>
 #include <vector>
 
 namespace locograph {
@@ -53,10 +55,15 @@ int run(int argc, char** argv) {
                                    add_view(app),     add_plot(app),    add_posture(app),
                                    add_campaign(app), add_convert(app), add_simulate(app)};
   bool quiet = false;
+  std::string packages;
   for (Command& command : commands) {
     command.parser.add_flag("--quiet", quiet, "Neither progress nor warnings on stderr");
+    command.parser.add_option("--package-path", packages,
+                              "Where meshes of package:// are, too: folders, separated by ':'");
   }
   if (!app.parse(argc, argv)) return kDone;
+  // As if it were told by the environment, before anything is loaded.
+  if (!packages.empty()) setenv("LOCOGRAPH_PACKAGE_PATH", packages.c_str(), 1);
   if (quiet) be_quiet();
   return run_chosen(commands);
 }

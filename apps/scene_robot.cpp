@@ -1,37 +1,73 @@
+#include <locograph/apps/decimation.h>
 #include <locograph/apps/packed.h>
 #include <locograph/apps/robot_files.h>
 #include <locograph/apps/scene.h>
 #include <locograph/apps/type_names.h>
 #include <locograph/plugins/configuration/self_collision_shapes.h>
 #include <locograph/robots/covering_capsules.h>
-#include <locograph/robots/stl_file.h>
+#include <locograph/robots/mesh_file.h>
 #include <locograph/robots/visual_model.h>
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 namespace locograph {
 namespace {
 
-/// Each mesh file once.
+constexpr std::size_t kMostTriangles = 60000;  // of all meshes of a page: 3 MB of it
+
+/// Each mesh, or part of it, once.
 class Meshes {
  public:
-  int index(const std::filesystem::path& file) {
-    const auto [found, added] = index_.emplace(file, static_cast<int>(list_.size()));
-    if (added) {
-      std::vector<float> numbers;
-      for (const Eigen::Vector3d& corner : stl_triangles(file)) {
-        for (int i = 0; i < 3; ++i) numbers.push_back(static_cast<float>(corner[i]));
-      }
-      list_.push_back({{"name", file.filename().string()}, {"triangles", packed_floats(numbers)}});
-    }
+  int index(const std::filesystem::path& file, int part) {
+    const auto [found, added] =
+        index_.emplace(std::pair(file, part), static_cast<int>(all_.size()));
+    if (added) all_.push_back({file.filename().string(), corners_of(file, part)});
     return found->second;
   }
-  const Json& list() const { return list_; }
+
+  /// Those that are larger than others are drawn with fewer triangles.
+  Json list() const {
+    const std::size_t most = most_of_each();
+    Json list = Json::array();
+    for (const Mesh& mesh : all_) {
+      std::vector<float> numbers;
+      for (const Eigen::Vector3d& corner : decimated(mesh.corners, most)) {
+        for (int i = 0; i < 3; ++i) numbers.push_back(static_cast<float>(corner[i]));
+      }
+      list.push_back({{"name", mesh.name}, {"triangles", packed_floats(numbers)}});
+    }
+    return list;
+  }
 
  private:
-  std::map<std::filesystem::path, int> index_;
-  Json list_ = Json::array();
+  struct Mesh {
+    std::string name;
+    std::vector<Eigen::Vector3d> corners;
+  };
+
+  static std::vector<Eigen::Vector3d> corners_of(const std::filesystem::path& file, int part) {
+    if (part < 0) return mesh_triangles(file);
+    return std::move(mesh_parts(file)[static_cast<std::size_t>(part)].corners);
+  }
+
+  /// So that all of them together have no more than kMostTriangles.
+  std::size_t most_of_each() const {
+    std::vector<std::size_t> sizes;
+    for (const Mesh& mesh : all_) sizes.push_back(mesh.corners.size() / 3);
+    std::sort(sizes.begin(), sizes.end());
+    std::size_t left = kMostTriangles;
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      const std::size_t share = left / (sizes.size() - i);
+      if (sizes[i] > share) return std::max<std::size_t>(share, 1);
+      left -= sizes[i];
+    }
+    return kMostTriangles;
+  }
+
+  std::map<std::pair<std::filesystem::path, int>, int> index_;
+  std::vector<Mesh> all_;
 };
 
 Json shape_json(const VisualShape& shape, Meshes& meshes) {
@@ -48,7 +84,7 @@ Json shape_json(const VisualShape& shape, Meshes& meshes) {
       json["size"] = vector_json(shape.size);
       break;
     case ShapeType::kMesh:
-      json["mesh"] = meshes.index(shape.mesh_file);
+      json["mesh"] = meshes.index(shape.mesh_file, shape.mesh_part);
       json["scale"] = vector_json(shape.size);
       break;
   }

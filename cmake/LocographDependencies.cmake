@@ -19,6 +19,7 @@ locograph_find_optional(CHOLMOD)
 
 if(LOCOGRAPH_PLANNING)
   find_package(tinyxml2 REQUIRED)
+  find_package(assimp 5 REQUIRED)
   find_package(octomap REQUIRED)
   find_package(fcl 0.7 REQUIRED)
   find_package(PNG 1.6 REQUIRED)

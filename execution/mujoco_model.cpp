@@ -3,7 +3,7 @@
 #include <locograph/robots/body_inertia.h>
 #include <locograph/robots/kinematic_tree.h>
 #include <locograph/robots/statics.h>
-#include <locograph/world/stl_vertices.h>
+#include <locograph/world/mesh_vertices.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -329,7 +329,7 @@ class ModelWriter {
 
   // MuJoCo refuses what has no volume: meshes that are flat get the thickness of a plate.
   static std::vector<Eigen::Vector3d> solid_corners(const CollisionShape& shape) {
-    std::vector<Eigen::Vector3d> corners = stl_vertices(shape.mesh_file);
+    std::vector<Eigen::Vector3d> corners = mesh_vertices(shape.mesh_file);
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (Eigen::Vector3d& corner : corners) {
       corner = corner.cwiseProduct(shape.size).eval();

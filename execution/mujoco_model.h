@@ -29,7 +29,7 @@
 /// another one a box of 2 mm below it. A mimic joint is an equality with the joint that it follows.
 ///
 /// Errors: those of options, of body_inertias() and of require_sound_effector(); links of bodies
-/// without mass or inertia; kinds of contact that are not ours; meshes that stl_vertices() cannot
+/// without mass or inertia; kinds of contact that are not ours; meshes that mesh_vertices() cannot
 /// read.
 
 #include <locograph/robots/contact.h>

@@ -39,6 +39,6 @@ std::vector<CollisionSphere> covering_spheres(const CollisionShape& shape, doubl
 
 /// Corners of the axis-aligned bounding box of an STL file (text or binary), in the file's own
 /// units. Throws Error if it cannot be read.
-Eigen::AlignedBox3d stl_bounds(const std::filesystem::path& file);
+Eigen::AlignedBox3d mesh_bounds(const std::filesystem::path& file);
 
 }  // namespace locograph

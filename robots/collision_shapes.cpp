@@ -1,6 +1,8 @@
 #include <locograph/robots/urdf_reader.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <sstream>
 
 namespace locograph {
 namespace {
@@ -41,6 +43,19 @@ std::vector<CollisionShape> merge_capsules(const std::vector<CollisionShape>& sh
   return result;
 }
 
+std::vector<std::filesystem::path> package_folders() {
+  std::vector<std::filesystem::path> folders;
+  for (const char* name : {"LOCOGRAPH_PACKAGE_PATH", "ROS_PACKAGE_PATH"}) {
+    const char* told = std::getenv(name);
+    std::istringstream list(told == nullptr ? "" : told);
+    for (std::string folder; std::getline(list, folder, ':');) {
+      while (folder.size() > 1 && folder.back() == '/') folder.pop_back();
+      if (!folder.empty()) folders.emplace_back(folder);
+    }
+  }
+  return folders;
+}
+
 std::filesystem::path find_mesh(const std::string& reference, const std::filesystem::path& urdf) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::absolute(urdf).lexically_normal().parent_path();
@@ -56,12 +71,20 @@ std::filesystem::path find_mesh(const std::string& reference, const std::filesys
   }
   const std::size_t slash = rest.find('/');
   const std::string inside = slash == std::string::npos ? rest : rest.substr(slash + 1);
+  const std::string package = rest.substr(0, slash);
   for (fs::path base = folder;; base = base.parent_path()) {
     for (const std::string& candidate : {rest, inside}) {
       if (fs::is_regular_file(base / candidate, ignored)) return base / candidate;
     }
-    if (base == base.parent_path()) return {};
+    if (base == base.parent_path()) break;
   }
+  for (const fs::path& told : package_folders()) {
+    if (fs::is_regular_file(told / rest, ignored)) return told / rest;
+    if (told.filename() == package && fs::is_regular_file(told / inside, ignored)) {
+      return told / inside;
+    }
+  }
+  return {};
 }
 
 }  // namespace locograph

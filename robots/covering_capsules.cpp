@@ -1,9 +1,9 @@
 #include <locograph/common/error.h>
 #include <locograph/robots/collision_model.h>
 #include <locograph/robots/covering_capsules.h>
+#include <locograph/robots/mesh_file.h>
 #include <locograph/robots/mesh_fit.h>
 #include <locograph/robots/shape_covers.h>
-#include <locograph/robots/stl_file.h>
 
 namespace locograph {
 
@@ -16,7 +16,7 @@ TriangleTree collision_mesh(const CollisionShape& shape) {
     throw Error(shape.mesh_file.string(), 0, "collision mesh not found",
                 "a file below a folder above the URDF");
   }
-  std::vector<Eigen::Vector3d> corners = stl_triangles(shape.mesh_file);
+  std::vector<Eigen::Vector3d> corners = mesh_triangles(shape.mesh_file);
   for (Eigen::Vector3d& corner : corners) corner.array() *= shape.size.array();
   return TriangleTree(std::move(corners));
 }

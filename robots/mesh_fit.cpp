@@ -1,4 +1,5 @@
 #include <locograph/robots/capsule_surface.h>
+#include <locograph/robots/fit_cache.h>
 #include <locograph/robots/mesh_fit.h>
 
 #include <Eigen/Eigenvalues>
@@ -455,9 +456,13 @@ Memory& memory() {
 
 std::vector<Capsule> fit_capsules(const TriangleTree& mesh, const MeshFitOptions& options) {
   if (auto known = memory().find(mesh.corners(), options)) return *std::move(known);
-  std::vector<Capsule> capsules = Fit(mesh, options).run();
-  memory().add(mesh.corners(), options, capsules);
-  return capsules;
+  std::optional<std::vector<Capsule>> capsules = cached_fit(mesh.corners(), options);
+  if (!capsules) {
+    capsules = Fit(mesh, options).run();
+    cache_fit(mesh.corners(), options, *capsules);
+  }
+  memory().add(mesh.corners(), options, *capsules);
+  return *std::move(capsules);
 }
 
 }  // namespace locograph

@@ -16,8 +16,8 @@
 /// meshes are covered like others; where the triangles enclose nothing, everything off the surface
 /// counts as sticking out.
 ///
-/// A fit takes a tenth of a second or two: the newest ones of the process are remembered.
-/// Thread-safe.
+/// A fit takes a tenth of a second or two: the newest ones of the process are remembered, and all
+/// are kept for later runs (fit_cache.h). Thread-safe.
 
 #include <locograph/robots/capsule.h>
 #include <locograph/robots/triangle_tree.h>

@@ -38,6 +38,8 @@ class SrdfReader {
         joints_(index_by_name(urdf.joints)) {}
 
   SrdfModel read() {
+    // As Pinocchio calls the joint above a floating base, which no <virtual_joint> names there.
+    if (!joints_.contains("root_joint")) virtual_joints_.insert("root_joint");
     for (const Element& joint : xml_.children(xml_.root(), "virtual_joint")) {
       attempt([&] { look_up(joint, "child_link", links_, "link"); });
       virtual_joints_.insert(xml_.attribute(joint, "name"));

@@ -32,8 +32,13 @@ UrdfModel read_urdf(const std::filesystem::path& file);
 /// the cylinder's place; the other shapes stay as they are. Centres may be off by 0.1 mm.
 std::vector<CollisionShape> merge_capsules(const std::vector<CollisionShape>& shapes);
 
+/// Folders of packages, or packages themselves, in the order in which they are looked into: those
+/// of the environment's LOCOGRAPH_PACKAGE_PATH, then of ROS_PACKAGE_PATH, separated by ':'.
+std::vector<std::filesystem::path> package_folders();
+
 /// Where a URDF's mesh reference points to: `package://NAME/PATH` is looked for as NAME/PATH and as
-/// PATH in the folder of the URDF and all folders above it. Empty if there is no such file.
+/// PATH in the folder of the URDF and all folders above it, then as NAME/PATH in package_folders(),
+/// and as PATH in those that are called NAME. Empty if there is no such file.
 std::filesystem::path find_mesh(const std::string& reference, const std::filesystem::path& urdf);
 
 }  // namespace locograph

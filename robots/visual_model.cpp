@@ -1,12 +1,11 @@
 #include <locograph/common/error.h>
+#include <locograph/robots/mesh_file.h>
 #include <locograph/robots/robot_state.h>
-#include <locograph/robots/stl_file.h>
 #include <locograph/robots/urdf_reader.h>
 #include <locograph/robots/visual_model.h>
 #include <locograph/robots/xml_file.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -20,14 +19,6 @@ using Element = XmlFile::Element;
 const Eigen::Vector4d kGrey(0.72, 0.74, 0.77, 1.0);
 const Eigen::Vector4d kBone(0.45, 0.50, 0.58, 1.0);
 constexpr double kBoneRadius_m = 0.02;
-
-/// Only STL files are read.
-bool is_stl(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".stl";
-}
 
 /// Colours by material name: what the robot defines counts before what a visual defines.
 using Materials = std::map<std::string, Eigen::Vector4d>;
@@ -90,6 +81,16 @@ Eigen::Isometry3d read_origin(const XmlFile& xml, const Element& visual) {
   return pose;
 }
 
+bool can_be_read(const std::filesystem::path& mesh_file) {
+  if (!is_mesh_file(mesh_file)) return false;
+  try {
+    mesh_parts(mesh_file);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 VisualShape read_visual(const XmlFile& xml, const Element& visual, int link,
                         const Materials& materials, const std::filesystem::path& urdf) {
   VisualShape shape;
@@ -113,13 +114,28 @@ VisualShape read_visual(const XmlFile& xml, const Element& visual, int link,
   } else {
     throw xml.error(visual, "<visual> without geometry", "sphere, cylinder, box or mesh");
   }
+  shape.has_color = visual.FirstChildElement("material") != nullptr;
   if (name == "mesh") {
     const std::string reference = xml.attribute(*kind, "filename");
     shape.mesh_file = find_mesh(reference, urdf);
-    shape.mesh_found = is_stl(shape.mesh_file);
+    shape.mesh_found = can_be_read(shape.mesh_file);
     if (!shape.mesh_found) shape.mesh_file = reference;
   }
   return shape;
+}
+
+/// A mesh without a colour of the URDF's has those of its own materials.
+void add_parts(VisualShape shape, std::vector<VisualShape>& shapes) {
+  if (shape.type != ShapeType::kMesh || !shape.mesh_found || shape.has_color) {
+    shapes.push_back(std::move(shape));
+    return;
+  }
+  const std::vector<MeshPart> parts = mesh_parts(shape.mesh_file);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    shape.mesh_part = static_cast<int>(i);
+    if (parts[i].color) shape.color = *parts[i].color;
+    shapes.push_back(shape);
+  }
 }
 
 /// From a link's origin to the joints below it; a small sphere where there is none.
@@ -168,7 +184,7 @@ VisualShape as_visual(const CollisionShape& shape, const Eigen::Vector4d& color)
   result.size = shape.size;
   result.color = color;
   result.mesh_file = shape.mesh_file;
-  result.mesh_found = shape.mesh_found && is_stl(shape.mesh_file);
+  result.mesh_found = shape.mesh_found && is_mesh_file(shape.mesh_file);
   return result;
 }
 
@@ -182,7 +198,7 @@ std::vector<VisualShape> load_visuals(const Robot& robot) {
     if (index < 0) continue;
     std::vector<VisualShape>& shapes = of_link[index];
     for (const Element& visual : xml.children(link, "visual")) {
-      shapes.push_back(read_visual(xml, visual, index, materials, robot.urdf_file()));
+      add_parts(read_visual(xml, visual, index, materials, robot.urdf_file()), shapes);
     }
     const auto missing = std::find_if(shapes.begin(), shapes.end(),
                                       [](const VisualShape& s) { return !s.drawable(); });
@@ -225,7 +241,7 @@ double lowest_point(const VisualShape& shape, const Eigen::Isometry3d& world_fro
       break;
   }
   double lowest = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector3d& corner : stl_triangles(shape.mesh_file)) {
+  for (const Eigen::Vector3d& corner : mesh_triangles(shape.mesh_file)) {  // of all parts
     lowest = std::min(lowest, (pose * shape.size.cwiseProduct(corner).eval()).z());
   }
   return lowest;

@@ -9,13 +9,14 @@
 ///       }
 ///     }
 ///
-/// Meshes are drawable when their file exists and is STL; of the others the URDF's reference is
-/// kept, so that missing_meshes() can name them. A link with a mesh that is not drawable gets
-/// stand-ins: its collision shapes or, where it has none that can be drawn, a thin capsule from its
-/// origin to each joint below it.
+/// Meshes are drawable when their file exists and is one that mesh_file.h reads; of the others the
+/// URDF's reference is kept, so that missing_meshes() can name them. A link with a mesh that is not
+/// drawable gets stand-ins: its collision shapes or, where it has none that can be drawn, a thin
+/// capsule from its origin to each joint below it.
 ///
 /// Colours are those of the materials, named or inline, defined in the visual, in another one or
-/// at the robot; a texture, or no material, is light grey.
+/// at the robot; without any, those of the mesh's own materials; a texture, or none of these, is
+/// light grey.
 
 #include <locograph/robots/robot.h>
 
@@ -36,7 +37,9 @@ struct VisualShape {
   Eigen::Vector3d size = Eigen::Vector3d::Ones();   ///< box: extents [m]; mesh: scale
   Eigen::Vector4d color = Eigen::Vector4d::Ones();  ///< red, green, blue, alpha, 0 to 1
   std::filesystem::path mesh_file;  ///< resolved path, or as written in the URDF if not found
-  bool mesh_found = false;          ///< the file exists and is STL
+  bool mesh_found = false;          ///< the file exists and can be read
+  int mesh_part = -1;               ///< of mesh_parts(); -1: all of them
+  bool has_color = false;           ///< by the URDF
 
   bool drawable() const { return type != ShapeType::kMesh || mesh_found; }
 };

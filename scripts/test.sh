@@ -13,6 +13,7 @@ run_tests() {
   ctest --test-dir "$root/$folder" --output-on-failure --no-tests=error --parallel "$jobs" "$@"
 }
 
+export LOCOGRAPH_CACHE=$root/build/cache  # not the user's
 install_missing
 # Benchmarks are built by scripts/lint.sh.
 configure build -DLOCOGRAPH_UNITY_TESTS=ON

@@ -1,6 +1,6 @@
 #include <locograph/common/error.h>
 #include <locograph/world/link_solid.h>
-#include <locograph/world/stl_vertices.h>
+#include <locograph/world/mesh_vertices.h>
 
 #include <utility>
 #include <vector>
@@ -23,8 +23,8 @@ ConvexShape link_solid(const Robot& robot, const CollisionShape& shape) {
   if (!shape.mesh_found)
     throw Error(robot.urdf_file().string(), shape.line,
                 "collision mesh " + shape.mesh_file.string() + " was not found",
-                "a readable STL file");
-  std::vector<Eigen::Vector3d> vertices = stl_vertices(shape.mesh_file);
+                "a mesh file that can be read");
+  std::vector<Eigen::Vector3d> vertices = mesh_vertices(shape.mesh_file);
   for (Eigen::Vector3d& vertex : vertices) vertex = vertex.cwiseProduct(shape.size).eval();
   return ConvexShape::hull(std::move(vertices));
 }

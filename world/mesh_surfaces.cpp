@@ -1,6 +1,6 @@
 #include <locograph/common/error.h>
 #include <locograph/common/ranges.h>
-#include <locograph/robots/stl_file.h>
+#include <locograph/robots/mesh_file.h>
 #include <locograph/world/leftover_map.h>
 #include <locograph/world/rectangles.h>
 #include <locograph/world/surfaces_of.h>
@@ -31,7 +31,7 @@ using Edge = std::pair<int, int>;
 
 std::vector<Triangle> triangles_of(const std::filesystem::path& file,
                                    const Eigen::Isometry3d& world_from_mesh, double scale) {
-  const std::vector<Eigen::Vector3d> corners = stl_triangles(file);
+  const std::vector<Eigen::Vector3d> corners = mesh_triangles(file);
   std::map<std::array<long long, 3>, int> places;
   std::vector<Triangle> triangles;
   for (std::size_t first = 0; first + 2 < corners.size(); first += 3) {

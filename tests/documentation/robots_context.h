@@ -8,6 +8,8 @@
 #include <locograph/robots/capsule.h>
 #include <locograph/robots/contact.h>
 #include <locograph/robots/covering_capsules.h>
+#include <locograph/robots/fit_cache.h>
+#include <locograph/robots/mesh_file.h>
 #include <locograph/robots/mimic_joints.h>
 #include <locograph/robots/stl_file.h>
 #include <locograph/robots/triangle_tree.h>
@@ -111,6 +113,19 @@ struct Context : FilesContext {
   const UrdfModel urdf = read_urdf("centauro.urdf");
 };
 }  // namespace srdf_reader_h
+namespace fit_cache_h {
+struct Context {
+  const TriangleTree mesh = TriangleTree({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  const MeshFitOptions options;
+  std::vector<Capsule> capsules;
+  static std::vector<Capsule> fit(const TriangleTree&, const MeshFitOptions&) { return {}; }
+};
+}  // namespace fit_cache_h
+namespace mesh_file_h {
+struct Context : FilesContext {
+  std::size_t triangles = 0;
+};
+}  // namespace mesh_file_h
 namespace stl_file_h {
 using Context = FilesContext;
 }

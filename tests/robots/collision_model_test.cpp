@@ -247,18 +247,18 @@ TEST(Meshes, AreReadAsTextOrBinaryStl) {
   binary.append(reinterpret_cast<const char*>(&count), 4);
   binary.append(reinterpret_cast<const char*>(numbers), 48);
   binary.append(reinterpret_cast<const char*>(&attributes), 2);
-  const Eigen::AlignedBox3d box = stl_bounds(folder.write("b.stl", binary));
+  const Eigen::AlignedBox3d box = mesh_bounds(folder.write("b.stl", binary));
   EXPECT_EQ(box.min(), Eigen::Vector3d(-1, -5, 3));
   EXPECT_EQ(box.max(), Eigen::Vector3d(4, 2, 9));
 
-  EXPECT_THROW(stl_bounds(folder.path() / "none.stl"), Error);
-  EXPECT_THROW(stl_bounds(folder.write("c.stl", "solid of nothing\nendsolid")), Error);
-  EXPECT_THROW(stl_bounds(folder.write("d.stl", binary.substr(0, 100))), Error);
+  EXPECT_THROW(mesh_bounds(folder.path() / "none.stl"), Error);
+  EXPECT_THROW(mesh_bounds(folder.write("c.stl", "solid of nothing\nendsolid")), Error);
+  EXPECT_THROW(mesh_bounds(folder.write("d.stl", binary.substr(0, 100))), Error);
   const std::string text = "solid a\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendsolid a\n";
-  EXPECT_EQ(stl_bounds(folder.write("e.stl", text)).max(), Eigen::Vector3d(1, 1, 0));
-  EXPECT_THROW(stl_bounds(folder.write("f.stl", text.substr(0, text.find("ends")))), Error);
+  EXPECT_EQ(mesh_bounds(folder.write("e.stl", text)).max(), Eigen::Vector3d(1, 1, 0));
+  EXPECT_THROW(mesh_bounds(folder.write("f.stl", text.substr(0, text.find("ends")))), Error);
   try {
-    stl_bounds(folder.write("g.stl", "solid a\nvertex 0 0 0\nvertex 1 zero 0\nendsolid a\n"));
+    mesh_bounds(folder.write("g.stl", "solid a\nvertex 0 0 0\nvertex 1 zero 0\nendsolid a\n"));
     ADD_FAILURE() << "an unreadable vertex was accepted";
   } catch (const Error& error) {
     EXPECT_EQ(error.line(), 3);

@@ -47,6 +47,17 @@ TEST_F(SmallRobot, KeepsTheFiguresOfItsUrdf) {
   EXPECT_EQ(robot.tangent_size(), 8);
 }
 
+TEST_F(SmallRobot, MayCallItsFloatingBaseRootJointAsPinocchioDoes) {
+  const Robot robot = load(R"(<robot name="small">
+    <group name="all"><joint name="root_joint"/><joint name="turn"/></group>
+    <group_state name="bent" group="all">
+      <joint name="root_joint" value="0 0 1 0 0 0 1"/><joint name="turn" value="1.25"/>
+    </group_state></robot>)");
+  EXPECT_EQ(robot.named_configuration("bent")[7], 1.25);
+  EXPECT_THROW(load("<robot name='small'><group name='all'><joint name='root'/></group></robot>"),
+               Error);
+}
+
 TEST_F(SmallRobot, TurnsInertiasIntoTheAxesOfTheirLinks) {
   const Robot robot = load(groups);
   const Eigen::Matrix3d rotation = (Eigen::AngleAxisd(-0.4, Eigen::Vector3d::UnitZ()) *

@@ -3,7 +3,7 @@
 #include <locograph/common/input_file.h>
 #include <locograph/world/convex_shape.h>
 #include <locograph/world/gjk.h>
-#include <locograph/world/stl_vertices.h>
+#include <locograph/world/mesh_vertices.h>
 
 #include <algorithm>
 #include <cmath>
@@ -279,20 +279,21 @@ TEST(StlVertices, ReadsTextAndBinaryAndRefusesTheRest) {
       "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
       "0\nendloop\nendfacet\nfacet normal 0 0 1\nouter loop\nvertex 1 0 0\nvertex 0 1 0\nvertex 1 "
       "1 2.5e-1\nendloop\nendfacet\nendsolid a\n";
-  const std::vector<Eigen::Vector3d> vertices = stl_vertices(folder.write("a.stl", text));
+  const std::vector<Eigen::Vector3d> vertices = mesh_vertices(folder.write("a.stl", text));
   ASSERT_EQ(vertices.size(), 4u);
   EXPECT_EQ(vertices.back(), Eigen::Vector3d(1, 1, 0.25));
-  EXPECT_THROW(stl_vertices(folder.write("b.stl", text.substr(0, text.size() - 12))), Error);
-  EXPECT_THROW(stl_vertices(folder.write("c.stl", "hello")), Error);
-  EXPECT_THROW(stl_vertices(folder.file("none.stl")), Error);
+  EXPECT_THROW(mesh_vertices(folder.write("b.stl", text.substr(0, text.size() - 12))), Error);
+  EXPECT_THROW(mesh_vertices(folder.write("c.stl", "hello")), Error);
+  EXPECT_THROW(mesh_vertices(folder.file("none.stl")), Error);
 
   const std::filesystem::path foot = std::filesystem::path(LOCOGRAPH_SHARED_DATA) /
                                      "robots/go2_description/collisions/foot_convex.stl";
   if (!std::filesystem::exists(foot)) GTEST_SKIP() << foot << " is missing";
   // A closed triangle mesh of the sphere's topology: V = F / 2 + 2.
-  EXPECT_EQ(stl_vertices(foot).size(), 654u / 2 + 2);
+  EXPECT_EQ(mesh_vertices(foot).size(), 654u / 2 + 2);
   const std::string content = read_file(foot);
-  EXPECT_THROW(stl_vertices(folder.write("cut.stl", content.substr(0, content.size() - 1))), Error);
+  EXPECT_THROW(mesh_vertices(folder.write("cut.stl", content.substr(0, content.size() - 1))),
+               Error);
 }
 
 }  // namespace
