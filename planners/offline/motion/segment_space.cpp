@@ -9,6 +9,7 @@
 namespace locograph {
 namespace {
 
+constexpr double kSomeFriction = 0.1;  // of what bears nothing, where its kind has none
 constexpr double kProjected = 1e-9;  // m, rad
 constexpr int kMostProjections = 12;
 constexpr double kLongestProjection = 0.3;
@@ -62,6 +63,7 @@ Contact contact_in_air(const Robot& robot, const Contact& contact, const Eigen::
   }
   held.effector.kind = ContactKind::kPoint;
   held.effector.radius_m = 0.0;
+  held.effector.friction = std::max(held.effector.friction, kSomeFriction);
   held.forward.reset();
   return held;
 }
