@@ -60,7 +60,7 @@ TEST(List, EveryKernelItNamesCanBeChosen) {
 }
 
 TEST(List, FindsTheRobotsThatComeAlong) {
-  for (const char* robot : {"centauro", "coman_plus", "go2"}) {
+  for (const char* robot : {"centauro", "coman_plus", "coman_plus_grippers", "go2"}) {
     EXPECT_TRUE(list("robots").count(robot)) << robot;
   }
 }

@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <fstream>
 #include <map>
 
 #include "robots/coman_plus_postures.h"
@@ -43,6 +44,45 @@ class ComanPlus : public testing::Test {
   RobotState state;
   Eigen::VectorXd home;
 };
+
+/// Line by line but for hands and names.
+TEST(ComanPlusGrippers, AreThoseOfComanPlusWithOtherHands) {
+  const auto lines_of = [](const std::string& name, const std::string& extension) {
+    std::ifstream in(model(name + "/" + name + extension));
+    std::vector<std::string> lines;
+    bool hand = false;
+    for (std::string line; std::getline(in, line);) {
+      if (line.find("Ball_joint") != std::string::npos ||
+          line.find("Gripper_joint") != std::string::npos) {
+        hand = true;
+      }
+      if (line.find("arm_ft_joint") != std::string::npos) hand = false;
+      for (const char* side : {"L", "R"}) {
+        const std::string ball = std::string(side) + "Ball";
+        if (const std::size_t at = line.find(ball); at != std::string::npos) {
+          line.replace(at, ball.size(), std::string(side) + "Gripper");
+        }
+      }
+      const bool named = line.starts_with("<robot") || line.starts_with("<!--");
+      if (!hand && !named) lines.push_back(line);
+    }
+    return lines;
+  };
+  for (const std::string extension : {".urdf", ".srdf"}) {
+    EXPECT_GT(lines_of("coman_plus", extension).size(), 100U);
+    EXPECT_EQ(lines_of("coman_plus_grippers", extension), lines_of("coman_plus", extension));
+  }
+  const Robot robot = Robot::load(model("coman_plus_grippers/coman_plus_grippers.urdf"),
+                                  model("coman_plus_grippers/coman_plus_grippers.srdf"));
+  EXPECT_TRUE(robot.warnings().empty());
+  RobotState state(robot);
+  const Eigen::VectorXd home = robot.named_configuration("home");
+  state.update(home.data());
+  const auto grip = [&](const char* link) {
+    return state.world_from_link(robot.link_index(link)).translation().eval();
+  };
+  EXPECT_LT((mirrored(grip("l_grip")) - grip("r_grip")).norm(), 1e-12);
+}
 
 TEST_F(ComanPlus, HasTwentyEightJointsInTheOrderOfThePublishedPostures) {
   const std::vector<std::string> expected = {

@@ -10,7 +10,7 @@ namespace locograph {
 namespace {
 
 constexpr double kSomeFriction = 0.1;  // of what bears nothing, where its kind has none
-constexpr double kProjected = 1e-9;  // m, rad
+constexpr double kProjected = 1e-9;    // m, rad
 constexpr int kMostProjections = 12;
 constexpr double kLongestProjection = 0.3;
 /// Between configurations that were found with all of their margins, so much of them is asked for.
@@ -66,6 +66,13 @@ Contact contact_in_air(const Robot& robot, const Contact& contact, const Eigen::
   held.effector.friction = std::max(held.effector.friction, kSomeFriction);
   held.forward.reset();
   return held;
+}
+
+Eigen::Vector3d way_off(const Contact& contact, const Eigen::Isometry3d& link) {
+  if (contact_kind_entry(contact.effector.kind).bar_touch != BarTouch::kGrasp) {
+    return contact.normal.normalized();
+  }
+  return link.linear() * axes_in_link(contact.effector).col(2);
 }
 
 SegmentSpace::SegmentSpace(std::shared_ptr<const RobotParameter> robot, World world,
@@ -310,7 +317,7 @@ bool SegmentSpace::move_along(const Eigen::VectorXd& from, std::span<const Conta
     std::vector<Contact> also;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       also.push_back(contact_in_air(robot(), contacts[i], links[i], true));
-      also.back().position += lift_off_m_ * step / kLiftSteps * contacts[i].normal.normalized();
+      also.back().position += lift_off_m_ * step / kLiftSteps * way_off(contacts[i], links[i]);
     }
     Eigen::VectorXd q;
     if (!solve(way.back(), also, q)) return false;

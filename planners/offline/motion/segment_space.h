@@ -139,4 +139,8 @@ class SegmentSpace {
 Contact contact_in_air(const Robot& robot, const Contact& contact, const Eigen::Isometry3d& link,
                        bool with_axes);
 
+/// Along which a contact leaves its place: its normal; of a grasp, which may have turned about its
+/// bar, that of the hand.
+Eigen::Vector3d way_off(const Contact& contact, const Eigen::Isometry3d& link);
+
 }  // namespace locograph

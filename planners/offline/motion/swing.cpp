@@ -25,11 +25,6 @@ double way_over(double t, const ArcOptions& options) {
   return options.climb_first ? rise(t, 0.35, 0.8) : rise(t, 0.15, 0.85);
 }
 
-/// The normal of a contact; zero where there is none.
-Eigen::Vector3d up(const Contact* at) {
-  return at != nullptr ? Eigen::Vector3d(at->normal.normalized()) : Eigen::Vector3d::Zero();
-}
-
 Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const Eigen::Vector3d& by) {
   Eigen::Isometry3d result = pose;
   result.translation() += by;
@@ -60,17 +55,17 @@ void Swing::add_places(const Robot& robot, double t, const ArcOptions& options,
     // Height along the normal only, and nothing in between.
     if (left != nullptr && t <= kEnds) {
       const double up = options.height_m * lift(t, kEnds);
-      add(*left, moved(from, up * left->normal.normalized()), options.with_axes);
+      add(*left, moved(from, up * off_from), options.with_axes);
     }
     if (reached != nullptr && t >= 1.0 - kEnds) {
       const double up = options.height_m * lift(1.0 - t, kEnds);
-      add(*reached, moved(to, up * reached->normal.normalized()), options.with_axes);
+      add(*reached, moved(to, up * off_to), options.with_axes);
     }
     return;
   }
   Contact between = contact();
   const double over = way_over(t, options);
-  const Eigen::Vector3d normal = (1.0 - over) * up(left) + over * up(reached);
+  const Eigen::Vector3d normal = (1.0 - over) * off_from + over * off_to;
   if (normal.norm() > 1e-3) between.normal = normal.normalized();
   add(between, pose(t, options), options.with_axes);
 }
@@ -82,8 +77,7 @@ bool Swing::follows_arc(const ArcOptions& options) const {
 }
 
 Eigen::Isometry3d Swing::pose(double t, const ArcOptions& options) const {
-  const Eigen::Vector3d up_from = up(left), up_to = up(reached);
-  const Eigen::Vector3d climbing = reached != nullptr ? up_to : up_from;
+  const Eigen::Vector3d climbing = (reached != nullptr ? *reached : *left).normal.normalized();
   const Eigen::Vector3d point = contact().effector.point;
   const Eigen::Vector3d a = from * point, b = to * point;
   const double over = way_over(t, options);
@@ -98,7 +92,7 @@ Eigen::Isometry3d Swing::pose(double t, const ArcOptions& options) const {
   const Eigen::Vector3d at =
       a + over * across + climbed * climb * climbing +
       bulge * (options.away_m * away(a, b) + options.up_m * Eigen::Vector3d::UnitZ()) +
-      options.height_m * ((1.0 - over) * lifted * up_from + over * high * up_to);
+      options.height_m * ((1.0 - over) * lifted * off_from + over * high * off_to);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = Eigen::Quaterniond(from.linear())
                       .slerp(over, Eigen::Quaterniond(to.linear()))
@@ -129,6 +123,8 @@ std::vector<Swing> swings_of(SegmentSpace& space) {
     const int link = space.robot().link_index(contact.effector.link);
     swing.from = from.world_from_link(link);
     swing.to = to.world_from_link(link);
+    if (swing.left != nullptr) swing.off_from = way_off(*swing.left, swing.from);
+    if (swing.reached != nullptr) swing.off_to = way_off(*swing.reached, swing.to);
     swing.base = 0.5 * (segment.from.head<3>() + segment.to.head<3>());
   }
   return swings;

@@ -7,9 +7,9 @@ TEST(Scenario, TheShippedDriveLoadsByName) {
   const DataFolder data;
   EXPECT_EQ(scenario_names(data.path()),
             (std::vector<std::string>{"centauro_drive", "centauro_platform", "gap_with_handrail",
-                                      "ladder_climbing", "ladder_from_cloud", "parallel_walls",
-                                      "quadrupedal_walking", "slanted_wall", "standing_up",
-                                      "stepping_stones", "walk_then_stand"}));
+                                      "ladder_climbing", "ladder_from_cloud", "ladder_rungs",
+                                      "parallel_walls", "quadrupedal_walking", "slanted_wall",
+                                      "standing_up", "stepping_stones", "walk_then_stand"}));
   const Scenario scenario = load_scenario("centauro_drive", data.path());
   EXPECT_EQ(scenario.name, "centauro_drive");
   EXPECT_EQ(scenario.source, "centauro_drive");
