@@ -315,12 +315,13 @@ class PlanEdges {
                   "one for each of the stance, " + std::to_string(expected));
     }
     std::vector<int> numbers;
-    std::vector<double> components;
+    std::vector<double> components, arms;
     for (std::size_t c = 0; c < bearing->contacts.size(); ++c) {
       if (!bearing->contacts[c]->contact.bears_load) continue;
       numbers.push_back(bearing->contact_numbers[c]);
       for (const int component : bearing->contacts[c]->cone->components()) {
         components.push_back(wrenches[c][component]);
+        arms.push_back(component < 3 ? 1.0 : options_.wrench_arm_m);
       }
     }
     VertexWrenches vertex(graph_.parameters(), std::move(numbers));
@@ -332,8 +333,10 @@ class PlanEdges {
     const double balance = options_.balance_weight * unit;
     add_balance_edge(i, forces, balance);
     add_contact_wrench_edge(forces, options_.friction_weight * unit);
-    graph_.add_edge(
-        EdgeWrenchTracking(graph_.vertex(forces), options_.wrench_tracking_weight * unit), forces);
+    EdgeWrenchTracking tracking(graph_.vertex(forces), options_.wrench_tracking_weight * unit);
+    tracking.weights.array() /=
+        Eigen::Map<const Eigen::ArrayXd>(arms.data(), tracking.weights.size()).square();
+    graph_.add_edge(std::move(tracking), forces);
     if (!options_.torque_limits) return;
     EdgeTorqueLimits torques(robot_, options_.effort_scale, 0.0);
     for (int j = 0; j < robot_.active_joint_count(); ++j) {

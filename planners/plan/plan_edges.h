@@ -38,7 +38,8 @@ struct PlanEdgeOptions {
   double balance_weight = 1e4;           ///< forces and moments (N, N m over the robot's weight)
   double friction_weight = 1e3;          ///< what contacts can bear, likewise
   double torque_weight = 1e2;            ///< per share of a joint's effort limit
-  double wrench_tracking_weight = 3e-3;  ///< the plan's, of all wrenches that balance
+  double wrench_tracking_weight = 3e-3;  ///< the plan's, of all wrenches that balance; of moments
+  double wrench_arm_m = 0.03;            ///< as of forces at this arm: soles may bear along a line
 
   double obstacle_margin_m = 0.05;
   int swept_samples = 4;  ///< between two configurations, see edge_swept_obstacle_distance.h
