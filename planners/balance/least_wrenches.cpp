@@ -35,6 +35,13 @@ int count_rays(std::span<const BearingContact> contacts, double weight_N) {
   return count;
 }
 
+/// Its rays are along the contact's axes, its wrenches are stated along the link's, which are the
+/// same but for rounding. Rays of what has turned are turned, too.
+bool has_link_axes(const Contact& contact) {
+  const ContactKindEntry& kind = contact_kind_entry(contact.effector.kind);
+  return kind.axes_on_link && kind.bar_touch != BarTouch::kGrasp;
+}
+
 }  // namespace
 
 LeastWrenches::LeastWrenches(const Robot& robot, std::span<const BearingContact> contacts,
@@ -57,9 +64,8 @@ LeastWrenches::LeastWrenches(const Robot& robot, std::span<const BearingContact>
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const BearingContact& bearing = contacts_[c];
     links_.push_back(robot.link_index(bearing.contact.effector.link));
-    const bool on_link = contact_kind_entry(bearing.contact.effector.kind).axes_on_link;
-    axes_.push_back(on_link ? axes_in_link(bearing.contact.effector)
-                            : axes_in_world(bearing.contact));
+    axes_.push_back(has_link_axes(bearing.contact) ? axes_in_link(bearing.contact.effector)
+                                                   : axes_in_world(bearing.contact));
     if (!bearing.contact.bears_load) continue;
     const double most = most_of_rays(bearing.contact, kInsideCones, weight_N_);
     const std::vector<BearingRay> rays = bearing_rays(bearing, kInsideCones, weight_N_);
@@ -79,13 +85,19 @@ LeastWrenches::LeastWrenches(const Robot& robot, std::span<const BearingContact>
   }
 }
 
-/// A ball acts where it has rolled to; on a bar its forces go along with the normal.
+/// A ball acts where it has rolled to; on a bar its forces go along with the normal. The limits of
+/// a grasp are along the axes of the hand, which may have turned about its bar.
 void LeastWrenches::place(const RobotState& state, std::size_t c) {
   const Contact& contact = contacts_[c].contact;
   const ContactKindEntry& kind = contact_kind_entry(contact.effector.kind);
   turned_[c].setIdentity();
   touching_[c] = kind.rolls ? kind.touching_point(state, contact)
                             : state.world_from_link(links_[c]) * contact.effector.point;
+  if (kind.bar_touch == BarTouch::kGrasp) {
+    const Eigen::Matrix3d hand =
+        state.world_from_link(links_[c]).linear() * axes_in_link(contact.effector);
+    turned_[c] = hand * axes_in_world(contact).transpose();
+  }
   if (!is_ball(contact.effector)) return;
   const Contact there = rolled_to(state, contact);
   touching_[c] = there.position;
@@ -131,7 +143,7 @@ bool LeastWrenches::solve(const RobotState& state, const Eigen::VectorXd& asked)
   }
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     Eigen::Matrix3d axes = axes_[c];
-    if (contact_kind_entry(contacts_[c].contact.effector.kind).axes_on_link) {
+    if (has_link_axes(contacts_[c].contact)) {
       axes = state.world_from_link(links_[c]).linear() * axes_[c];
     }
     wrenches_[c].head<3>() = (axes.transpose() * wrenches_[c].head<3>()).eval();

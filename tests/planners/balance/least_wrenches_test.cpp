@@ -5,6 +5,8 @@
 #include <locograph/planners/balance/margin_contacts.h>
 #include <locograph/robots/statics.h>
 
+#include <cmath>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -64,6 +66,29 @@ TEST_F(LeastWrenchesTest, WhatBearsMoreCarriesMore) {
   LeastWrenches least(robot, points, 0.0);
   ASSERT_TRUE(least.solve(state, asked));
   EXPECT_NEAR(least.wrenches()[0][2], 4.0 * least.wrenches()[1][2], 1e-6);
+}
+
+TEST_F(LeastWrenchesTest, GraspsThatHaveTurnedAboutTheirBarAreLimitedAlongTheHand) {
+  std::vector<BearingContact> hands(2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    Contact& contact = hands[i].contact;
+    contact.effector = {.link = "block", .kind = ContactKind::kGrasp, .max_force_N = 40.0};
+    contact.effector.point = contact.position = {0.0, i == 0 ? 1.0 : -1.0, 0.0};
+    contact.forward = Eigen::Vector3d::UnitX();
+  }
+  LeastWrenches least(robot, hands, 0.0);
+  EXPECT_FALSE(least.solve(state, asked));  // each bears half of 98.1 N
+  Eigen::VectorXd q = robot.neutral_configuration();
+  q.segment<4>(3) =
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.25 * std::numbers::pi, Eigen::Vector3d::UnitY()))
+          .coeffs();
+  state.update(q.data());
+  gravity_torques(state, standard_gravity(), asked);
+  ASSERT_TRUE(least.solve(state, asked));
+  for (const auto& wrench : least.wrenches()) {
+    EXPECT_NEAR(std::abs(wrench[0]), 0.5 * kWeight_N * std::sqrt(0.5), 1e-6);
+    EXPECT_NEAR(wrench[2], 0.5 * kWeight_N * std::sqrt(0.5), 1e-6);
+  }
 }
 
 TEST_F(LeastWrenchesTest, EachIsPressedByItsLeastForce) {
