@@ -60,11 +60,12 @@ def main():
         text, names = panel(kind, counts[kind], i * (WIDTH + LEFT + 14))
         body.append(text)
     width, height = len(kinds) * (WIDTH + LEFT + 14) + 10, TOP + HEIGHT + 66
+    at = LEFT
     for i, name in enumerate(names):
-        at = LEFT + i * (width - LEFT) / len(names)
         colour = "black" if name == "all" else COLOURS[i % len(COLOURS)]
         body.append(f'<line x1="{at:.0f}" x2="{at + 20:.0f}" y1="{height - 12}" y2="{height - 12}" stroke="{colour}" '
                     f'stroke-width="{3 if name == "all" else 1.2}"/><text x="{at + 25:.0f}" y="{height - 8}">{name}</text>')
+        at += 45 + 7 * len(name)
     body.append(f'<text x="{width / 2}" y="{TOP + HEIGHT + 34}" text-anchor="middle">factor of the execution margin</text>')
     with open(out, "w") as stream:
         stream.write(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" '
