@@ -127,8 +127,13 @@ HeldContact::HeldContact(const Contact& contact, std::span<const Eigen::Vector2d
   pressed_ = kind.pressed;
   FrictionModel model;
   if (pressed_) model = {.cone = FrictionCone::kInner, .facets = kFacets};
+  const EndEffector all = effector;
   const auto cone_with = [&](double share) {
     effector.friction = share * friction;
+    if (!pressed_) {
+      effector.max_force_N = share * all.max_force_N;
+      effector.max_moment_Nm = share * all.max_moment_Nm;
+    }
     return kind.wrench_cone(used, model);
   };
   cone_ = cone_with(shares.friction);

@@ -31,7 +31,7 @@ Eigen::Vector3d normal_at(const Contact& contact, const Eigen::Vector3d& point);
 
 /// What is used of what contacts have.
 struct HoldingShares {
-  double friction = 0.7;
+  double friction = 0.7;       ///< and of the forces and moments of a grasp
   double area = 0.95;          ///< of lengths, about its middle
   double most_friction = 1.0;  ///< where that does not hold the robot
 

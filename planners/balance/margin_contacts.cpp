@@ -33,6 +33,9 @@ std::vector<BearingContact> with_margin(std::span<const BearingContact> contacts
     if (contact_kind_entry(effector.kind).pressed) {
       bearing.least_N = margin.least_force * weight_N;
       effector.friction *= margin.friction;
+    } else {  // a grasp slips where its forces are too large, and turns where its moments are
+      effector.max_force_N *= margin.friction;
+      effector.max_moment_Nm *= margin.area;
     }
     if (margin.area == 1.0) continue;
     effector.half_x_m *= margin.area;

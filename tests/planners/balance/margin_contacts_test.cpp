@@ -47,7 +47,12 @@ TEST(MarginContacts, GraspsNeedNoLeastForce) {
   BearingContact grasp;
   grasp.contact.effector.kind = ContactKind::kGrasp;
   grasp.contact.effector.max_force_N = 500.0;
-  EXPECT_EQ(with_margin(std::vector{grasp}, ExecutionMargin(), kWeight_N)[0].least_N, 0.0);
+  grasp.contact.effector.max_moment_Nm = 10.0;
+  const ExecutionMargin margin{.friction = 0.6, .area = 0.5};
+  const BearingContact counted = with_margin(std::vector{grasp}, margin, kWeight_N)[0];
+  EXPECT_EQ(counted.least_N, 0.0);
+  EXPECT_EQ(counted.contact.effector.max_force_N, 300.0);
+  EXPECT_EQ(counted.contact.effector.max_moment_Nm, 5.0);
 }
 
 /// A sole bears kPart of its half length in regions, and of that the share of the margin.
