@@ -25,7 +25,7 @@ constexpr double kLongest = 5.0;  // of the motion's time, and a minute
 /// An end effector that should be free may touch for so long, and so near a contact that it has
 /// just left or is about to hold.
 constexpr double kBrief_s = 0.05, kNearContact_m = 0.03;
-/// A hand may be so far off the axis of a bar that it closes round.
+/// A hand may be so far off the axis of a bar that it closes round, and off its end.
 constexpr double kHandOff_m = 0.01, kHandOff_rad = 0.1;
 constexpr double kBeyond_s = 0.01;  // for which it may bear more than it can
 constexpr double kReach_m = 2.5;    // from the base to where a map is in the way
@@ -287,9 +287,8 @@ class Run {
     for (const Bar& bar : perturbed_.world().bars) {
       const Eigen::Vector3d axis = (bar.to - bar.from).normalized();
       const bool beside = axis.cross(at - bar.from).norm() > kHandOff_m;
-      if (!beside && axis.cross(along).norm() <= kHandOff_rad && beyond_ends_m(bar, at) <= 0.0) {
-        return &bar;
-      }
+      const bool along_it = axis.cross(along).norm() <= kHandOff_rad;
+      if (!beside && along_it && beyond_ends_m(bar, at) <= kHandOff_m) return &bar;
     }
     return nullptr;
   }
