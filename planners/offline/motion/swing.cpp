@@ -25,6 +25,11 @@ double way_over(double t, const ArcOptions& options) {
   return options.climb_first ? rise(t, 0.35, 0.8) : rise(t, 0.15, 0.85);
 }
 
+/// Along which a contact leaves its place; zero where there is none.
+Eigen::Vector3d off(const Contact* at, const Eigen::Isometry3d& link) {
+  return at != nullptr ? way_off(*at, link) : Eigen::Vector3d::Zero();
+}
+
 Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const Eigen::Vector3d& by) {
   Eigen::Isometry3d result = pose;
   result.translation() += by;
@@ -55,17 +60,17 @@ void Swing::add_places(const Robot& robot, double t, const ArcOptions& options,
     // Height along the normal only, and nothing in between.
     if (left != nullptr && t <= kEnds) {
       const double up = options.height_m * lift(t, kEnds);
-      add(*left, moved(from, up * off_from), options.with_axes);
+      add(*left, moved(from, up * off(left, from)), options.with_axes);
     }
     if (reached != nullptr && t >= 1.0 - kEnds) {
       const double up = options.height_m * lift(1.0 - t, kEnds);
-      add(*reached, moved(to, up * off_to), options.with_axes);
+      add(*reached, moved(to, up * off(reached, to)), options.with_axes);
     }
     return;
   }
   Contact between = contact();
   const double over = way_over(t, options);
-  const Eigen::Vector3d normal = (1.0 - over) * off_from + over * off_to;
+  const Eigen::Vector3d normal = (1.0 - over) * off(left, from) + over * off(reached, to);
   if (normal.norm() > 1e-3) between.normal = normal.normalized();
   add(between, pose(t, options), options.with_axes);
 }
@@ -92,7 +97,7 @@ Eigen::Isometry3d Swing::pose(double t, const ArcOptions& options) const {
   const Eigen::Vector3d at =
       a + over * across + climbed * climb * climbing +
       bulge * (options.away_m * away(a, b) + options.up_m * Eigen::Vector3d::UnitZ()) +
-      options.height_m * ((1.0 - over) * lifted * off_from + over * high * off_to);
+      options.height_m * ((1.0 - over) * lifted * off(left, from) + over * high * off(reached, to));
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = Eigen::Quaterniond(from.linear())
                       .slerp(over, Eigen::Quaterniond(to.linear()))
@@ -123,8 +128,6 @@ std::vector<Swing> swings_of(SegmentSpace& space) {
     const int link = space.robot().link_index(contact.effector.link);
     swing.from = from.world_from_link(link);
     swing.to = to.world_from_link(link);
-    if (swing.left != nullptr) swing.off_from = way_off(*swing.left, swing.from);
-    if (swing.reached != nullptr) swing.off_to = way_off(*swing.reached, swing.to);
     swing.base = 0.5 * (segment.from.head<3>() + segment.to.head<3>());
   }
   return swings;

@@ -44,9 +44,7 @@ struct Swing {
   const Contact* reached = nullptr;
   Eigen::Isometry3d from = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d to = Eigen::Isometry3d::Identity();  ///< poses of its link at both ends
-  /// Along which it leaves its place, and away from where it gets to; zero where it does not.
-  Eigen::Vector3d off_from = Eigen::Vector3d::Zero(), off_to = Eigen::Vector3d::Zero();
-  Eigen::Vector3d base = Eigen::Vector3d::Zero();  ///< of the robot, half-way; world
+  Eigen::Vector3d base = Eigen::Vector3d::Zero();        ///< of the robot, half-way; world
 };
 
 /// Of all end effectors that leave contacts or reach them in the segment.
