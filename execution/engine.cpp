@@ -244,7 +244,8 @@ class Engine::Implementation {
   void grasp(std::size_t effector, const Eigen::Vector3d& held, const Eigen::Vector3d& axis) {
     refresh();
     const Grasp& own = grasps[effector];
-    const auto& [at, in_body] = points[effector];
+    const int at = points[effector].first;
+    const Eigen::Vector3d in_body = points[effector].second;
     if (own.first < 0) throw Error("end effector " + std::to_string(effector) + " is no grasp");
     Eigen::Vector3d along = axis.normalized();
     if (along.dot(rotation(at) * own.bar) < 0.0) along = -along;
