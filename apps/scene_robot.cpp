@@ -47,9 +47,11 @@ class Meshes {
     std::vector<Eigen::Vector3d> corners;
   };
 
-  static std::vector<Eigen::Vector3d> corners_of(const std::filesystem::path& file, int part) {
+  std::vector<Eigen::Vector3d> corners_of(const std::filesystem::path& file, int part) {
     if (part < 0) return mesh_triangles(file);
-    return std::move(mesh_parts(file)[static_cast<std::size_t>(part)].corners);
+    std::vector<MeshPart>& parts = parts_[file];
+    if (parts.empty()) parts = mesh_parts(file);
+    return std::move(parts[static_cast<std::size_t>(part)].corners);  // asked for once
   }
 
   /// So that all of them together have no more than kMostTriangles.
@@ -67,6 +69,7 @@ class Meshes {
   }
 
   std::map<std::pair<std::filesystem::path, int>, int> index_;
+  std::map<std::filesystem::path, std::vector<MeshPart>> parts_;
   std::vector<Mesh> all_;
 };
 

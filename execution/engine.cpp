@@ -192,7 +192,6 @@ class Engine::Implementation {
         model(compile(mujoco_model(robot, effectors, world, options))),
         data(mj_makeData(model.get())),
         coordinates(robot, *model),
-        obstacles(world.obstacles),
         forces(effectors.size(), Eigen::Vector3d::Zero()),
         moments(effectors.size(), Eigen::Vector3d::Zero()) {
     if (!data) throw Error("no memory for a state of MuJoCo");
@@ -221,18 +220,22 @@ class Engine::Implementation {
       grasp.second = id_of(*model, mjOBJ_EQUALITY, name + "_1");
       if (grasp.second >= 0) grasp.half_m = kGraspHalf_m;
     }
+    for (std::size_t i = 0; i < world.obstacles.size(); ++i) {
+      if (is_at_rest(world.obstacles[i])) continue;
+      const std::string name = "obstacle_" + std::to_string(i);
+      const int at = id_of(*model, mjOBJ_BODY, name);
+      moving.push_back(
+          {world.obstacles[i], id_of(*model, mjOBJ_GEOM, name), model->body_mocapid[at]});
+    }
     set_obstacle_time(0.0);
     mj_forward(model.get(), data.get());
   }
 
   void set_obstacle_time(double time_s) {
-    for (std::size_t i = 0; i < obstacles.size(); ++i) {
-      const Obstacle& obstacle = obstacles[i];
-      if (is_at_rest(obstacle)) continue;
-      const std::string name = "obstacle_" + std::to_string(i);
-      model->geom_conaffinity[id_of(*model, mjOBJ_GEOM, name)] = obstacle.is_there(time_s) ? 1 : 0;
-      const int at = model->body_mocapid[id_of(*model, mjOBJ_BODY, name)];
-      const Eigen::Isometry3d pose = obstacle.pose_at(time_s);
+    for (const Moving& own : moving) {
+      model->geom_conaffinity[own.geom] = own.obstacle.is_there(time_s) ? 1 : 0;
+      const int at = own.mocap;
+      const Eigen::Isometry3d pose = own.obstacle.pose_at(time_s);
       const Eigen::Quaterniond q(pose.linear());
       const double wxyz[] = {q.w(), q.x(), q.y(), q.z()};
       std::copy(pose.translation().begin(), pose.translation().end(), data->mocap_pos + 3 * at);
@@ -373,6 +376,11 @@ class Engine::Implementation {
     Eigen::Vector3d bar = Eigen::Vector3d::Zero();  ///< in the body
   };
 
+  struct Moving {
+    Obstacle obstacle;
+    int geom, mocap;  ///< MuJoCo's
+  };
+
   const Robot& robot;
   Model model;
   Data data;
@@ -382,7 +390,7 @@ class Engine::Implementation {
   std::vector<int> body;                                // MuJoCo's, of each body of the tree
   std::vector<std::pair<int, Eigen::Vector3d>> points;  // of end effectors: MuJoCo's body, in it
   std::vector<Grasp> grasps;                            // of end effectors
-  const std::vector<Obstacle> obstacles;
+  std::vector<Moving> moving;                           // obstacles that are not at rest
   std::vector<Eigen::Vector3d> forces, moments;
   Eigen::Vector3d total = Eigen::Vector3d::Zero();
   OtherTouch other;

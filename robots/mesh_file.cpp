@@ -1,3 +1,4 @@
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <locograph/common/error.h>
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cctype>
+#include <system_error>
 
 namespace locograph {
 namespace {
@@ -41,12 +43,25 @@ MeshPart part_of(const aiMesh& mesh, const aiScene& scene) {
   return part;
 }
 
+/// Nothing but regular files: a pipe that a mesh names as its materials would never end.
+class RegularFiles final : public Assimp::DefaultIOSystem {
+ public:
+  bool Exists(const char* file) const override {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(file, ignored);
+  }
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    return Exists(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+  }
+};
+
 std::vector<MeshPart> import(const std::filesystem::path& file) {
   file_beginning(file, 1, "a mesh");  // throws what is no regular file
   if (std::filesystem::file_size(file) > kMostMeshBytes) {
     throw Error(file.string(), 0, "a mesh of more than 512 MB", "a smaller one");
   }
   Assimp::Importer importer;
+  importer.SetIOHandler(new RegularFiles);  // which it deletes
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* scene =
       importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices);

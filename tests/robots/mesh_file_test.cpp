@@ -7,6 +7,7 @@
 #include <locograph/robots/mesh_file.h>
 #include <locograph/robots/urdf_reader.h>
 #include <locograph/robots/visual_model.h>
+#include <sys/stat.h>
 
 #include <cstdlib>
 
@@ -101,6 +102,13 @@ TEST(MeshFile, RefusesWhatIsNoMesh) {
   EXPECT_THROW(mesh_triangles(folder.write("points.obj", "v 0 0 0\nv 1 0 0\n")), Error);
   EXPECT_THROW(mesh_triangles(folder.write("beyond.obj", "v 0 0 0\nv 1 0 0\nf 1 2 9\n")), Error);
   EXPECT_THROW(mesh_triangles(folder.write("a.ply", "ply\n")), Error);
+  // Materials in a pipe that nobody writes to are none.
+  ASSERT_EQ(mkfifo((folder.path() / "paint.mtl").c_str(), 0600), 0);
+  EXPECT_EQ(mesh_triangles(folder.write("pipe.obj",
+                                        "mtllib paint.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
+                                        "f 1 2 3\n"))
+                .size(),
+            3U);
   EXPECT_FALSE(is_mesh_file("a.ply"));
   EXPECT_TRUE(is_mesh_file("a.STL"));
 }
