@@ -142,9 +142,14 @@ ExitCode simulate_plan(const CommandOptions& command) {
   const std::vector<EndEffector> effectors = effectors_of(
       motion, judging.task ? judging.task->end_effectors() : std::vector<EndEffector>());
   progress.emplace("carrying out " + command.input);
-  const SimulationResult result = about_file(file.name, [&] {
+  SimulationResult result = about_file(file.name, [&] {
     return simulate(*judging.robot, effectors, judging.world->world(), motion, options);
   });
+  // The engine knows where the plan ends, not where it should have led.
+  if (const std::string why = missed_goals(motion, judging); !why.empty()) {
+    result.reached_goal = result.carried_out = false;
+    if (result.reason.empty()) result.reason = why;
+  }
   progress.emplace("writing " + (command.output.empty() ? command.csv : command.output));
   write_record(command, file, judging, effectors, result);
   progress.reset();

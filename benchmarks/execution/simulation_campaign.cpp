@@ -95,6 +95,9 @@ class Campaign {
     const Plan plan = plan_of(graph);
     Judging judging = judging_of(graph, plan, {.data_folder = data_folder()});
     const Motion motion = motion_of(graph, plan);
+    if (const std::string why = missed_goals(motion, judging); !why.empty()) {
+      throw Error(file + ": " + why, "a plan that reaches its goals");
+    }
     Json told = {{"plan", std::filesystem::path(file).filename().string()}};
     const std::map<std::string, double> measures = measures_of(graph, plan, judging);
     for (const auto& [name, value] : measures) told["robustness"][name] = value;

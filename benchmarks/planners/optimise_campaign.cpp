@@ -1,16 +1,15 @@
 // Plans are optimisable graphs: does optimising one leave it feasible and where it was, bring a
 // disturbed one back, and lead it past a box in the way of a swing.
 //
-//     optimise_campaign [--draws N] [--seed N] PLAN.g2o…
+//     optimise_campaign [--disturbed N] [--boxes N] [--iterations N] [--seed N] PLAN.g2o…
 //
 // Plans are those of `locograph plan SCENARIO`. Each is optimised as `locograph optimize` does, in
-// at most 50 iterations, and then judged in the world of its scenario:
+// at most so many iterations, and then judged in the world of its scenario:
 //   as_it_is    how far a coordinate moves at most [m, rad]
 //   disturbed   each coordinate of each inner configuration by up to 5 mm or 5 mrad, N times
 //   box         a cube of 6 cm reaches 2 cm into the way of a link that swings, N times. No sphere
-//   of
-//               the robot's is within 15 mm of it at both ends of the swing and in other segments.
-//               Drives and plans whose links all stay in contact have none
+//               of the robot's is within 15 mm of it at both ends of the swing and in other
+//               segments. Drives and plans whose links all stay in contact have none
 // Prints one JSON object.
 #include <locograph/check/judge.h>
 #include <locograph/common/data_folder.h>
@@ -42,7 +41,7 @@ using Eigen::Vector3d;
 
 constexpr double kDisturbed = 5e-3;  // m, rad
 constexpr double kBoxSide_m = 0.06, kIntoTheWay_m = 0.02, kClear_m = 0.015;
-constexpr int kMostIterations = 50, kMostDraws = 200;
+constexpr int kMostDraws = 200;
 
 /// A link that swings during a segment.
 struct Swing {
@@ -51,7 +50,8 @@ struct Swing {
 
 class Campaign {
  public:
-  Campaign(std::uint64_t seed, int draws) : random_(seed), draws_(draws) {
+  Campaign(std::uint64_t seed, int disturbed, int boxes, int iterations)
+      : random_(seed), disturbed_(disturbed), boxes_(boxes), iterations_(iterations) {
     types_ = standard_types();
     add_robot_types(types_);
   }
@@ -77,7 +77,7 @@ class Campaign {
     result["as_it_is"] = optimised(graph);
     restore(graph, states);
     Json disturbed = Json::array(), boxes = Json::array();
-    for (int k = 0; k < draws_; ++k) {
+    for (int k = 0; k < disturbed_; ++k) {
       disturb(graph);
       disturbed.push_back(optimised(graph));
       restore(graph, states);
@@ -86,7 +86,7 @@ class Campaign {
     result["disturbed_feasible"] = feasible(disturbed);
     result["disturbed"] = disturbed;
     const std::vector<Swing> all = swings();
-    for (int k = 0; k < draws_ && !all.empty(); ++k) {
+    for (int k = 0; k < boxes_ && !all.empty(); ++k) {
       const std::optional<Obstacle> box = box_in_the_way(graph, all);
       if (!box) continue;
       boxes.push_back(past(graph, *box));
@@ -128,7 +128,7 @@ class Campaign {
   /// As `locograph optimize` does it.
   Json optimised(Graph& graph) const {
     OptimiserOptions options = OptimiserOptions::for_any_start();
-    options.max_iterations = kMostIterations;
+    options.max_iterations = iterations_;
     const auto solver = make_linear_solver("auto");
     const Motion before = motion_of_slopes(graph, plan_);
     const Stopwatch watch;
@@ -151,7 +151,8 @@ class Campaign {
       row["violated"].push_back({{"constraint", violation->constraint},
                                  {"worst", violation->worst},
                                  {"limit", violation->limit},
-                                 {"vertex", violation->at_vertex}});
+                                 {"vertex", violation->at_vertex},
+                                 {"what", violation->what}});
     }
     return row;
   }
@@ -274,7 +275,7 @@ class Campaign {
   }
 
   std::mt19937_64 random_;
-  int draws_;
+  int disturbed_, boxes_, iterations_;
   TypeRegistry types_;
   Plan plan_;
   Motion motion_;
@@ -288,17 +289,19 @@ class Campaign {
 int main(int argc, char** argv) {
   locograph::OptionParser app("Plans optimised as they are, disturbed, and with a box in the way",
                               "optimise_campaign");
-  int draws = 20;
+  int disturbed = 20, boxes = 20, iterations = 50;
   std::uint64_t seed = 1;
   std::vector<std::string> files;
-  app.add_option("--draws", draws, "Disturbances and boxes for each plan").positive();
+  app.add_option("--disturbed", disturbed, "Disturbances of each plan").not_negative();
+  app.add_option("--boxes", boxes, "Boxes in the way of each plan").not_negative();
+  app.add_option("--iterations", iterations, "Most iterations to make").positive();
   app.add_option("--seed", seed, "Of disturbances and boxes");
   app.add_option("PLAN", files, "Plan files (.g2o)").required();
   return locograph::run_benchmark(app, argc, argv, [&] {
-    locograph::Campaign campaign(seed, draws);
+    locograph::Campaign campaign(seed, disturbed, boxes, iterations);
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     for (const std::string& file : files) rows.push_back(campaign.run(file));
-    std::cout << nlohmann::ordered_json({{"seed", seed}, {"draws", draws}, {"plans", rows}}).dump(2)
+    std::cout << nlohmann::ordered_json({{"seed", seed}, {"disturbed", disturbed}, {"boxes", boxes}, {"plans", rows}}).dump(2)
               << '\n';
   });
 }

@@ -241,4 +241,13 @@ std::function<CheckReport(const Motion&)> step_check(const Judging& judging) {
   };
 }
 
+std::string missed_goals(const Motion& motion, const Judging& judging) {
+  if (judging.incomplete) return "the plan says that it is incomplete";
+  if (!judging.ends) return "";
+  const PlanEnds ends = plan_ends(motion, *judging.ends);
+  if (ends.goals_reached == ends.goals) return "";
+  return "the plan does not reach goal " + std::to_string(ends.goals_reached + 1) + " of " +
+         std::to_string(ends.goals) + ": " + ends.off_goal;
+}
+
 }  // namespace locograph

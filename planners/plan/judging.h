@@ -76,4 +76,8 @@ std::optional<CheckReport> judged(const Motion& motion, const Judging& judging,
 /// The check of single steps of a plan, as walk_plan() wants it.
 std::function<CheckReport(const Motion&)> step_check(const Judging& judging);
 
+/// Why a motion is not all that its scenario asks for; empty: it gets to all goals, or no scenario
+/// is known and the plan does not say that it is incomplete.
+std::string missed_goals(const Motion& motion, const Judging& judging);
+
 }  // namespace locograph

@@ -137,6 +137,18 @@ TEST_F(SimulateTest, EstimatesByItsSensorsWhereItIs) {
   EXPECT_LT(outcome.json()["max_estimate_error_rad"], 0.01);
 }
 
+TEST_F(SimulateTest, TheEndOfAnIncompletePlanIsNotItsGoal) {
+  std::string text = runner->read("drive.g2o");
+  const std::string mark = "PARAMS_PLAN 1 3";
+  text.replace(text.find(mark), mark.size(), mark + " incomplete");
+  runner->write("incomplete.g2o", text);
+  const nlohmann::json json = runner->run("simulate incomplete.g2o --json").json();
+  EXPECT_EQ(json["upright"], true);
+  EXPECT_EQ(json["reached_goal"], false);
+  EXPECT_EQ(json["carried_out"], false);
+  EXPECT_TRUE(has_part(json["reason"], "incomplete")) << json["reason"];
+}
+
 TEST_F(SimulateTest, WritesTheRecordUpToAFall) {
   const Outcome fallen = runner->run("simulate drive.g2o --push 3000,1 -o f.g2o --json");
   EXPECT_EQ(fallen.exit_code, 1);

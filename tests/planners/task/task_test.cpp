@@ -53,6 +53,18 @@ TEST(Task, JudgesAMotionAsItsPlanIsJudged) {
   EXPECT_EQ(known.task, task);
   expect_same(judged(graph, plan, known), of_plan);
   EXPECT_TRUE(of_plan.feasible) << violation_text(of_plan.worst());
+  EXPECT_EQ(missed_goals(motion, known), "");
+}
+
+TEST(Task, TellsThatAMotionEndsBeforeItsGoal) {
+  const auto task = std::make_shared<const Task>(task_of(centauro_drive()));
+  Motion motion = plan_wheeled_drive(*task).motion;
+  const std::size_t half = motion.configurations.size() / 2;
+  motion.time_s.resize(half);
+  motion.configurations.resize(half);
+  motion.stance_from.resize(half);
+  const std::string why = missed_goals(motion, judging_of(task));
+  EXPECT_TRUE(why.starts_with("the plan does not reach goal 1 of 1: the base")) << why;
 }
 
 }  // namespace
