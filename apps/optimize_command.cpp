@@ -13,6 +13,7 @@
 #include <locograph/core/graph_file.h>
 #include <locograph/core/initial_guess.h>
 #include <locograph/core/optimiser.h>
+#include <locograph/planners/plan/carried_wrenches.h>
 #include <locograph/planners/plan/plan.h>
 #include <locograph/planners/plan/slope_limits.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
@@ -384,7 +385,10 @@ ExitCode optimize(const OptimizeOptions& options) {
     json["diagnosis"] = diagnosis;
     json["diagnosis_text"] = diagnosis_text;
   }
-  if (before) carry_slopes(before->motion, before->plan, graph);
+  if (before) {
+    carry_slopes(before->motion, before->plan, graph);
+    carry_wrenches(before->motion, before->plan, graph);
+  }
   if (!options.output.empty() && std::isfinite(result.final.robust)) {
     const Progress progress("writing " + options.output);
     write_graph(graph, options.output);

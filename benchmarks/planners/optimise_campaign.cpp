@@ -17,6 +17,7 @@
 #include <locograph/common/uniform.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/core/optimiser.h>
+#include <locograph/planners/plan/carried_wrenches.h>
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
 #include <locograph/planners/plan/slope_limits.h>
@@ -135,6 +136,7 @@ class Campaign {
     const OptimiserResult result = optimise(graph, options, *solver);
     const double seconds = watch.seconds();
     carry_slopes(before, plan_, graph);
+    carry_wrenches(before, plan_, graph);
     const CheckReport report = judged(graph, plan_, judging_);
     double moved = 0.0;
     const Motion after = motion_of(graph, plan_);

@@ -1,10 +1,12 @@
 // A whole motion as a graph: what `plan` writes of it.
 #include <gtest/gtest.h>
 #include <locograph/check/balance_certificate.h>
+#include <locograph/check/judge.h>
 #include <locograph/common/uniform.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/core/optimiser.h>
 #include <locograph/planners/offline/motion/motion_graph.h>
+#include <locograph/planners/plan/carried_wrenches.h>
 #include <locograph/planners/plan/plan.h>
 #include <locograph/plugins/acceleration_limits/edge_acceleration_limits.h>
 #include <locograph/plugins/contact/edge_contact.h>
@@ -27,6 +29,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "common/allocation_counter.h"
@@ -63,6 +66,15 @@ class MotionGraph : public testing::Test {
       segment.duration_s = 1.0;
       segment.planner = "interpolation";
     }
+  }
+
+  /// In all contacts.
+  void balance_all_along() {
+    plan.motion.stance_from.assign(kCount, 0);
+    plan.motion.wrenches.assign(kCount, plan.motion.wrenches.front());
+    plan.segments.resize(1);
+    plan.segments.front().last = kCount - 1;
+    plan.segments.front().duration_s = 2.0;
   }
 
   static TypeRegistry types() {
@@ -191,12 +203,7 @@ double most_moved(const Graph& graph, const std::vector<Eigen::VectorXd>& from) 
 }
 
 TEST_F(MotionGraph, OptimisedItStaysWhereItIsAndDisturbedItComesBack) {
-  // Balanced all along: in all contacts.
-  plan.motion.stance_from.assign(kCount, 0);
-  plan.motion.wrenches.assign(kCount, plan.motion.wrenches.front());
-  plan.segments.resize(1);
-  plan.segments.front().last = kCount - 1;
-  plan.segments.front().duration_s = 2.0;
+  balance_all_along();
   Graph graph = motion_graph(task, plan);
   const auto solver = make_linear_solver("auto");
   OptimiserOptions options = OptimiserOptions::for_any_start();
@@ -213,6 +220,34 @@ TEST_F(MotionGraph, OptimisedItStaysWhereItIsAndDisturbedItComesBack) {
   ASSERT_GT(most_moved(graph, plan.motion.configurations), 4e-3);
   optimise(graph, options, *solver);
   EXPECT_LT(most_moved(graph, plan.motion.configurations), 1e-3);
+}
+
+TEST_F(MotionGraph, WrenchesAreCarriedToWhereConfigurationsMove) {
+  balance_all_along();
+  Graph graph = motion_graph(task, plan);
+  const Plan in_graph = plan_of(graph);
+  const Motion before = motion_of(graph, in_graph);
+  const Judge judge(task.robot->robot, World{});
+  const auto wrenches = [&] {
+    return judge.check(motion_of(graph, in_graph), {}).constraint("plan_wrenches");
+  };
+  carry_wrenches(before, in_graph, graph);
+  EXPECT_EQ(motion_of(graph, in_graph).wrenches, before.wrenches) << "nothing moved";
+
+  for (int i = 1; i < kChange; ++i) {
+    const double bump_m = 0.01 * std::pow(std::sin(std::numbers::pi * i / kChange), 2);
+    graph.vertex(VertexId<VertexConfiguration>{graph.slot_of(i)}).state[0] += bump_m;
+  }
+  EXPECT_FALSE(judge.check(before, {}).constraint("plan_wrenches").violated);
+  const Violation off = wrenches();
+  EXPECT_TRUE(off.violated);
+  EXPECT_TRUE(off.what.ends_with("of the weight is left over")) << off.what;
+  carry_wrenches(before, in_graph, graph);
+  EXPECT_FALSE(wrenches().violated) << violation_text(wrenches());
+  const Motion after = motion_of(graph, in_graph);
+  for (std::size_t i = kChange + 1; i < after.wrenches.size(); ++i) {
+    EXPECT_EQ(after.wrenches[i], before.wrenches[i]) << "at rest as before, " << i;
+  }
 }
 
 TEST_F(MotionGraph, TwentyIterationsAllocateNothing) {

@@ -1,0 +1,119 @@
+#include <locograph/check/motion_curve.h>
+#include <locograph/planners/plan/carried_wrenches.h>
+#include <locograph/plugins/configuration/vertex_configuration.h>
+#include <locograph/plugins/static_balance/static_rows.h>
+#include <locograph/robots/dynamics.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <vector>
+
+namespace locograph {
+namespace {
+
+using BaseLoad = Eigen::Matrix<double, 6, 1>;
+
+constexpr double kMoved = 1e-9;  // m, rad
+constexpr double kArm_m = 0.03;
+
+class CarriedWrenches {
+ public:
+  CarriedWrenches(const Plan& plan, Graph& graph)
+      : plan_(plan),
+        graph_(graph),
+        motion_(motion_of(graph, plan)),
+        curve_(*plan.robot->robot, motion_),
+        dynamics_(*plan.robot->robot),
+        state_(plan.robot) {}
+
+  const Motion& motion() const { return motion_; }
+
+  void balance(std::size_t i) {
+    state_.update(motion_.configurations[i].data());
+    for (const int slot : plan_.index.wrenches[i]) {
+      VertexWrenches& vertex = graph_.vertex(VertexId<VertexWrenches>{slot});
+      WrenchesState wrenches = vertex.make_derived();
+      vertex.derive(vertex.state.data(), wrenches);
+      vertex.state += change(wrenches, left_over(i, wrenches));
+    }
+  }
+
+ private:
+  /// What the curve asks of the base beyond gravity, less what the wrenches do beyond it.
+  BaseLoad left_over(std::size_t i, const WrenchesState& wrenches) {
+    BaseLoad borne;
+    balance_of_base("wrenches", state_, wrenches, borne);
+    const bool first = i == 0, last = i + 1 == plan_.slots.size();
+    const int vertex = static_cast<int>(i);
+    const BaseLoad before = first ? rest() : asked(vertex - 1, 1.0);
+    const BaseLoad after = last ? rest() : asked(vertex, 0.0);
+    const BaseLoad jump = after - before;
+    const double length = jump.squaredNorm();
+    const double share =
+        length > 0.0 ? std::clamp((borne - before).dot(jump) / length, 0.0, 1.0) : 0.0;
+    return before + share * jump - borne;
+  }
+
+  static BaseLoad rest() { return BaseLoad::Zero(); }
+
+  BaseLoad asked(int step, double fraction) {
+    curve_.step(step).at(fraction, point_);
+    const Eigen::VectorXd still = Eigen::VectorXd::Zero(point_.velocity.size());
+    Eigen::VectorXd moving(still.size()), resting(still.size());
+    dynamics_.inverse_dynamics(state_.kinematics, point_.velocity, point_.acceleration, {}, moving);
+    dynamics_.inverse_dynamics(state_.kinematics, still, still, {}, resting);
+    return (moving - resting).head<6>();
+  }
+
+  Eigen::VectorXd change(const WrenchesState& wrenches, const BaseLoad& left_over) const {
+    const auto size = wrenches.components.size();
+    Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor> by_wrenches =
+        Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>::Zero(6, size);
+    Eigen::VectorXd bears(size);  // s
+    int first = 0;
+    for (const auto& contact : *wrenches.contacts) {
+      const double* components = wrenches.components.data() + first;
+      add_wrench_on_base_by_components(state_.kinematics,
+                                       AppliedWrench(state_.kinematics, *contact, components),
+                                       first, by_wrenches);
+      const auto& kinds = contact->cone->components();
+      double force = 0.0;
+      for (std::size_t c = 0; c < kinds.size(); ++c) {
+        if (kinds[c] < 3) force = std::hypot(force, components[c]);
+      }
+      for (const int kind : kinds) bears[first++] = kind < 3 ? force : kArm_m * force;
+    }
+    // N and N m alike; what contacts can hardly do, as two balls about the line between them, is
+    // not asked of them.
+    constexpr double kHardly = 1e-3;
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> effects;
+    effects.setThreshold(kHardly);
+    effects.compute(by_wrenches * bears.asDiagonal());
+    return bears.cwiseProduct(effects.solve(left_over));
+  }
+
+  const Plan& plan_;
+  Graph& graph_;
+  const Motion motion_;
+  const MotionCurve curve_;
+  RobotDynamics dynamics_;
+  ConfigurationState state_;
+  CurvePoint point_;
+};
+
+}  // namespace
+
+void carry_wrenches(const Motion& before, const Plan& plan, Graph& graph) {
+  if (plan.stances_only || !plan.states_wrenches) return;
+  CarriedWrenches carried(plan, graph);
+  const auto moved = [&](std::size_t i) {
+    return (carried.motion().configurations[i] - before.configurations[i])
+               .lpNorm<Eigen::Infinity>() > kMoved;
+  };
+  const std::size_t count = plan.slots.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (moved(i) || (i > 0 && moved(i - 1)) || (i + 1 < count && moved(i + 1))) carried.balance(i);
+  }
+}
+
+}  // namespace locograph
