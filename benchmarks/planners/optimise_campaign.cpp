@@ -303,7 +303,9 @@ int main(int argc, char** argv) {
     locograph::Campaign campaign(seed, disturbed, boxes, iterations);
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     for (const std::string& file : files) rows.push_back(campaign.run(file));
-    std::cout << nlohmann::ordered_json({{"seed", seed}, {"disturbed", disturbed}, {"boxes", boxes}, {"plans", rows}}).dump(2)
+    std::cout << nlohmann::ordered_json(
+                     {{"seed", seed}, {"disturbed", disturbed}, {"boxes", boxes}, {"plans", rows}})
+                     .dump(2)
               << '\n';
   });
 }

@@ -1,7 +1,8 @@
 #pragma once
 /// Wrenches for a plan that has been changed: they hold the robot as it moves now.
 ///
-///     carry_slopes(before, plan, graph);                 // slope_limits.h: the curve first
+///     const Motion before = motion_of_slopes(graph, plan);   // slope_limits.h
+///     carry_slopes(before, plan, graph);                     // the curve first
 ///     carry_wrenches(before, plan, graph);
 ///
 /// The edges of balance know a plan's accelerations by the parabola through three configurations
@@ -9,19 +10,20 @@
 /// own, and a plan's wrenches are those of its curve. What inverse dynamics asks of the base along
 /// the curve and the wrenches leave over, r (6), goes to them by
 ///
-///     least sum (delta_k / s_k)^2   with   A delta = r,   delta = S^2 A^T (A S^2 A^T)^+ r
+///   least sum (delta_k / s_k)^2   with   A delta = r:   delta = S^2 A^T (A S^2 A^T)^+ r
 ///
 /// A (6, components) is what they do to the base, and s_k the force of the contact [N], for moments
 /// times 0.03 m: what bears nothing gets nothing, and what bears much a small share of it.
 
 #include <locograph/check/motion.h>
-#include <locograph/planners/plan/plan.h>
+#include <locograph/planners/plan/slope_limits.h>
 
 namespace locograph {
 
 /// Changes the wrenches of configurations that moved, or have a neighbour that did; those of others
 /// stay as they are. Where the curve's acceleration jumps, the nearest between both sides counts,
-/// as the judge has it. Plans of stances stay as they are. before: the plan's motion before, with the same times.
+/// as the judge has it. Plans of stances stay as they are. before: the plan's motion before, with
+/// the same times.
 void carry_wrenches(const Motion& before, const Plan& plan, Graph& graph);
 
 }  // namespace locograph

@@ -623,6 +623,9 @@ struct Context : DriveContext {
   const std::vector<int>& slots = plan.slots;
 };
 }  // namespace plan_plan_index_h
+namespace plan_carried_wrenches_h {
+using Context = DriveContext;
+}  // namespace plan_carried_wrenches_h
 namespace plan_seen_world_h {
 struct Context : DriveContext {
   LocalPlanner planner{graph, {}};
