@@ -1,6 +1,7 @@
 #include <locograph/apps/describe.h>
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/info_command.h>
+#include <locograph/apps/robot_skeleton.h>
 
 #include <algorithm>
 #include <memory>
@@ -12,7 +13,7 @@ namespace locograph {
 
 Command add_info(OptionParser& app) {
   struct Options {
-    std::string file;
+    std::string file, srdf;
     std::vector<std::string> plugins;
     bool json = false, pairs = false;
     LinkPairOptions sampling;
@@ -30,7 +31,11 @@ Command add_info(OptionParser& app) {
   options->sampling.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   parser.add_flag("--pairs", options->pairs,
                   "Of a robot: which pairs of links meet in random postures, and which are off");
-  parser.add_option("--samples", options->sampling.samples, "Postures of --pairs")
+  parser.add_option(
+      "--write-srdf", options->srdf,
+      "Of a robot, where to write an SRDF (.srdf): pairs of links that never or always "
+      "meet are off; and beside it a scenario with proposed end effectors");
+  parser.add_option("--samples", options->sampling.samples, "Postures of --pairs, --write-srdf")
       .positive()
       .show_default();
   parser.add_option("--seed", options->sampling.seed, "Of the postures").show_default();
@@ -38,6 +43,11 @@ Command add_info(OptionParser& app) {
       .positive();
   parser.add_flag("--json", options->json, "Print one JSON object");
   return {parser, [options] {
+            if (!options->srdf.empty()) {
+              const Json told = write_skeleton(options->file, options->srdf, options->sampling);
+              print_result(told, options->json);
+              return told["scenario"].is_null() ? kNo : kDone;
+            }
             if (options->pairs) {
               print_result(describe_link_pairs(options->file, options->sampling), options->json);
               return kDone;

@@ -69,6 +69,7 @@ class ModelWriter {
       throw Error(robot_.urdf_file().string(), 0, "links without mass or inertia: " + without,
                   "an <inertial> on each link that moves");
     }
+    require_solid_bodies(robot_, inertias_);
   }
 
   const Link& link_of(std::size_t body) const {

@@ -28,9 +28,9 @@
 /// where none is stated the least of the end effectors. A surface without any end is a plane,
 /// another one a box of 2 mm below it. A mimic joint is an equality with the joint that it follows.
 ///
-/// Errors: those of options, of body_inertias() and of require_sound_effector(); links of bodies
-/// without mass or inertia; kinds of contact that are not ours; meshes that mesh_vertices() cannot
-/// read.
+/// Errors: those of options, of body_inertias(), require_solid_bodies() and of
+/// require_sound_effector(); links of bodies without mass or inertia; kinds of contact that are not
+/// ours; meshes that mesh_vertices() cannot read.
 
 #include <locograph/robots/contact.h>
 #include <locograph/world/world.h>

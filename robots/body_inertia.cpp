@@ -89,15 +89,19 @@ const Link& worst_link(const Robot& robot, int body) {
   return links[worst];
 }
 
-void check_solid(const Robot& robot, int body, const BodyInertia& inertia) {
-  if (is_inertia_of_a_body(inertia.inertia)) return;
-  const Eigen::Vector3d principal = principal_moments(inertia.inertia);
+/// Not below zero, but for rounding.
+bool is_not_negative(const Eigen::Vector3d& principal) {
+  const double largest = principal.cwiseAbs().maxCoeff();
+  return largest < kNoMoment || principal[0] >= -kRoundedMoment * largest;
+}
+
+[[noreturn]] void refuse(const Robot& robot, int body, const Eigen::Vector3d& principal,
+                         const std::string& expected) {
   const Link& link = worst_link(robot, body);
   std::ostringstream what;
   what << "link '" << link.name << "' gives its body the principal moments of inertia "
        << principal[0] << ", " << principal[1] << " and " << principal[2] << " kg m^2";
-  throw Error(robot.urdf_file().string(), link.inertial_line, what.str(),
-              "none of them above the sum of the other two");
+  throw Error(robot.urdf_file().string(), link.inertial_line, what.str(), expected);
 }
 
 /// A joint that moves no mass, or turns only one body, and that about an axis through all its mass,
@@ -138,10 +142,17 @@ void check_moved(const Robot& robot, const std::vector<BodyInertia>& bodies) {
 
 bool is_inertia_of_a_body(const Eigen::Matrix3d& inertia) {
   const Eigen::Vector3d principal = principal_moments(inertia);
-  const double largest = principal.cwiseAbs().maxCoeff();
-  if (largest < kNoMoment) return true;
-  return principal[0] >= -kRoundedMoment * largest &&
+  if (principal.cwiseAbs().maxCoeff() < kNoMoment) return true;
+  return is_not_negative(principal) &&
          principal[0] + principal[1] >= (1.0 - kRoundedInertia) * principal[2];
+}
+
+void require_solid_bodies(const Robot& robot, std::span<const BodyInertia> bodies) {
+  for (std::size_t b = robot.floating_base() ? 0 : 1; b < bodies.size(); ++b) {
+    if (is_inertia_of_a_body(bodies[b].inertia)) continue;
+    refuse(robot, static_cast<int>(b), principal_moments(bodies[b].inertia),
+           "none of them above the sum of the other two");
+  }
 }
 
 std::vector<BodyInertia> body_inertias(const Robot& robot) { return body_inertias(robot, {}); }
@@ -158,7 +169,10 @@ std::vector<BodyInertia> body_inertias(const Robot& robot, std::span<const doubl
   const std::vector<BodyInertia> bodies = fold(robot, link_factors);
   check_moved(robot, bodies);
   for (std::size_t b = robot.floating_base() ? 0 : 1; b < bodies.size(); ++b) {
-    check_solid(robot, static_cast<int>(b), bodies[b]);
+    const Eigen::Vector3d principal = principal_moments(bodies[b].inertia);
+    if (!is_not_negative(principal)) {
+      refuse(robot, static_cast<int>(b), principal, "none of them below zero");
+    }
   }
   if (robot.floating_base() && !(robot.total_mass() > 0.0)) {
     throw Error(robot.urdf_file().string(), robot.links()[0].inertial_line,

@@ -7,10 +7,11 @@
 ///
 /// Errors, with the file and the line of an <inertial> or <link>, if the equations of motion have
 /// no solution: a joint that moves no mass, or that only turns a body about an axis through all of
-/// its mass, and whose mimic joints do no more; a body whose largest principal moment of inertia is
-/// above the sum of the other two, which no body has. The last is asked of whole bodies: published
-/// models break it in the inertias of their cameras and covers, which does not matter once they are
-/// part of a trunk. The root of a fixed base does not move and is not looked at.
+/// its mass, and whose mimic joints do no more; a body with a principal moment of inertia below
+/// zero. The root of a fixed base does not move and is not looked at.
+///
+/// Published models have bodies whose largest moment is above the sum of the other two, which no
+/// body has: the URDF's warnings say so, and planning takes them as they are.
 
 #include <locograph/robots/robot.h>
 
@@ -29,6 +30,10 @@ struct BodyInertia {
 /// Whether a body can have this inertia [kg m^2, about its centre of mass], up to what printing it
 /// in a few digits does to it.
 bool is_inertia_of_a_body(const Eigen::Matrix3d& inertia);
+
+/// Throws Error for a body that does not have it. Asked of whole bodies: models break it in their
+/// cameras and covers, too, which does not matter once these are part of a trunk.
+void require_solid_bodies(const Robot& robot, std::span<const BodyInertia> bodies);
 
 std::vector<BodyInertia> body_inertias(const Robot& robot);
 /// The same where mass and inertia of each link are those of the URDF times its factor; no factors:

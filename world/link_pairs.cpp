@@ -72,20 +72,36 @@ Eigen::VectorXd random_posture(const Robot& robot, std::mt19937_64& random) {
   return q;
 }
 
-bool meet(const std::vector<PlacedSolid>& first, const Eigen::Isometry3d& world_from_first,
-          const std::vector<PlacedSolid>& second, const Eigen::Isometry3d& world_from_second) {
-  for (const PlacedSolid& a : first) {
-    const Eigen::Isometry3d world_from_a = world_from_first * a.link_from_shape;
-    const Eigen::Vector3d centre = world_from_a * a.shape.center();
-    for (const PlacedSolid& b : second) {
-      const Eigen::Isometry3d world_from_b = world_from_second * b.link_from_shape;
-      const double reach = a.shape.bounding_radius() + b.shape.bounding_radius();
-      if ((world_from_b * b.shape.center() - centre).squaredNorm() >= reach * reach) continue;
-      if (shape_distance(a.shape, world_from_a, b.shape, world_from_b).distance < 0.0) return true;
+/// The exact shapes of all links.
+class Solids {
+ public:
+  explicit Solids(const Robot& robot) {
+    for (const Link& link : robot.links()) {
+      std::vector<PlacedSolid>& of_link = of_links_.emplace_back();
+      for (const CollisionShape& shape : link.collision) {
+        of_link.push_back({link_solid(robot, shape), shape.link_from_shape});
+      }
     }
   }
-  return false;
-}
+
+  bool meet(const RobotState& state, int first, int second) const {
+    for (const PlacedSolid& a : of_links_[static_cast<std::size_t>(first)]) {
+      const Eigen::Isometry3d world_from_a = state.world_from_link(first) * a.link_from_shape;
+      const Eigen::Vector3d centre = world_from_a * a.shape.center();
+      for (const PlacedSolid& b : of_links_[static_cast<std::size_t>(second)]) {
+        const Eigen::Isometry3d world_from_b = state.world_from_link(second) * b.link_from_shape;
+        const double reach = a.shape.bounding_radius() + b.shape.bounding_radius();
+        if ((world_from_b * b.shape.center() - centre).squaredNorm() >= reach * reach) continue;
+        if (shape_distance(a.shape, world_from_a, b.shape, world_from_b).distance < 0.0)
+          return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  std::vector<std::vector<PlacedSolid>> of_links_;
+};
 
 }  // namespace
 
@@ -93,13 +109,7 @@ LinkPairs sample_link_pairs(const Robot& robot, const LinkPairOptions& options) 
   if (options.samples < 1) {
     throw Error(std::to_string(options.samples) + " samples", "one or more");
   }
-  std::vector<std::vector<PlacedSolid>> solids;
-  for (const Link& link : robot.links()) {
-    std::vector<PlacedSolid>& of_link = solids.emplace_back();
-    for (const CollisionShape& shape : link.collision) {
-      of_link.push_back({link_solid(robot, shape), shape.link_from_shape});
-    }
-  }
+  const Solids solids(robot);
   LinkPairs found{options.samples, movable_pairs(robot)};
   std::mutex mutex;
   ThreadPool threads(options.threads);
@@ -115,17 +125,26 @@ LinkPairs sample_link_pairs(const Robot& robot, const LinkPairOptions& options) 
     for (int sample = chunk * kSamplesPerChunk; sample < last; ++sample) {
       state.update(random_posture(robot, random).data());
       for (std::size_t p = 0; p < meets.size(); ++p) {
-        const std::size_t a = static_cast<std::size_t>(found.pairs[p].first);
-        const std::size_t b = static_cast<std::size_t>(found.pairs[p].second);
-        const bool touching = meet(solids[a], state.world_from_link(found.pairs[p].first),
-                                   solids[b], state.world_from_link(found.pairs[p].second));
-        meets[p] += touching ? 1 : 0;
+        const LinkPair& pair = found.pairs[p];
+        meets[p] += solids.meet(state, pair.first, pair.second) ? 1 : 0;
       }
     }
     const std::lock_guard<std::mutex> lock(mutex);
     for (std::size_t p = 0; p < meets.size(); ++p) found.pairs[p].meets += meets[p];
   });
   return found;
+}
+
+std::vector<std::pair<int, int>> overlapping_links(const Robot& robot,
+                                                   const Eigen::VectorXd& configuration) {
+  const Solids solids(robot);
+  RobotState state(robot);
+  state.update(configuration.data());
+  std::vector<std::pair<int, int>> overlapping;
+  for (const auto& pair : robot.self_collision_pairs()) {
+    if (solids.meet(state, pair.first, pair.second)) overlapping.push_back(pair);
+  }
+  return overlapping;
 }
 
 }  // namespace locograph

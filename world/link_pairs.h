@@ -13,7 +13,9 @@
 
 #include <locograph/robots/robot.h>
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace locograph {
@@ -42,6 +44,10 @@ struct LinkPairs {
   /// All that have shapes and can move against each other, by first, then second link.
   std::vector<LinkPair> pairs;
 };
+
+/// Those of Robot::self_collision_pairs() that overlap in one configuration.
+std::vector<std::pair<int, int>> overlapping_links(const Robot& robot,
+                                                   const Eigen::VectorXd& configuration);
 
 LinkPairs sample_link_pairs(const Robot& robot, const LinkPairOptions& options);
 

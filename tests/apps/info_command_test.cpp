@@ -376,5 +376,34 @@ TEST(Info, RefusesWhatItDoesNotKnow) {
   expect_refusal(runner.run("info"), "", "FILE");
 }
 
+TEST(Info, WritesWhatARobotNeedsToBePlannedFor) {
+  const CommandRunner runner;
+  const std::string urdf = LOCOGRAPH_SOURCE_DIR "/robots/models/go2/go2.urdf";
+  const Outcome skeleton =
+      runner.run("info " + urdf + " --write-srdf dog.srdf --samples 200 --threads 1 --json");
+  ASSERT_EQ(skeleton.exit_code, 0) << skeleton.err;
+  const nlohmann::json told = skeleton.json();
+  EXPECT_EQ(told["scenario"], "dog.scenario.xml");
+  EXPECT_EQ(told["end_effectors"].size(), 4U);
+  EXPECT_EQ(told["end_effectors"][0]["kind"], "point");
+  EXPECT_EQ(told["samples"], 200);
+  EXPECT_LE(told["never_meet"].get<int>() + told["always_meet"].get<int>(), told["pairs"]);
+  const Outcome plan = runner.run("plan dog.scenario.xml --seed 1 -o dog.g2o --json");
+  EXPECT_EQ(plan.exit_code, 0) << plan.out << plan.err;
+  EXPECT_EQ(runner.run("check dog.g2o").exit_code, 0);
+}
+
+TEST(Info, SkeletonsAreRefusedBeforeAnythingIsWritten) {
+  const CommandRunner runner;
+  const std::string urdf = LOCOGRAPH_SOURCE_DIR "/robots/models/go2/go2.urdf";
+  expect_refusal(runner.run("info " + urdf + " --write-srdf missing/dog.srdf"), "missing/dog.srdf",
+                 "");
+  runner.write("bare.urdf", "<robot name='bare'><link name='a'/></robot>");
+  expect_refusal(runner.run("info bare.urdf --write-srdf bare.srdf"), "bare.urdf",
+                 "no link of the robot has a <collision>");
+  EXPECT_FALSE(runner.exists("bare.srdf"));
+  expect_refusal(runner.run("info bare.urdf --write-srdf bare.urdf"), "bare.urdf", "");
+}
+
 }  // namespace
 }  // namespace locograph

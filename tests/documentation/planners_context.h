@@ -49,6 +49,7 @@
 #include <locograph/robots/xml_file.h>
 #include <locograph/types/standard_types.h>
 #include <locograph/world/distance_view.h>
+#include <locograph/world/proposed_effectors.h>
 
 namespace locograph::documentation::in_planners {
 
@@ -673,6 +674,12 @@ struct Context : scenario_contacts_file_h::Context {
   const Eigen::VectorXd home = robot.named_configuration("home");
 };
 }  // namespace posture_posture_solver_h
+namespace posture_standing_start_h {
+struct Context {
+  const RobotFiles files = shipped_robot("coman_plus").value();
+  const std::filesystem::path &urdf = files.urdf, &srdf = files.srdf;
+};
+}  // namespace posture_standing_start_h
 namespace scenario_bar_place_h {
 struct Context {
   const Bar bar = small_room().bars[0];

@@ -1,5 +1,6 @@
 // Every unusable file is an Error that says where and what.
 #include <locograph/common/error.h>
+#include <locograph/robots/body_inertia.h>
 #include <locograph/robots/collision_model.h>
 #include <locograph/robots/dynamics.h>
 
@@ -192,6 +193,7 @@ TEST_F(BadInput, MassesWithoutWhichThereIsNoMotion) {
         Robot::load(folder.write("bad.urdf", text), {}, {.floating_base = floating});
     try {
       RobotDynamics dynamics(robot);
+      require_solid_bodies(robot, body_inertias(robot));
       ADD_FAILURE() << "no error: " << part;
     } catch (const Error& error) {
       const std::string what = error.what();
@@ -209,6 +211,9 @@ TEST_F(BadInput, MassesWithoutWhichThereIsNoMotion) {
                          "ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\""),
                  4, "link 'arm' gives its body the principal moments of inertia 1, 1 and 3 kg m^2",
                  false);
+  expect_refused(changed("ixx=\"1\" ixy=\"0.1\" ixz=\"0\" iyy=\"2\"",
+                         "ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"-1\""),
+                 4, "expected none of them below zero", false);
   expect_refused("<robot name='r'>\n<link name='a'/></robot>", 2,
                  "robot 'r' has a floating base and no mass", true);
   const std::string wheel =

@@ -1,0 +1,31 @@
+#pragma once
+/// What a robot that comes as a URDF alone needs to be planned for: an SRDF, end effectors, a
+/// posture that stands and a scenario to begin with.
+///
+///     Json told = write_skeleton("h1.urdf", "h1.srdf", {.samples = 500, .threads = 2});
+///     // h1.srdf and h1.scenario.xml
+///
+/// The SRDF switches off the pairs of links that never meet in random postures ("Never"), that
+/// always do ("Always"), and, of links at most three joints apart, that overlap as the robot stands
+/// ("Default": shapes that are larger than what they stand for). Its group_state `standing` is the
+/// posture that was found. The scenario stands on a floor; its goal is 0.15 m ahead.
+
+#include <locograph/apps/output.h>
+#include <locograph/world/link_pairs.h>
+
+#include <filesystem>
+#include <string>
+
+namespace locograph {
+
+/// What is written: the scenario has the name of the SRDF, with .scenario.xml for its extension.
+std::filesystem::path skeleton_scenario(const std::filesystem::path& srdf);
+
+/// robot: a URDF, or the name of a robot that comes along; its SRDF, if it has one, is not read.
+/// The answer has "scenario" null and a "reason" where nothing stands; the SRDF is written then,
+/// too, without a state. Throws Error for a URDF that cannot be used, and for files that cannot be
+/// written, before it begins.
+Json write_skeleton(const std::string& robot, const std::filesystem::path& srdf,
+                    const LinkPairOptions& sampling);
+
+}  // namespace locograph
