@@ -1,6 +1,7 @@
 #include <locograph/apps/robot_files.h>
 #include <locograph/apps/robot_skeleton.h>
 #include <locograph/common/atomic_file.h>
+#include <locograph/common/uniform.h>
 #include <locograph/planners/posture/standing_start.h>
 #include <locograph/robots/kinematic_tree.h>
 #include <locograph/world/proposed_effectors.h>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <random>
 #include <set>
 #include <vector>
 
@@ -17,6 +19,7 @@ namespace {
 
 constexpr double kFriction = 0.7, kStep_m = 0.15;
 constexpr int kNearJoints = 3;
+constexpr double kNear_m = 6e-3;  // planners keep links 4 mm apart
 
 /// Without the joints that cannot hold anything, as fingers without a limit of effort: they stay
 /// where they are.
@@ -46,19 +49,38 @@ int joints_between(const Robot& robot, int first, int second) {
   return static_cast<int>(a.size() + b.size() - 2 * common);
 }
 
+/// It and postures in which each joint is a little elsewhere.
+std::vector<Eigen::VectorXd> around(const Robot& robot, const Eigen::VectorXd& standing) {
+  constexpr int kCount = 30;
+  constexpr double kElsewhere_rad = 0.4;
+  std::vector<Eigen::VectorXd> all = {standing};
+  std::mt19937_64 random(1);
+  for (int k = 0; k < kCount; ++k) {
+    Eigen::VectorXd& q = all.emplace_back(standing);
+    for (int i = 0; i < robot.active_joint_count(); ++i) {
+      const Joint& joint = robot.active_joint(i);
+      double& position = q[robot.base_configuration_size() + i];
+      position = std::clamp(position + uniform(random, -kElsewhere_rad, kElsewhere_rad),
+                            joint.lower, joint.upper);
+    }
+  }
+  return all;
+}
+
 std::vector<PairOff> pairs_off(const Robot& robot, const LinkPairs& sampled,
                                const Eigen::VectorXd& standing) {
-  const auto overlapping = overlapping_links(robot, standing);
+  const auto overlapping = overlapping_links(robot, around(robot, standing), kNear_m);
   const std::set<std::pair<int, int>> overlap(overlapping.begin(), overlapping.end());
   std::vector<PairOff> off;
   for (const LinkPair& pair : sampled.pairs) {
     const char* reason = nullptr;
     if (pair.always_meets(sampled.samples)) {
       reason = "Always";
-    } else if (overlap.contains({pair.first, pair.second})) {
-      if (joints_between(robot, pair.first, pair.second) <= kNearJoints) reason = "Default";
     } else if (pair.meets == 0) {
       reason = "Never";
+    } else if (overlap.contains({pair.first, pair.second}) &&
+               joints_between(robot, pair.first, pair.second) <= kNearJoints) {
+      reason = "Default";
     }
     if (reason != nullptr) off.push_back({pair.first, pair.second, reason});
   }
@@ -165,7 +187,8 @@ std::string seen_from(const std::filesystem::path& folder, const std::filesystem
 }
 
 std::string scenario_text(const std::filesystem::path& folder, const std::filesystem::path& srdf,
-                          const Robot& robot, const StandingStart& start) {
+                          const Robot& robot, const StandingStart& start,
+                          const char* torque_limits) {
   const Eigen::VectorXd& q = start.answer.configuration;
   tinyxml2::XMLPrinter xml;
   xml.PushHeader(false, true);
@@ -202,7 +225,7 @@ std::string scenario_text(const std::filesystem::path& folder, const std::filesy
   contacts(xml, start.stance, kStep_m);
   xml.CloseElement();
   xml.OpenElement("planner");
-  xml.PushAttribute("torque_limits", "enforce");
+  xml.PushAttribute("torque_limits", torque_limits);
   xml.CloseElement();
   xml.CloseElement();
   return xml.CStr();
@@ -271,14 +294,28 @@ Json write_skeleton(const std::string& name_or_file, const std::filesystem::path
     json["reason"] = "no end effector is proposed: no last link is as low as the robot";
     return json;
   }
-  const StandingStart start = standing_start(
-      std::make_shared<const RobotParameter>(files.urdf, srdf, driven), effectors, kFriction);
+  const auto parameter = std::make_shared<const RobotParameter>(files.urdf, srdf, driven);
+  StandingStart start = standing_start(parameter, effectors, kFriction);
+  const char* torque_limits = "enforce";
+  if (!start.answer.success()) {
+    // Models give efforts of motors without their gears, and placeholders.
+    PostureOptions any_torque;
+    any_torque.enforce_torque_limits = any_torque.check.enforce_torque_limits = false;
+    StandingStart strong = standing_start(parameter, effectors, kFriction, any_torque);
+    if (strong.answer.success()) {
+      json["torque_limits"] = "report";
+      json["torque_ratio_standing"] = strong.answer.report.max_torque_ratio.value_or(0.0);
+      start = std::move(strong);
+      torque_limits = "report";
+    }
+  }
   if (!start.answer.success()) {
     json["reason"] = "no posture stands on them: " + start.answer.reason;
     return json;
   }
   write_file_atomically(srdf, srdf_text(robot, off, &start.answer.configuration));
-  write_file_atomically(scenario, scenario_text(scenario.parent_path(), srdf, robot, start));
+  write_file_atomically(scenario,
+                        scenario_text(scenario.parent_path(), srdf, robot, start, torque_limits));
   json["scenario"] = scenario.string();
   return json;
 }

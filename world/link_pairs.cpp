@@ -84,13 +84,13 @@ class Solids {
     }
   }
 
-  bool meet(const RobotState& state, int first, int second) const {
+  bool meet(const RobotState& state, int first, int second, double within_m = 0.0) const {
     for (const PlacedSolid& a : of_links_[static_cast<std::size_t>(first)]) {
       const Eigen::Isometry3d world_from_a = state.world_from_link(first) * a.link_from_shape;
       const Eigen::Vector3d centre = world_from_a * a.shape.center();
       for (const PlacedSolid& b : of_links_[static_cast<std::size_t>(second)]) {
         const Eigen::Isometry3d world_from_b = state.world_from_link(second) * b.link_from_shape;
-        const double reach = a.shape.bounding_radius() + b.shape.bounding_radius();
+        const double reach = a.shape.bounding_radius() + b.shape.bounding_radius() + within_m;
         if ((world_from_b * b.shape.center() - centre).squaredNorm() >= reach * reach) continue;
         if (shape_distance(a.shape, world_from_a, b.shape, world_from_b).distance < 0.0)
           return true;
@@ -135,14 +135,18 @@ LinkPairs sample_link_pairs(const Robot& robot, const LinkPairOptions& options) 
   return found;
 }
 
-std::vector<std::pair<int, int>> overlapping_links(const Robot& robot,
-                                                   const Eigen::VectorXd& configuration) {
+std::vector<std::pair<int, int>> overlapping_links(
+    const Robot& robot, const std::vector<Eigen::VectorXd>& configurations, double within_m) {
   const Solids solids(robot);
-  RobotState state(robot);
-  state.update(configuration.data());
+  std::vector<RobotState> states(configurations.size(), RobotState(robot));
+  for (std::size_t i = 0; i < states.size(); ++i) states[i].update(configurations[i].data());
   std::vector<std::pair<int, int>> overlapping;
-  for (const auto& pair : robot.self_collision_pairs()) {
-    if (solids.meet(state, pair.first, pair.second)) overlapping.push_back(pair);
+  for (const auto& [first, second] : robot.self_collision_pairs()) {
+    if (std::ranges::any_of(states, [&, a = first, b = second](const RobotState& state) {
+          return solids.meet(state, a, b, within_m);
+        })) {
+      overlapping.emplace_back(first, second);
+    }
   }
   return overlapping;
 }

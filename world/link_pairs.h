@@ -45,9 +45,10 @@ struct LinkPairs {
   std::vector<LinkPair> pairs;
 };
 
-/// Those of Robot::self_collision_pairs() that overlap in one configuration.
-std::vector<std::pair<int, int>> overlapping_links(const Robot& robot,
-                                                   const Eigen::VectorXd& configuration);
+/// Those of Robot::self_collision_pairs() that overlap in one of the configurations, or come nearer
+/// to each other than within_m.
+std::vector<std::pair<int, int>> overlapping_links(
+    const Robot& robot, const std::vector<Eigen::VectorXd>& configurations, double within_m = 0.0);
 
 LinkPairs sample_link_pairs(const Robot& robot, const LinkPairOptions& options);
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -19,6 +20,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kFlat_m = 1e-3, kLeastSide_m = 0.02;
+constexpr double kDown = -0.7;        // of the vertical part of a flat's normal
 constexpr double kLowShare = 0.05;    // of the robot's height
 constexpr double kRoundShare = 0.03;  // of a wheel's radius
 constexpr double kMostTilt_rad = 0.7, kSphere_m = 1.5e-3;
@@ -249,19 +251,58 @@ class Proposals {
     return wheel;
   }
 
-  std::optional<EndEffector> surface_of(const LastBody& body) const {
+  /// Where flats may look: straight down, along axes of shapes, and as most of a mesh's triangles.
+  std::vector<Vector3d> directions_of(const LastBody& body) const {
     std::vector<Vector3d> directions = {-Vector3d::UnitZ()};
-    for (const Ball& ball : body.balls) {
-      if (&ball != &body.balls.front() && ball.link == (&ball - 1)->link) continue;
-      const Eigen::Matrix3d axes = state_.world_from_link(ball.link).linear();
-      for (int k = 0; k < 3; ++k) {
-        for (const double sign : {-1.0, 1.0}) {
-          if (sign * axes.col(k).z() < -0.5) directions.push_back(sign * axes.col(k));
+    const auto add = [&](const Vector3d& out) {
+      if (out.z() < kDown) directions.push_back(out);
+    };
+    const int number = body.axis + 1;
+    for (std::size_t l = 0; l < robot_.links().size(); ++l) {
+      if (robot_.tree().body_of_link[l] != number) continue;
+      for (const CollisionShape& shape : robot_.links()[l].collision) {
+        const Eigen::Matrix3d axes =
+            (state_.world_from_link(shape.link) * shape.link_from_shape).linear();
+        for (int k = 0; k < 3; ++k) {
+          for (const double sign : {-1.0, 1.0}) add(sign * axes.col(k));
+        }
+        if (shape.type == ShapeType::kMesh) {
+          for (const Vector3d& out : flats_of(shape, axes)) add(out);
         }
       }
     }
+    return directions;
+  }
+
+  /// Normals of a mesh's triangles that look down, the largest areas first.
+  static std::vector<Vector3d> flats_of(const CollisionShape& shape, const Eigen::Matrix3d& axes) {
+    constexpr double kAlike = 0.999;
+    constexpr std::size_t kMost = 4, kSums = 200;
+    const TriangleTree mesh = collision_mesh(shape);
+    std::vector<Vector3d> areas;  // each along its normal
+    for (std::size_t i = 0; i + 2 < mesh.corners().size(); i += 3) {
+      const Vector3d* corner = &mesh.corners()[i];
+      Vector3d area = axes * (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+      if (area.z() > 0.0) area = -area;  // mirrored meshes are inside out
+      if (!(area.z() < kDown * area.norm())) continue;
+      const auto alike = std::ranges::find_if(areas, [&](const Vector3d& sum) {
+        return sum.dot(area) > kAlike * sum.norm() * area.norm();
+      });
+      if (alike != areas.end()) {
+        *alike += area;
+      } else if (areas.size() < kSums) {
+        areas.push_back(area);
+      }
+    }
+    std::ranges::sort(areas, std::greater(), [](const Vector3d& sum) { return sum.norm(); });
+    if (areas.size() > kMost) areas.resize(kMost);
+    for (Vector3d& area : areas) area.normalize();
+    return areas;
+  }
+
+  std::optional<EndEffector> surface_of(const LastBody& body) const {
     std::optional<Flat> best;
-    for (const Vector3d& out : directions) {
+    for (const Vector3d& out : directions_of(body)) {
       const std::optional<Flat> flat = flat_towards(body.balls, out);
       if (flat && (!best || flat->area() > 1.01 * best->area())) best = flat;
     }

@@ -1,8 +1,10 @@
+#include <locograph/check/limits.h>
 #include <locograph/check/motion_curve.h>
 #include <locograph/planners/plan/carried_wrenches.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
 #include <locograph/plugins/static_balance/static_rows.h>
 #include <locograph/robots/dynamics.h>
+#include <locograph/robots/statics.h>
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -15,6 +17,7 @@ using BaseLoad = Eigen::Matrix<double, 6, 1>;
 
 constexpr double kMoved = 1e-9;  // m, rad
 constexpr double kArm_m = 0.03;
+constexpr double kLeftOver = 0.9 * limits::kWrenchLeftOver;
 
 class CarriedWrenches {
  public:
@@ -24,7 +27,8 @@ class CarriedWrenches {
         motion_(motion_of(graph, plan)),
         curve_(*plan.robot->robot, motion_),
         dynamics_(*plan.robot->robot),
-        state_(plan.robot) {}
+        state_(plan.robot),
+        weight_N_(plan.robot->robot->total_mass() * standard_gravity().norm()) {}
 
   const Motion& motion() const { return motion_; }
 
@@ -34,7 +38,9 @@ class CarriedWrenches {
       VertexWrenches& vertex = graph_.vertex(VertexId<VertexWrenches>{slot});
       WrenchesState wrenches = vertex.make_derived();
       vertex.derive(vertex.state.data(), wrenches);
-      vertex.state += change(wrenches, left_over(i, wrenches));
+      const BaseLoad off = left_over(i, wrenches);
+      const double share = off.norm() / weight_N_;
+      if (share > kLeftOver) vertex.state += change(wrenches, (1.0 - kLeftOver / share) * off);
     }
   }
 
@@ -99,6 +105,7 @@ class CarriedWrenches {
   RobotDynamics dynamics_;
   ConfigurationState state_;
   CurvePoint point_;
+  double weight_N_;
 };
 
 }  // namespace

@@ -8,7 +8,9 @@
 /// The edges of balance know a plan's accelerations by the parabola through three configurations
 /// (edge_moving_balance.h) and close it up to what tracking gives away. Its curve has slopes of its
 /// own, and a plan's wrenches are those of its curve. What inverse dynamics asks of the base along
-/// the curve and the wrenches leave over, r (6), goes to them by
+/// the curve and the wrenches leave over goes to them, as far as the judge would not let it pass: a
+/// nine-tenth of what it allows stays, so that a plan that holds stays as it is. Of the rest, r
+/// (6):
 ///
 ///   least sum (delta_k / s_k)^2   with   A delta = r:   delta = S^2 A^T (A S^2 A^T)^+ r
 ///

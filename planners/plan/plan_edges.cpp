@@ -314,14 +314,16 @@ class PlanEdges {
       throw Error("wrenches at " + std::to_string(wrenches.size()) + " contacts",
                   "one for each of the stance, " + std::to_string(expected));
     }
+    constexpr double kNothing = 1e-2;  // what closes here bears nothing, others take it over
     std::vector<int> numbers;
     std::vector<double> components, arms;
     for (std::size_t c = 0; c < bearing->contacts.size(); ++c) {
       if (!bearing->contacts[c]->contact.bears_load) continue;
       numbers.push_back(bearing->contact_numbers[c]);
+      const bool bears = !wrenches[c].isZero(0.0);
       for (const int component : bearing->contacts[c]->cone->components()) {
         components.push_back(wrenches[c][component]);
-        arms.push_back(component < 3 ? 1.0 : options_.wrench_arm_m);
+        arms.push_back((component < 3 ? 1.0 : options_.wrench_arm_m) * (bears ? 1.0 : kNothing));
       }
     }
     VertexWrenches vertex(graph_.parameters(), std::move(numbers));

@@ -67,7 +67,23 @@ class Legs {
     }
   }
 
-  Eigen::VectorXd bend() {
+  /// With what stands below the centre of mass.
+  Eigen::VectorXd stand() {
+    constexpr int kShifts = 4;
+    bend();
+    for (int k = 0; robot_.total_mass() > 0.0 && k < kShifts; ++k) {
+      state_.update(q_.data());
+      Vector3d shift = state_.center_of_mass();
+      for (const Leg& leg : legs_) shift -= leg.place / static_cast<double>(legs_.size());
+      for (Leg& leg : legs_) leg.place.head<2>() += shift.head<2>();
+      bend();
+    }
+    if (robot_.floating_base()) q_[2] -= floor_z_;
+    return q_;
+  }
+
+ private:
+  void bend() {
     constexpr int kIterations = 200;
     constexpr double kDamping = 1e-4;
     const int size = robot_.active_joint_count();
@@ -110,11 +126,8 @@ class Legs {
         position = std::clamp(position + step[i], joint.lower, joint.upper);
       }
     }
-    if (robot_.floating_base()) q_[2] -= floor_z_;
-    return q_;
   }
 
- private:
   struct Leg {
     const EndEffector* effector = nullptr;
     int link = -1;
@@ -167,7 +180,7 @@ class Legs {
 }  // namespace
 
 Eigen::VectorXd bent_legs(const Robot& robot, const std::vector<EndEffector>& effectors) {
-  return Legs(robot, effectors).bend();
+  return Legs(robot, effectors).stand();
 }
 
 StandingStart standing_start(std::shared_ptr<const RobotParameter> robot,

@@ -6,11 +6,12 @@
 ///     if (!start.answer.success()) std::cerr << start.answer.reason;
 ///
 /// Each leg is bent by itself, the base held: soles level and ahead as they are in the neutral
-/// configuration, points below the first joint of their leg, all at the height at which the leg
-/// that is bent least is shorter than stretched by 6 %, where there are more than two by 20 %.
-/// Where limits are one-sided, as those of knees and elbows, a joint begins bent to the side that
-/// has more room, so that knees bend the right way; legs whose limits say nothing bend either way.
-/// The posture solver does the rest: balance, distances, torques.
+/// configuration, points below the first joint of their leg, all moved so that the centre of mass
+/// is over their middle, and at the height at which the leg that is bent least is shorter than
+/// stretched by 6 %, where there are more than two by 20 %. Where limits are one-sided, as those of
+/// knees and elbows, a joint begins bent to the side that has more room, so that knees bend the
+/// right way; legs whose limits say nothing bend either way. The posture solver does the rest:
+/// balance, distances, torques.
 
 #include <locograph/planners/posture/posture_solver.h>
 #include <locograph/robots/contact.h>

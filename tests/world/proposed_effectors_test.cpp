@@ -109,10 +109,10 @@ TEST_F(ProposedEffectors, ARoundMeshIsABallAroundIt) {
 
 TEST_F(ProposedEffectors, ATipIsAPointWithoutARadius) {
   const EndEffector tip =
-      only(robot_with(collision("0 0 0", "<box size='0.06 0.06 0.06'/>", "0.61548 -0.7854 0")));
+      only(robot_with(collision("0 0 0", "<box size='0.06 0.06 0.06'/>", "0.785398 0.61548 0")));
   EXPECT_EQ(tip.kind, ContactKind::kPoint);
   EXPECT_EQ(tip.radius_m, 0.0);
-  EXPECT_LT(tip.point.z(), -0.05) << "the corner of the box";
+  EXPECT_NEAR(tip.point.z(), -0.03 * std::sqrt(3.0), 1e-4) << "the corner of the box";
 }
 
 TEST_F(ProposedEffectors, AWheelTurnsWithoutAnEnd) {
