@@ -266,7 +266,14 @@ Json write_skeleton(const std::string& name_or_file, const std::filesystem::path
                     const LinkPairOptions& sampling) {
   const RobotFiles files = robot_files(name_or_file, "");
   const std::filesystem::path scenario = skeleton_scenario(srdf);
-  for (const std::filesystem::path& output : {srdf, scenario}) check_output(output, {files.urdf});
+  for (const std::filesystem::path& output : {srdf, scenario}) {
+    check_output(output, {files.urdf, files.srdf});
+  }
+  std::error_code unreadable;
+  if (std::filesystem::exists(scenario, unreadable)) {
+    throw Error(scenario.string(), 0, "it is there already, and may have been worked on",
+                "another name, or that it is removed first");
+  }
   RobotOptions driven;
   const Robot robot = driven_robot(files.urdf, driven);
   robot.require_collision_shapes();

@@ -49,7 +49,6 @@ class Legs {
       const Vector3d hip = neutral.joint_origin(support.front());
       leg.place = pose * effector.point;
       leg.level = effector.kind == ContactKind::kSurface;
-      leg.normal = Vector3d::UnitZ();
       leg.forward = pose.linear() * effector.forward;
       leg.forward.z() = 0.0;
       if (!(leg.forward.norm() > 0.1)) leg.forward = Vector3d::UnitX();
@@ -105,7 +104,7 @@ class Legs {
         if (leg.level) {
           const Vector3d normal_now = (pose.linear() * leg.effector->normal).normalized();
           const Vector3d forward_now = (pose.linear() * leg.effector->forward).normalized();
-          error.tail<3>() = kArm_m * (normal_now.cross(leg.normal) +
+          error.tail<3>() = kArm_m * (normal_now.cross(Vector3d::UnitZ()) +
                                       Vector3d::UnitZ() * forward_now.cross(leg.forward).z());
           jacobian.bottomRows<3>() *= kArm_m;
         } else {
@@ -131,7 +130,7 @@ class Legs {
   struct Leg {
     const EndEffector* effector = nullptr;
     int link = -1;
-    Vector3d place, normal, forward;
+    Vector3d place, forward;
     bool level = false;
     double stretched_m = 0.0;
   };
@@ -183,7 +182,7 @@ Eigen::VectorXd bent_legs(const Robot& robot, const std::vector<EndEffector>& ef
   return Legs(robot, effectors).stand();
 }
 
-StandingStart standing_start(std::shared_ptr<const RobotParameter> robot,
+StandingStart standing_start(const std::shared_ptr<const RobotParameter>& robot,
                              std::vector<EndEffector> effectors, double friction,
                              const PostureOptions& options) {
   if (effectors.empty()) throw Error("a robot without end effectors", "something to stand on");
@@ -207,6 +206,7 @@ StandingStart standing_start(std::shared_ptr<const RobotParameter> robot,
     contact.locked = effector.kind == ContactKind::kWheel;
     start.stance.contacts.push_back(contact);
   }
+  const PostureSolver solver(robot);
   PostureProblem problem;
   problem.stance = start.stance;
   problem.preferred = placed_at(model, start.bent, start.stance);
@@ -219,7 +219,7 @@ StandingStart standing_start(std::shared_ptr<const RobotParameter> robot,
     start.answer.configuration = problem.preferred;
     start.answer.report = std::move(report);
   } else {
-    start.answer = PostureSolver(std::move(robot)).solve(problem, options);
+    start.answer = solver.solve(problem, options);
   }
   return start;
 }

@@ -31,7 +31,7 @@ struct StandingStart {
 Eigen::VectorXd bent_legs(const Robot& robot, const std::vector<EndEffector>& effectors);
 
 /// friction: of contacts. Throws Error for no end effector, and as PostureSolver does.
-StandingStart standing_start(std::shared_ptr<const RobotParameter> robot,
+StandingStart standing_start(const std::shared_ptr<const RobotParameter>& robot,
                              std::vector<EndEffector> effectors, double friction,
                              const PostureOptions& options = {});
 

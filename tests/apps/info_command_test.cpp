@@ -391,6 +391,8 @@ TEST(Info, WritesWhatARobotNeedsToBePlannedFor) {
   const Outcome plan = runner.run("plan dog.scenario.xml --seed 1 -o dog.g2o --json");
   EXPECT_EQ(plan.exit_code, 0) << plan.out << plan.err;
   EXPECT_EQ(runner.run("check dog.g2o").exit_code, 0);
+  expect_refusal(runner.run("info " + urdf + " --write-srdf dog.srdf"), "dog.scenario.xml",
+                 "may have been worked on");
 }
 
 TEST(Info, SkeletonsAreRefusedBeforeAnythingIsWritten) {
