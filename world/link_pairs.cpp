@@ -92,7 +92,7 @@ class Solids {
         const Eigen::Isometry3d world_from_b = state.world_from_link(second) * b.link_from_shape;
         const double reach = a.shape.bounding_radius() + b.shape.bounding_radius() + within_m;
         if ((world_from_b * b.shape.center() - centre).squaredNorm() >= reach * reach) continue;
-        if (shape_distance(a.shape, world_from_a, b.shape, world_from_b).distance < 0.0)
+        if (shape_distance(a.shape, world_from_a, b.shape, world_from_b).distance < within_m)
           return true;
       }
     }

@@ -17,6 +17,7 @@ using Eigen::Vector3d;
 
 constexpr double kFewBend = 0.06, kManyBend = 0.2;  // of two contacts, of more
 constexpr double kOneSided_rad = 0.35;              // of the middle of a joint's limits
+constexpr double kSplayed = 0.15;                   // to the side, of the stretched leg
 constexpr double kFirstBend = 0.2;                  // of the way to the middle
 
 /// Of joints whose limits are one-sided, a little of the way to the middle.
@@ -54,7 +55,10 @@ class Legs {
       if (!(leg.forward.norm() > 0.1)) leg.forward = Vector3d::UnitX();
       leg.forward.normalize();
       if (!leg.level) leg.place.x() = hip.x();
-      leg.stretched_m = stretched(leg, neutral.joint_origin(support.front()), support);
+      leg.stretched_m = stretched(leg, hip, support);
+      const bool rolls = effector.kind == ContactKind::kWheel;
+      if (!rolls && std::abs(leg.place.y() - hip.y()) > kSplayed * leg.stretched_m)
+        leg.place.y() = hip.y();
       const double least_z = hip.z() - reach(leg, hip);
       const double round = contact_kind_entry(effector.kind).is_round() ? effector.radius_m : 0.0;
       floor_z_ = std::max(floor_z_, least_z - round);

@@ -6,7 +6,8 @@
 ///     if (!start.answer.success()) std::cerr << start.answer.reason;
 ///
 /// Each leg is bent by itself, the base held: soles level and ahead as they are in the neutral
-/// configuration, points below the first joint of their leg, all moved so that the centre of mass
+/// configuration, points below the first joint of their leg, neither further to the side of it than
+/// 15 % of the stretched leg (wheels stay), all moved so that the centre of mass
 /// is over their middle, and at the height at which the leg that is bent least is shorter than
 /// stretched by 6 %, where there are more than two by 20 %. Where limits are one-sided, as those of
 /// knees and elbows, a joint begins bent to the side that has more room, so that knees bend the

@@ -77,6 +77,20 @@ TEST_F(SwingingBall, MayIgnoreWhatItNeverOrAlwaysMeets) {
   EXPECT_TRUE(pair(found, "base", "post").adjacent);
 }
 
+TEST_F(SwingingBall, OverlapsWhatItIsInAndComesNearToTheBase) {
+  const Eigen::VectorXd neutral = robot->neutral_configuration();
+  Eigen::VectorXd away = neutral;
+  away[robot->base_configuration_size()] = 1.0;
+  const auto near = [&](const std::vector<Eigen::VectorXd>& configurations, double within_m) {
+    return overlapping_links(*robot, configurations, within_m).size();
+  };
+  EXPECT_EQ(near({neutral}, 0.0), 2u) << "the shell is in both others";
+  EXPECT_EQ(near({neutral}, 0.29), 2u);
+  EXPECT_EQ(near({neutral}, 0.31), 4u) << "and the base 0.3 m from two";
+  EXPECT_EQ(near({away}, 0.0), 1u) << "it has left the second one";
+  EXPECT_EQ(near({away, neutral}, 0.0), 2u);
+}
+
 TEST(LinkPairs, OfAJointThatBendsThemIntoEachOtherMayNotBeOff) {
   const TemporaryFolder folder;
   const std::string ball =
