@@ -1,5 +1,6 @@
 // Robots as they are published: with mimic joints, without limits, with inertias that no body has.
 #include <locograph/common/error.h>
+#include <locograph/robots/body_inertia.h>
 #include <locograph/robots/dynamics.h>
 
 #include "robots/robot_test_support.h"
@@ -53,14 +54,17 @@ TEST_F(RobotsInTheWild, HoldJointsWithoutLimitsAtZero) {
   EXPECT_NE(robot.urdf_warnings()[0].find("joint 'FL_KFE' cannot move"), std::string::npos);
 }
 
-TEST_F(RobotsInTheWild, HaveNoMassMatrixWithInertiasThatNoBodyHas) {
+TEST_F(RobotsInTheWild, MoveWithInertiasThatNoBodyHas) {
   const Robot robot = Robot::load(file("tiago_no_hand.urdf"));
   EXPECT_FALSE(robot.urdf_warnings().empty());
   const RobotState state(robot);
   Eigen::VectorXd torques(robot.tangent_size());
   gravity_torques(state, standard_gravity(), torques);
   EXPECT_TRUE(torques.allFinite());
-  EXPECT_THROW(RobotDynamics{robot}, Error);
+  Eigen::MatrixXd mass(robot.tangent_size(), robot.tangent_size());
+  RobotDynamics(robot).mass_matrix(state, mass);
+  EXPECT_EQ(mass.llt().info(), Eigen::Success) << "equations of motion have a solution";
+  EXPECT_THROW(require_solid_bodies(robot, body_inertias(robot)), Error);
 }
 
 }  // namespace
