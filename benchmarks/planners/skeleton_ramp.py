@@ -4,7 +4,7 @@
     skeleton_ramp.py go1.scenario.xml go1.ramp.xml [DEGREES]
 
 The floor ends 0.1 m ahead of the front feet, a ramp begins there. The goal has all feet on it, as
-far apart as they stand, the rear ones 0.1 m up its slope.
+far apart as they stand, the rear ones 0.1 m up its slope (of soles their ends, about).
 """
 import math
 import sys
@@ -26,8 +26,9 @@ def main():
     root = tree.getroot()
     feet = {contact.get("end_effector"): vector(contact.get("position"))
             for contact in root.find("start").findall("contact")}
-    begins = max(foot[0] for foot in feet.values()) + 0.1
     rear = min(foot[0] for foot in feet.values())
+    sole = max(float(effector.get("half_x", 0)) for effector in root.iter("end_effector"))
+    begins = max(foot[0] for foot in feet.values()) + 0.1 + sole
     environment = root.find("environment")
     environment.find("plane").attrib.update(
         {"center": text_of([begins - 1.5, 0, 0]), "forward": "1 0 0", "size": "3 3"})
@@ -40,11 +41,13 @@ def main():
         "size": text_of([2 * half, 3])})
     for contact in root.find("goal").findall("contact"):
         foot = feet[contact.get("end_effector")]
-        along = 0.1 + foot[0] - rear
+        along = 0.1 + sole + foot[0] - rear
         contact.set("position", text_of([begins + along * math.cos(slope), foot[1],
                                          along * math.sin(slope)]))
         contact.set("normal", text_of([-math.sin(slope), 0, math.cos(slope)]))
-        contact.attrib.pop("forward", None)
+        if contact.get("forward"):
+            x, y, _ = vector(contact.get("forward"))
+            contact.set("forward", text_of([x * math.cos(slope), y, x * math.sin(slope)]))
     tree.write(target)
 
 
