@@ -32,8 +32,9 @@ Robot driven_robot(const std::filesystem::path& urdf, RobotOptions& options) {
       options.active_joints.push_back(joint.name);
     }
   }
-  if (static_cast<int>(options.active_joints.size()) == count) options.active_joints.clear();
-  return Robot::load(urdf, {}, options);
+  if (static_cast<int>(options.active_joints.size()) < count) return Robot::load(urdf, {}, options);
+  options.active_joints.clear();
+  return whole;
 }
 
 struct PairOff {
@@ -109,12 +110,15 @@ std::string numbers(const Vector& values) {
   return text;
 }
 
+/// value: what the attribute with the position is called; null: names only.
 void joints(tinyxml2::XMLPrinter& xml, const Robot& robot, const Eigen::VectorXd& configuration,
             const char* value) {
   for (int i = 0; i < robot.active_joint_count(); ++i) {
     xml.OpenElement("joint");
     xml.PushAttribute("name", robot.active_joint(i).name.c_str());
-    xml.PushAttribute(value, number(configuration[robot.base_configuration_size() + i]).c_str());
+    if (value != nullptr) {
+      xml.PushAttribute(value, number(configuration[robot.base_configuration_size() + i]).c_str());
+    }
     xml.CloseElement();
   }
 }
@@ -128,11 +132,7 @@ std::string srdf_text(const Robot& robot, const std::vector<PairOff>& off,
   if (standing != nullptr) {
     xml.OpenElement("group");
     xml.PushAttribute("name", "whole_body");
-    for (int i = 0; i < robot.active_joint_count(); ++i) {
-      xml.OpenElement("joint");
-      xml.PushAttribute("name", robot.active_joint(i).name.c_str());
-      xml.CloseElement();
-    }
+    joints(xml, robot, *standing, nullptr);
     xml.CloseElement();
     xml.OpenElement("group_state");
     xml.PushAttribute("name", "standing");
@@ -258,14 +258,12 @@ Json left_out(const Robot& robot) {
 
 }  // namespace
 
-std::filesystem::path skeleton_scenario(const std::filesystem::path& srdf) {
-  return std::filesystem::path(srdf).replace_extension(".scenario.xml");
-}
-
 Json write_skeleton(const std::string& name_or_file, const std::filesystem::path& srdf,
                     const LinkPairOptions& sampling) {
+  if (srdf == "-") throw Error("--write-srdf -", "a file, as a scenario is written beside it");
   const RobotFiles files = robot_files(name_or_file, "");
-  const std::filesystem::path scenario = skeleton_scenario(srdf);
+  const std::filesystem::path scenario =
+      std::filesystem::path(srdf).replace_extension(".scenario.xml");
   for (const std::filesystem::path& output : {srdf, scenario}) {
     check_output(output, {files.urdf, files.srdf});
   }

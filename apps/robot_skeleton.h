@@ -21,9 +21,7 @@
 
 namespace locograph {
 
-/// What is written: the scenario has the name of the SRDF, with .scenario.xml for its extension.
-std::filesystem::path skeleton_scenario(const std::filesystem::path& srdf);
-
+/// Writes the SRDF and a scenario of the same name, with .scenario.xml for its extension.
 /// robot: a URDF, or the name of a robot that comes along; its SRDF, if it has one, is neither read
 /// nor written over, and a scenario that is there already is not written over either.
 /// The answer has "scenario" null and a "reason" where nothing stands; the SRDF is written then,

@@ -103,13 +103,10 @@ Rectangle rectangle_in(const std::vector<PlanePoint>& corners) {
                                    -std::numeric_limits<double>::infinity()};
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const PlanePoint &a = corners[i], &b = corners[(i + 1) % corners.size()];
-      if (x < std::min(a.x, b.x) || x > std::max(a.x, b.x)) continue;
-      const double share = a.x == b.x ? 0.0 : (x - a.x) / (b.x - a.x);
-      for (const double y :
-           {a.y + share * (b.y - a.y), a.x == b.x ? b.y : a.y + share * (b.y - a.y)}) {
-        range[0] = std::min(range[0], y);
-        range[1] = std::max(range[1], y);
-      }
+      if ((x < a.x) == (x < b.x)) continue;
+      const double y = a.y + (x - a.x) / (b.x - a.x) * (b.y - a.y);
+      range[0] = std::min(range[0], y);
+      range[1] = std::max(range[1], y);
     }
     return range;
   };

@@ -15,7 +15,6 @@ namespace {
 
 using BaseLoad = Eigen::Matrix<double, 6, 1>;
 
-constexpr double kMoved = 1e-9;  // m, rad
 constexpr double kArm_m = 0.03;
 constexpr double kLeftOver = 0.9 * limits::kWrenchLeftOver;
 
@@ -64,11 +63,12 @@ class CarriedWrenches {
 
   BaseLoad asked(int step, double fraction) {
     curve_.step(step).at(fraction, point_);
-    const Eigen::VectorXd still = Eigen::VectorXd::Zero(point_.velocity.size());
-    Eigen::VectorXd moving(still.size()), resting(still.size());
-    dynamics_.inverse_dynamics(state_.kinematics, point_.velocity, point_.acceleration, {}, moving);
-    dynamics_.inverse_dynamics(state_.kinematics, still, still, {}, resting);
-    return (moving - resting).head<6>();
+    Eigen::VectorXd torques(point_.velocity.size());
+    dynamics_.inverse_dynamics(state_.kinematics, point_.velocity, point_.acceleration, {},
+                               torques);
+    BaseLoad load = torques.head<6>();
+    add_gravity_on_base(state_.kinematics, load);
+    return load;
   }
 
   Eigen::VectorXd change(const WrenchesState& wrenches, const BaseLoad& left_over) const {
@@ -113,13 +113,8 @@ class CarriedWrenches {
 void carry_wrenches(const Motion& before, const Plan& plan, Graph& graph) {
   if (plan.stances_only || !plan.states_wrenches) return;
   CarriedWrenches carried(plan, graph);
-  const auto moved = [&](std::size_t i) {
-    return (carried.motion().configurations[i] - before.configurations[i])
-               .lpNorm<Eigen::Infinity>() > kMoved;
-  };
-  const std::size_t count = plan.slots.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    if (moved(i) || (i > 0 && moved(i - 1)) || (i + 1 < count && moved(i + 1))) carried.balance(i);
+  for (std::size_t i = 0; i < plan.slots.size(); ++i) {
+    if (moved_around(before, carried.motion(), i)) carried.balance(i);
   }
 }
 

@@ -49,21 +49,25 @@ Motion motion_of_slopes(const Graph& graph, const Plan& plan) {
   return off(planned) < off(is) ? planned : is;
 }
 
+bool moved_around(const Motion& before, const Motion& after, std::size_t vertex) {
+  constexpr double kMoved = 1e-9;
+  const std::size_t last = std::min(vertex + 2, before.configurations.size());
+  for (std::size_t i = vertex == 0 ? 0 : vertex - 1; i < last; ++i) {
+    const Eigen::VectorXd by = after.configurations[i] - before.configurations[i];
+    if (by.lpNorm<Eigen::Infinity>() > kMoved) return true;
+  }
+  return false;
+}
+
 void carry_slopes(const Motion& before, const Plan& plan, Graph& graph) {
   const Robot& robot = *plan.robot->robot;
   Motion rule_before = before, rule_after = motion_of(graph, plan);
   rule_before.slopes.clear();
   rule_after.slopes.clear();
   const MotionCurve was(robot, rule_before), is(robot, rule_after);
-  const auto moved = [&](std::size_t i) {
-    constexpr double kMoved = 1e-9;
-    return (rule_after.configurations[i] - before.configurations[i]).lpNorm<Eigen::Infinity>() >
-           kMoved;
-  };
   for (std::size_t i = 1; i + 1 < plan.slots.size(); ++i) {
     Eigen::VectorXd& slope = graph.vertex(VertexId<VertexConfiguration>{plan.slots[i]}).slopes;
-    if (slope.size() == 0 || slope.isZero() || !(moved(i - 1) || moved(i) || moved(i + 1)))
-      continue;
+    if (slope.size() == 0 || slope.isZero() || !moved_around(before, rule_after, i)) continue;
     const double step_s =
         std::max(before.time_s[i] - before.time_s[i - 1], before.time_s[i + 1] - before.time_s[i]);
     if (!(step_s > 0.0)) continue;

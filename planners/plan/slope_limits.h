@@ -34,6 +34,10 @@ Eigen::VectorXd careful_slope(const Robot& robot, const Motion& motion, int vert
 /// is so where configurations were disturbed and slopes were not. All with the slopes of the plan.
 Motion motion_of_slopes(const Graph& graph, const Plan& plan);
 
+/// Whether a vertex or one beside it is elsewhere in a motion with as many, by more than 1e-9 m or
+/// rad.
+bool moved_around(const Motion& before, const Motion& after, std::size_t vertex);
+
 /// Gives a plan whose configurations were moved the slopes that go with them: at each configuration
 /// that moved, or has a neighbour that did, what a stored slope was away from the rule of the curve
 /// it stays away, within limits of joints. A configuration at rest stays at rest, as do both ends.
