@@ -1,7 +1,6 @@
 #include <locograph/apps/robot_files.h>
 #include <locograph/apps/robot_skeleton.h>
 #include <locograph/common/atomic_file.h>
-#include <locograph/common/uniform.h>
 #include <locograph/planners/posture/standing_start.h>
 #include <locograph/robots/kinematic_tree.h>
 #include <locograph/world/proposed_effectors.h>
@@ -10,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <random>
 #include <set>
 #include <vector>
 
@@ -19,6 +17,7 @@ namespace {
 
 constexpr double kFriction = 0.7, kStep_m = 0.15;
 constexpr int kNearJoints = 3;
+constexpr double kNever_m = 0.1;  // what samples miss comes near far more often than it meets
 constexpr double kNear_m = 6e-3;  // planners keep links 4 mm apart
 
 /// Without the joints that cannot hold anything, as fingers without a limit of effort: they stay
@@ -50,34 +49,16 @@ int joints_between(const Robot& robot, int first, int second) {
   return static_cast<int>(a.size() + b.size() - 2 * common);
 }
 
-/// It and postures in which each joint is a little elsewhere.
-std::vector<Eigen::VectorXd> around(const Robot& robot, const Eigen::VectorXd& standing) {
-  constexpr int kCount = 30;
-  constexpr double kElsewhere_rad = 0.4;
-  std::vector<Eigen::VectorXd> all = {standing};
-  std::mt19937_64 random(1);
-  for (int k = 0; k < kCount; ++k) {
-    Eigen::VectorXd& q = all.emplace_back(standing);
-    for (int i = 0; i < robot.active_joint_count(); ++i) {
-      const Joint& joint = robot.active_joint(i);
-      double& position = q[robot.base_configuration_size() + i];
-      position = std::clamp(position + uniform(random, -kElsewhere_rad, kElsewhere_rad),
-                            joint.lower, joint.upper);
-    }
-  }
-  return all;
-}
-
 std::vector<PairOff> pairs_off(const Robot& robot, const LinkPairs& sampled,
                                const Eigen::VectorXd& standing) {
-  const auto overlapping = overlapping_links(robot, around(robot, standing), kNear_m);
+  const auto overlapping = overlapping_links(robot, standing, kNear_m);
   const std::set<std::pair<int, int>> overlap(overlapping.begin(), overlapping.end());
   std::vector<PairOff> off;
   for (const LinkPair& pair : sampled.pairs) {
     const char* reason = nullptr;
     if (pair.always_meets(sampled.samples)) {
       reason = "Always";
-    } else if (pair.meets == 0) {
+    } else if (pair.near == 0) {
       reason = "Never";
     } else if (overlap.contains({pair.first, pair.second}) &&
                joints_between(robot, pair.first, pair.second) <= kNearJoints) {
@@ -276,7 +257,9 @@ Json write_skeleton(const std::string& name_or_file, const std::filesystem::path
   const Robot robot = driven_robot(files.urdf, driven);
   robot.require_collision_shapes();
   const std::vector<EndEffector> effectors = proposed_effectors(robot);
-  const LinkPairs sampled = sample_link_pairs(robot, sampling);
+  LinkPairOptions near = sampling;
+  near.near_m = kNever_m;
+  const LinkPairs sampled = sample_link_pairs(robot, near);
   const Eigen::VectorXd bent =
       effectors.empty() ? robot.neutral_configuration() : bent_legs(robot, effectors);
   const std::vector<PairOff> off = pairs_off(robot, sampled, bent);

@@ -5,13 +5,13 @@
 ///     Json told = write_skeleton("h1.urdf", "h1.srdf", {.samples = 500, .threads = 2});
 ///     // h1.srdf and h1.scenario.xml
 ///
-/// The SRDF switches off the pairs of links that never meet in random postures ("Never"), that
-/// always do ("Always"), and, of links at most three joints apart, that come nearer than 6 mm as
-/// the robot stands or with its joints up to 0.4 rad elsewhere ("Default": shapes that are larger
-/// than what they stand for). Its group_state `standing` is the posture that was found. The
-/// scenario stands on a floor; its goal is 0.15 m ahead. Where the URDF's efforts hold no posture,
-/// its torques are told only: "torque_limits" is "report" then, and "torque_ratio_standing" says
-/// how many times the efforts would be needed.
+/// The SRDF switches off the pairs of links that never come nearer than 0.1 m in random postures
+/// ("Never": what samples miss comes near far more often than it meets), that always meet
+/// ("Always"), and, of links at most three joints apart, that are nearer than 6 mm as the robot
+/// stands ("Default": shapes that are larger than what they stand for). Its group_state `standing`
+/// is the posture that was found. The scenario stands on a floor; its goal is 0.15 m ahead. Where
+/// the URDF's efforts hold no posture, its torques are told only: "torque_limits" is "report" then,
+/// and "torque_ratio_standing" says how many times the efforts would be needed.
 
 #include <locograph/apps/output.h>
 #include <locograph/world/link_pairs.h>

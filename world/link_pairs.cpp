@@ -55,7 +55,7 @@ std::vector<LinkPair> movable_pairs(const Robot& robot) {
     for (int b = a + 1; b < links; ++b) {
       if (robot.links()[static_cast<std::size_t>(b)].collision.empty()) continue;
       if (body_of[static_cast<std::size_t>(a)] == body_of[static_cast<std::size_t>(b)]) continue;
-      pairs.push_back({a, b, on.contains({a, b}), are_adjacent(robot, a, b), 0});
+      pairs.push_back({a, b, on.contains({a, b}), are_adjacent(robot, a, b), 0, 0});
     }
   }
   return pairs;
@@ -84,19 +84,22 @@ class Solids {
     }
   }
 
-  bool meet(const RobotState& state, int first, int second, double within_m = 0.0) const {
+  /// How far apart two links are, at most `most`; below 0 where they overlap.
+  double gap(const RobotState& state, int first, int second, double most) const {
+    double least = most;
     for (const PlacedSolid& a : of_links_[static_cast<std::size_t>(first)]) {
       const Eigen::Isometry3d world_from_a = state.world_from_link(first) * a.link_from_shape;
       const Eigen::Vector3d centre = world_from_a * a.shape.center();
       for (const PlacedSolid& b : of_links_[static_cast<std::size_t>(second)]) {
         const Eigen::Isometry3d world_from_b = state.world_from_link(second) * b.link_from_shape;
-        const double reach = a.shape.bounding_radius() + b.shape.bounding_radius() + within_m;
+        const double reach = a.shape.bounding_radius() + b.shape.bounding_radius() + most;
         if ((world_from_b * b.shape.center() - centre).squaredNorm() >= reach * reach) continue;
-        if (shape_distance(a.shape, world_from_a, b.shape, world_from_b).distance < within_m)
-          return true;
+        least =
+            std::min(least, shape_distance(a.shape, world_from_a, b.shape, world_from_b).distance);
+        if (least < 0.0) return least;
       }
     }
-    return false;
+    return least;
   }
 
  private:
@@ -120,33 +123,36 @@ LinkPairs sample_link_pairs(const Robot& robot, const LinkPairOptions& options) 
                        static_cast<std::uint32_t>(chunk)};
     std::mt19937_64 random(seed);
     RobotState state(robot);
-    std::vector<int> meets(found.pairs.size(), 0);
+    std::vector<int> meets(found.pairs.size(), 0), near(found.pairs.size(), 0);
     const int last = std::min(options.samples, (chunk + 1) * kSamplesPerChunk);
     for (int sample = chunk * kSamplesPerChunk; sample < last; ++sample) {
       state.update(random_posture(robot, random).data());
       for (std::size_t p = 0; p < meets.size(); ++p) {
         const LinkPair& pair = found.pairs[p];
-        meets[p] += solids.meet(state, pair.first, pair.second) ? 1 : 0;
+        const double gap_m = solids.gap(state, pair.first, pair.second, options.near_m);
+        meets[p] += gap_m < 0.0 ? 1 : 0;
+        near[p] += gap_m < options.near_m ? 1 : 0;
       }
     }
     const std::lock_guard<std::mutex> lock(mutex);
-    for (std::size_t p = 0; p < meets.size(); ++p) found.pairs[p].meets += meets[p];
+    for (std::size_t p = 0; p < meets.size(); ++p) {
+      found.pairs[p].meets += meets[p];
+      found.pairs[p].near += near[p];
+    }
   });
   return found;
 }
 
-std::vector<std::pair<int, int>> overlapping_links(
-    const Robot& robot, const std::vector<Eigen::VectorXd>& configurations, double within_m) {
+std::vector<std::pair<int, int>> overlapping_links(const Robot& robot,
+                                                   const Eigen::VectorXd& configuration,
+                                                   double within_m) {
   const Solids solids(robot);
-  std::vector<RobotState> states(configurations.size(), RobotState(robot));
-  for (std::size_t i = 0; i < states.size(); ++i) states[i].update(configurations[i].data());
+  RobotState state(robot);
+  state.update(configuration.data());
   std::vector<std::pair<int, int>> overlapping;
   for (const auto& [first, second] : robot.self_collision_pairs()) {
-    if (std::ranges::any_of(states, [&, a = first, b = second](const RobotState& state) {
-          return solids.meet(state, a, b, within_m);
-        })) {
+    if (solids.gap(state, first, second, within_m) < within_m)
       overlapping.emplace_back(first, second);
-    }
   }
   return overlapping;
 }

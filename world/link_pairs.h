@@ -25,6 +25,7 @@ struct LinkPair {
   bool on = false;              ///< one of Robot::self_collision_pairs()
   bool adjacent = false;        ///< one joint that moves is between them
   int meets = 0;                ///< samples in which their shapes overlap
+  int near = 0;                 ///< or are nearer than LinkPairOptions::near_m
 
   /// In more than 9 of 10 samples: the shapes overlap by construction, as those of links that a
   /// short one joins, except where the joints between are bent furthest.
@@ -37,6 +38,7 @@ struct LinkPairOptions {
   int samples = 10000;
   std::uint64_t seed = 0;
   int threads = 1;
+  double near_m = 0.0;
 };
 
 struct LinkPairs {
@@ -45,10 +47,11 @@ struct LinkPairs {
   std::vector<LinkPair> pairs;
 };
 
-/// Those of Robot::self_collision_pairs() that overlap in one of the configurations, or come nearer
-/// to each other than within_m.
-std::vector<std::pair<int, int>> overlapping_links(
-    const Robot& robot, const std::vector<Eigen::VectorXd>& configurations, double within_m = 0.0);
+/// Those of Robot::self_collision_pairs() that overlap in a configuration, or come nearer to each
+/// other than within_m.
+std::vector<std::pair<int, int>> overlapping_links(const Robot& robot,
+                                                   const Eigen::VectorXd& configuration,
+                                                   double within_m = 0.0);
 
 LinkPairs sample_link_pairs(const Robot& robot, const LinkPairOptions& options);
 

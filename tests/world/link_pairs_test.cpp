@@ -81,14 +81,26 @@ TEST_F(SwingingBall, OverlapsWhatItIsInAndComesNearToTheBase) {
   const Eigen::VectorXd neutral = robot->neutral_configuration();
   Eigen::VectorXd away = neutral;
   away[robot->base_configuration_size()] = 1.0;
-  const auto near = [&](const std::vector<Eigen::VectorXd>& configurations, double within_m) {
-    return overlapping_links(*robot, configurations, within_m).size();
+  const auto near = [&](const Eigen::VectorXd& configuration, double within_m) {
+    return overlapping_links(*robot, configuration, within_m).size();
   };
-  EXPECT_EQ(near({neutral}, 0.0), 2u) << "the shell is in both others";
-  EXPECT_EQ(near({neutral}, 0.29), 2u);
-  EXPECT_EQ(near({neutral}, 0.31), 4u) << "and the base 0.3 m from two";
-  EXPECT_EQ(near({away}, 0.0), 1u) << "it has left the second one";
-  EXPECT_EQ(near({away, neutral}, 0.0), 2u);
+  EXPECT_EQ(near(neutral, 0.0), 2u) << "the shell is in both others";
+  EXPECT_EQ(near(neutral, 0.29), 2u);
+  EXPECT_EQ(near(neutral, 0.31), 4u) << "and the base 0.3 m from two";
+  EXPECT_EQ(near(away, 0.0), 1u) << "it has left the second one";
+}
+
+TEST_F(SwingingBall, ComesNearMoreOftenThanItMeets) {
+  const LinkPairs found =
+      sample_link_pairs(*robot, {.samples = kPostures, .seed = 3, .near_m = 0.1});
+  const LinkPair met = pair(found, "swing", "post");
+  EXPECT_EQ(
+      met.meets,
+      pair(sample_link_pairs(*robot, {.samples = kPostures, .seed = 3}), "swing", "post").meets);
+  // Nearer than two radii and 0.1 m: 2 * 0.5 m * sin(angle / 2) < 0.3 m.
+  EXPECT_NEAR(static_cast<double>(met.near) / kPostures, 2.0 * std::asin(0.3) / std::numbers::pi,
+              0.02);
+  EXPECT_EQ(pair(found, "base", "swing").near, 0) << "0.3 m away, always";
 }
 
 TEST(LinkPairs, OfAJointThatBendsThemIntoEachOtherMayNotBeOff) {
