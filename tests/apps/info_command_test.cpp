@@ -400,6 +400,8 @@ TEST(Info, SkeletonsAreRefusedBeforeAnythingIsWritten) {
   const std::string urdf = LOCOGRAPH_SOURCE_DIR "/robots/models/go2/go2.urdf";
   expect_refusal(runner.run("info " + urdf + " --write-srdf missing/dog.srdf"), "missing/dog.srdf",
                  "");
+  expect_refusal(runner.run("info " + urdf + " --write-srdf -"), "",
+                 "--write-srdf -, expected a file");
   runner.write("bare.urdf", "<robot name='bare'><link name='a'/></robot>");
   expect_refusal(runner.run("info bare.urdf --write-srdf bare.srdf"), "bare.urdf",
                  "no link of the robot has a <collision>");
