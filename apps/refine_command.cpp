@@ -8,10 +8,13 @@
 #include <locograph/apps/refine_perception.h>
 #include <locograph/apps/statistics.h>
 #include <locograph/common/data_folder.h>
+#include <locograph/common/parse_number.h>
 #include <locograph/common/stop_signals.h>
+#include <locograph/planners/online/resumed_plan.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/seen_world.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,12 +23,17 @@
 namespace locograph {
 namespace {
 
+constexpr double kHorizonOfLegs_s = 2.0;
+constexpr int kIterationsOnLegs = 1;  // of a cycle
+
 struct CommandOptions {
   std::string input, output;
   WorldOptions world;
   PerceptionChoice perception;
-  int horizon = 20;
+  std::string horizon;
+  double rate_hz = 50.0;
   double deadline_ms = 0.0;
+  bool replan = false;
   double goal_tolerance_m = WalkOptions().goal_tolerance_m;
   double goal_tolerance_rad = WalkOptions().goal_tolerance_rad;
   std::vector<std::string> plugins;
@@ -68,7 +76,8 @@ Json report_json(const WalkReport& report, const CommandOptions& options, double
       {"status", planner_status_name(report.status)},
       {"reason", report.reason},
       {"cycles", report.cycles.size()},
-      {"horizon", options.horizon},
+      {"rate_hz", options.rate_hz},
+      {"horizon", report.cycles.empty() ? 0 : report.cycles.front().window},
       {"dof", report.dof},
       {"configurations", report.configurations},
       {"feasible_cycles", report.feasible_cycles},
@@ -126,13 +135,61 @@ void replace_world(PlanFile& file, const WorldOptions& given, const World& world
   file.graph.replace_parameter(file.plan.world_number, file.plan.world);
 }
 
+/// As `--horizon` says, else what suits the plan. Throws Error for what is neither a number of
+/// configurations nor one of seconds, and for a horizon that is longer than the plan.
+void set_horizon(const std::string& text, const PlanFile& file, LocalPlannerOptions& options) {
+  const std::vector<int>& slots = file.plan.slots;
+  const auto time_s = [&](int slot) {
+    return file.graph.vertex(VertexId<VertexConfiguration>{slot}).time_s;
+  };
+  const int steps = static_cast<int>(slots.size()) - 1;
+  const double duration_s = time_s(slots.back()) - time_s(slots.front());
+  const auto given = [&](const std::string& what) { return "--horizon " + text + ": " + what; };
+  if (text.empty()) {
+    const auto rolls = [](const auto& stance) {
+      return stance && std::ranges::any_of(stance->wheels, [](const auto& w) { return !w.locked; });
+    };
+    // Plans on legs are sampled finely, for their judge.
+    if (!std::ranges::all_of(file.plan.stance_from, rolls)) options.horizon_s = kHorizonOfLegs_s;
+    return;
+  }
+  if (text.ends_with('s')) {
+    if (!parse_number(text.substr(0, text.size() - 1), options.horizon_s) ||
+        !(options.horizon_s > 0.0)) {
+      throw UsageError(given("seconds are a number above 0, as 2s"));
+    }
+    if (options.horizon_s > duration_s) {
+      throw UsageError(given("the plan takes " + short_number(duration_s) + " s"));
+    }
+    return;
+  }
+  if (!parse_number(text, options.horizon) || options.horizon < 1) {
+    throw UsageError(given("expected configurations, 1 or more, as 20, or seconds, as 2s"));
+  }
+  if (options.horizon > steps) {
+    throw UsageError(given("the plan has " + counted(steps, "step", "steps")));
+  }
+}
+
+double end_of(const Graph& graph) {
+  return graph.vertex(VertexId<VertexConfiguration>{plan_of(graph).slots.back()}).time_s;
+}
+
+/// Throws UsageError where `--replan` makes no sense.
+void check_replan(const PlanFile& file, const Judging& judging, const PerceptionChoice& eyes) {
+  if (eyes.given()) throw UsageError("--replan: not with --cameras or --clouds");
+  if (!judging.task || judging.task->drive) {
+    throw UsageError("--replan: " + file.name + " is no plan of a scenario's contact task");
+  }
+}
+
 ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) {
   const std::vector<std::filesystem::path> inputs = {
       options.input, options.world.map, options.world.obstacles, options.perception.known_map};
   check_output(options.output, inputs, options.json);
   check_perception_options(parser, options.perception, inputs);
   WalkOptions walk_options;
-  walk_options.planner.horizon = options.horizon;
+  walk_options.rate_hz = options.rate_hz;
   walk_options.cycle_deadline_s = 1e-3 * options.deadline_ms;
   walk_options.goal_tolerance_m = options.goal_tolerance_m;
   walk_options.goal_tolerance_rad = options.goal_tolerance_rad;
@@ -141,9 +198,12 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
   std::optional<Progress> progress("reading " + options.input);
   PlanFile file = load_plan(options.input, options.plugins);
   require_plan(file.plan, file.name);
+  set_horizon(options.horizon, file, walk_options.planner);
   if (!file.plan.world) throw Error(file.name, 0, "the plan has no world", "a PARAMS_WORLD line");
   check_not_input(options.output, files_of(file));
   const Judging judging = judging_of(file, options.world);
+  if (options.replan) check_replan(file, judging, options.perception);
+  if (walk_options.planner.horizon_s > 0.0) walk_options.cycle_iterations = kIterationsOnLegs;
   const Stopwatch watch;
   std::optional<RefinePerception> eyes;
   std::shared_ptr<const WorldSnapshot> seen;
@@ -162,6 +222,22 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
   const double field_s = watch.seconds();
   if (options.world.given()) replace_world(file, options.world, judging.world->world());
 
+  double resume_s = 0.0;
+  std::string not_resumed;
+  if (options.replan) {
+    walk_options.resume = [&](const Graph& stopped) -> std::optional<Graph> {
+      progress.emplace("planning on");
+      const double now_s = end_of(stopped);
+      ResumedPlan resumed = resume_plan(
+          stopped, *judging.task,
+          std::make_shared<const WorldSnapshot>(world_at_rest(judging.world->world(), now_s)),
+          {.termination = {.stop = &stop_flag()}, .threads = options.threads});
+      resume_s += resumed.total_s;
+      not_resumed = resumed.success() ? "" : resumed.reason;
+      progress.emplace("refining " + options.input);
+      return std::move(resumed.graph);
+    };
+  }
   const double configurations = static_cast<double>(file.plan.slots.size());
   progress.emplace("refining " + options.input);
   walk_options.on_cycle = [&](const CycleReport& cycle) {
@@ -170,10 +246,11 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
   const FinishOnSignal finish;
   WalkReport report =
       about_file(file.name, [&] { return walk_plan(file.graph, world_at, walk_options); });
+  if (!not_resumed.empty() && !report.success()) report.reason += "; planning on: " + not_resumed;
   progress.emplace("judging " + options.input);
   const Stopwatch judge_watch;
   std::optional<CheckReport> check;
-  if (report.success() || (eyes && report.configurations > 1)) {
+  if (report.success() || ((eyes || report.resumed > 0) && report.configurations > 1)) {
     check = final_check(file, judging.task);
     take_verdict(*check, report);
   }
@@ -184,6 +261,10 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
   progress.reset();
 
   Json json = report_json(report, options, field_s, judge_s);
+  if (options.replan) {
+    json["resumed"] = report.resumed;
+    json["resume_s"] = resume_s;
+  }
   if (eyes) eyes->tell(json);
   if (eyes && check) json["truth"] = truth_json(*check);
   if (options.json) {
@@ -195,7 +276,7 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
   };
   print_text(options.input + ": " + counted(report.feasible_cycles, "cycle", "cycles") + " of " +
              std::to_string(report.cycles.size()) + " feasible, horizon " +
-             std::to_string(options.horizon) + ", " + std::to_string(report.dof) +
+             std::to_string(json["horizon"].get<int>()) + ", " + std::to_string(report.dof) +
              " degrees of freedom\n" + (report.success() ? "" : "not refined: ") + report.reason +
              "\ncycle time " + ms("p50") + " ms (p95 " + ms("p95") + ", max " + ms("max") +
              ")\nends " + short_number(report.goal_distance_m) + " m and " +
@@ -218,11 +299,20 @@ Command add_refine(OptionParser& app) {
   add_perception_options(parser, o.perception);
   parser.add_option("--save-map", o.perception.save_map,
                     "Where to write the OctoMap of what was seen and known (.bt)");
-  parser.add_option("--horizon", o.horizon, "Configurations that one cycle optimises")
+  parser
+      .add_option("--horizon", o.horizon,
+                  "What one cycle optimises: configurations, as 20, or seconds, as 2s (default: 20 "
+                  "on wheels, else 2s)")
+      .value_name("N|Ts");
+  parser
+      .add_option("--rate", o.rate_hz, "Cycles in a second of the plan, one for each step at least")
+      .positive()
       .show_default();
   parser.add_option("--deadline-ms", o.deadline_ms, "Time one cycle may take; 0: no limit")
       .not_negative()
       .show_default();
+  parser.add_flag("--replan", o.replan,
+                  "Where a plan on legs is blocked, plan on from where the robot has stopped");
   parser
       .add_option("--goal-tolerance", o.goal_tolerance_m,
                   "How far from the plan's goal the base may end, in any direction [m]")

@@ -14,6 +14,9 @@ namespace {
 
 constexpr double kBeyond = std::numeric_limits<double>::infinity();
 constexpr int kSides = 32;
+/// Where a ball has rolled to before a part of a motion begins, and its normal there, is known that
+/// well only.
+constexpr double kRoundingOfParts = 1e-4;
 
 std::string told(const std::string& who, const char* format, double number) {
   char text[96];
@@ -84,8 +87,8 @@ double outside_cone(double friction, const Eigen::Vector3d& force, double weight
   return std::max({0.0, force.head<2>().norm() / friction - force.z(), -force.z()}) / weight_N;
 }
 
-double as_ratio(double used, double outside) {
-  if (outside > limits::kBalanceRounding || std::isnan(outside)) return 1.0 + outside;
+double as_ratio(double used, double outside, double rounding = limits::kBalanceRounding) {
+  if (outside > rounding || std::isnan(outside)) return 1.0 + outside;
   return std::min(1.0, used);
 }
 
@@ -132,9 +135,12 @@ std::string WrenchCheck::why_not() const {
   if (!context_.robot.floating_base()) return "the base is fixed to the world";
   if (!(weight_ > 0.0)) return "no link has a mass";
   if (context_.motion.wrenches.empty()) return "no wrenches are stated";
-  if (!context_.options.starts_at_rest || !context_.options.ends_at_rest)
-    return "it is a part of a motion";
   return "";
+}
+
+bool WrenchCheck::goes_on_beyond(int vertex) const {
+  return (vertex == 0 && !context_.options.starts_at_rest) ||
+         (vertex + 1 == static_cast<int>(context_.vertices()) && !context_.options.ends_at_rest);
 }
 
 void WrenchCheck::run() {
@@ -196,7 +202,7 @@ void WrenchCheck::judge_vertex(int vertex) {
       judge_contact(vertex, bearing.back(), wrenches[k]);
     }
   }
-  judge_balance(vertex, loaded, wrenches);
+  if (!goes_on_beyond(vertex)) judge_balance(vertex, loaded, wrenches);
 }
 
 WrenchCheck::Demand WrenchCheck::demand_at(int vertex) {
@@ -283,7 +289,8 @@ void WrenchCheck::judge_contact(int vertex, const JudgedBearing& bearing, const 
     outside = std::max(outside_cone(effector.friction, wrench.head<3>(), weight_),
                        wrench.tail<3>().norm() / weight_);
   }
-  add(vertex, as_ratio(used, outside),
+  const bool part = !context_.options.starts_at_rest && effector.kind == ContactKind::kPoint;
+  add(vertex, as_ratio(used, outside, part ? kRoundingOfParts : limits::kBalanceRounding),
       (effector.kind == ContactKind::kSurface ? "friction or area of " : "friction of ") + name);
 }
 

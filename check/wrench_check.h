@@ -30,8 +30,9 @@
 ///                force is 1 and that share of W more
 ///   limits       pressing force, components of grasps, and torques where they are enforced
 ///
-/// Friction and areas are those of where the contact bears (bearing_at()). Of a part of a motion
-/// nothing is judged.
+/// Friction and areas are those of where the contact bears (bearing_at()). Where a part of a motion
+/// goes on beyond it nobody knows how it accelerates: what is left over and jumps is not judged
+/// there; and where it begins on the way of a ball, cones of points are judged to 1e-4 W.
 
 #include <locograph/check/check_context.h>
 #include <locograph/check/loaded_contact.h>
@@ -65,6 +66,7 @@ class WrenchCheck {
     Eigen::VectorXd before, after;
   };
 
+  bool goes_on_beyond(int vertex) const;
   void judge_vertex(int vertex);
   void judge_changes(int vertex);
   Demand demand_at(int vertex);

@@ -2,6 +2,7 @@
 #include <locograph/planners/online/local_planner.h>
 #include <locograph/planners/online/window_cause.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace locograph {
@@ -100,6 +101,10 @@ bool LocalPlanner::improve(CycleReport& report, const Termination& termination) 
   const WindowQuality& best = incumbent_.best().quality;
   const bool continued = load_unfinished();
   bool cut_short = false;
+  if (!continued && !proposals_.due() && is_as_planned()) {
+    solver_.offer_state(incumbent_);
+    if (best.feasible()) return false;
+  }
   if (proposals_.due()) {
     solver_.offer_state(incumbent_);
     cut_short = try_proposals(report, termination);
@@ -134,6 +139,16 @@ bool LocalPlanner::load_unfinished() {
   solver_.offer_state(incumbent_);
   warm_start_.load_unfinished(window_);
   solver_.load_state();
+  return true;
+}
+
+/// Whether the window is where it was planned, and was come to as planned. Not on wheels, where a
+/// window has an end that is free.
+bool LocalPlanner::is_as_planned() const {
+  if (plan_.rolls(window_.last())) return false;
+  for (int i = std::max(0, window_.executed() - 1); i <= window_.last(); ++i) {
+    if (!plan_.is_as_planned(i)) return false;
+  }
   return true;
 }
 
@@ -207,7 +222,7 @@ void LocalPlanner::keep_unfinished(bool cut_short) {
 /// Into the graph.
 void LocalPlanner::hand_out_best() {
   solver_.store_state(incumbent_.best().state);
-  plan_.drop_slopes_of_moved(window_.first(), window_.last());
+  plan_.follow_moved(window_.first(), window_.last());
 }
 
 void LocalPlanner::describe_best(CycleReport& report) const {

@@ -50,8 +50,8 @@ struct LocalPlannerOptions {
 
 class LocalPlanner {
  public:
-  /// The graph must outlive the planner. Throws Error for a graph without a plan, for one that
-  /// leaves its wheels, and for options out of range.
+  /// The graph must outlive the planner. Throws Error for what OnlinePlan refuses, and for options
+  /// out of range.
   LocalPlanner(Graph& graph, const LocalPlannerOptions& options);
 
   /// The world that edges and proposals see from the next cycle on; the last one that is shown
@@ -75,6 +75,7 @@ class LocalPlanner {
   void begin(CycleReport& report);
   bool improve(CycleReport& report, const Termination& termination);
   bool load_unfinished();
+  bool is_as_planned() const;
   bool wants_proposals(bool continued) const;
   bool try_proposals(CycleReport& report, const Termination& termination);
   bool try_fallbacks(CycleReport& report, const Termination& termination);

@@ -1,6 +1,8 @@
 #include <locograph/common/error.h>
 #include <locograph/planners/online/heading.h>
 #include <locograph/planners/online/online_plan.h>
+#include <locograph/planners/plan/carried_wrenches.h>
+#include <locograph/planners/plan/slope_limits.h>
 
 #include <algorithm>
 #include <utility>
@@ -8,14 +10,21 @@
 namespace locograph {
 
 OnlinePlan::OnlinePlan(Graph& graph) : graph_(graph), plan_(plan_of(graph)) {
+  if (plan_.stances_only) throw Error("a plan of stances, which has no motions", "a whole plan");
   for (const auto& stance : plan_.stance_from) {
-    if (!stance || stance->wheels.empty()) {
-      throw Error("a configuration of the plan stands on no wheels", "a stance with wheels");
-    }
+    if (!stance) throw Error("a configuration of the plan without a stance", "a stance for each");
+    const auto rolls = [](const auto& wheel) { return !wheel.locked; };
+    rolls_.push_back(std::ranges::any_of(stance->wheels, rolls));
   }
   if (!plan_.world) throw Error("the plan has no world", "a PARAMS_WORLD line");
   world_ = plan_.world;
-  for (int i = 0; i < size(); ++i) planned_.emplace_back(configuration(i));
+  planned_ = motion_of(graph, plan_);
+  borne_at_.assign(plan_.index.configuration.size(), -1);
+  for (int i = 0; i < size(); ++i) {
+    for (const int slot : plan_.index.wrenches[static_cast<std::size_t>(i)]) {
+      borne_at_[static_cast<std::size_t>(slot)] = i;
+    }
+  }
 }
 
 void OnlinePlan::show(std::shared_ptr<const WorldSnapshot> world) {
@@ -48,15 +57,31 @@ double OnlinePlan::time_s(int index) const {
   return graph_.vertex(VertexId<VertexConfiguration>{slot(index)}).time_s;
 }
 
-void OnlinePlan::drop_slopes_of_moved(int first, int last) {
+bool OnlinePlan::is_as_planned(int index) const {
+  constexpr double kSame = 1e-9;  // m, rad
+  const Eigen::VectorXd& planned = planned_.configurations[static_cast<std::size_t>(index)];
+  return (configuration(index) - planned).lpNorm<Eigen::Infinity>() <= kSame;
+}
+
+void OnlinePlan::follow_moved(int first, int last) {
+  bool steps = false;
   for (int i = first; i <= last; ++i) {
-    if (configuration(i) == planned_[static_cast<std::size_t>(i)]) continue;
-    graph_.vertex(VertexId<VertexConfiguration>{slot(i)}).slopes.resize(0);
+    Eigen::VectorXd& slopes = graph_.vertex(VertexId<VertexConfiguration>{slot(i)}).slopes;
+    if (rolls(i)) {
+      if (!is_as_planned(i)) slopes.resize(0);
+      continue;
+    }
+    steps = true;
+    slopes =
+        planned_.slopes.empty() ? Eigen::VectorXd() : planned_.slopes[static_cast<std::size_t>(i)];
   }
+  if (!steps) return;
+  carry_slopes(planned_, plan_, graph_, {first, last});
+  carry_wrenches(planned_, plan_, graph_, {first - 1, last});
 }
 
 double OnlinePlan::behind_m(int index) const {
-  const Eigen::VectorXd& planned = planned_[static_cast<std::size_t>(index)];
+  const Eigen::VectorXd& planned = planned_.configurations[static_cast<std::size_t>(index)];
   const Eigen::Vector3d behind = planned.head<3>() - configuration(index).head<3>();
   const Eigen::Vector3d left = left_of(planned.data());
   return behind.dot(left.cross(Eigen::Vector3d::UnitZ()));
@@ -64,6 +89,7 @@ double OnlinePlan::behind_m(int index) const {
 
 int OnlinePlan::first_index_on(int slot) const {
   if (index_of(slot) >= 0) return index_of(slot);
+  if (borne_at(slot) >= 0) return borne_at(slot);
   int first = size();
   for (const int e : graph_.incident_edges(slot)) {
     for (const int v : graph_.edge_vertices(e)) {

@@ -18,8 +18,8 @@ namespace locograph {
 
 class OnlinePlan {
  public:
-  /// The graph must outlive it, and keep its vertices. Throws Error for a graph without a plan, and
-  /// for a plan without a world or with a configuration that stands on no wheels.
+  /// The graph must outlive it, and keep its vertices. Throws Error for a graph without a plan, for
+  /// a plan of stances, and for one without a world or with a configuration without a stance.
   explicit OnlinePlan(Graph& graph);
 
   int size() const { return static_cast<int>(plan_.slots.size()); }
@@ -28,8 +28,11 @@ class OnlinePlan {
   const Robot& robot() const { return *plan_.robot->robot; }
   Graph& graph() const { return graph_; }
 
+  /// Whether the step from a configuration to the next one rolls on wheels.
+  bool rolls(int index) const { return rolls_[static_cast<std::size_t>(index)]; }
+
   /// Configurations as the plan came.
-  const std::vector<Eigen::VectorXd>& planned() const { return planned_; }
+  const std::vector<Eigen::VectorXd>& planned() const { return planned_.configurations; }
   /// One of them as the graph has it now.
   Eigen::Map<Eigen::VectorXd> configuration(int index);
   Eigen::Map<const Eigen::VectorXd> configuration(int index) const;
@@ -38,9 +41,13 @@ class OnlinePlan {
   bool is_fixed(int index) const { return graph_.vertex_record(slot(index)).fixed; }
   double time_s(int index) const;
 
-  /// Slopes are those of the plan as it came. Takes them away from the configurations first … last
-  /// that are elsewhere now, whose slopes follow from the rule of the curve (motion_curve.h).
-  void drop_slopes_of_moved(int first, int last);
+  /// Whether a configuration is where it was planned, to 1e-9 m and rad.
+  bool is_as_planned(int index) const;
+
+  /// Slopes are those of the plan as it came. Gives the configurations first … last that go with
+  /// where they are now: on wheels those of the rule of the curve (motion_curve.h), on legs the
+  /// plan's carried along (slope_limits.h), and wrenches with them (carried_wrenches.h).
+  void follow_moved(int first, int last);
 
   /// How far a configuration is behind its place in the plan as it came, along its heading [m].
   double behind_m(int index) const;
@@ -48,8 +55,10 @@ class OnlinePlan {
   int slot(int index) const { return plan_.slots[static_cast<std::size_t>(index)]; }
   /// Of the configuration in a slot of the graph; -1 for vertices of other types.
   int index_of(int slot) const { return plan_.index.configuration[static_cast<std::size_t>(slot)]; }
-  /// The same; for a vertex of another type the first configuration that it shares an edge with, -1
-  /// when there is none.
+  /// The configuration that the wrenches in a slot of the graph bear; -1 for other vertices.
+  int borne_at(int slot) const { return borne_at_[static_cast<std::size_t>(slot)]; }
+  /// index_of() or borne_at(); for a vertex of another type the first configuration that it shares
+  /// an edge with, -1 when there is none.
   int first_index_on(int slot) const;
 
   /// The world as it is known now: that of the plan until another one is shown.
@@ -62,7 +71,9 @@ class OnlinePlan {
   Graph& graph_;
   Plan plan_;
   std::shared_ptr<const WorldParameter> world_;
-  std::vector<Eigen::VectorXd> planned_;
+  Motion planned_;
+  std::vector<bool> rolls_;    ///< by configuration
+  std::vector<int> borne_at_;  ///< by slot
 };
 
 }  // namespace locograph

@@ -15,6 +15,9 @@ class SidewaysDetour final : public Proposal {
 
   Answer search(const OnlinePlan& plan, const Window& window, const Termination& termination,
                 std::vector<Eigen::VectorXd>& candidate) override {
+    for (int i = window.executed(); i < window.last(); ++i) {
+      if (!plan.rolls(i)) return Answer::kNone;
+    }
     Detour start = detour_of(plan, window.executed());
     if (!turns_) start.yaw_rad = 0.0;
     const std::vector<Detour> detours = find_detours(plan, window, start, termination);

@@ -4,31 +4,33 @@
 #include <locograph/common/ranges.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/online/window_cause.h>
+#include <locograph/planners/plan/carried_wrenches.h>
+#include <locograph/planners/plan/plan_edges.h>
 #include <locograph/planners/plan/slope_limits.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <sstream>
+#include <utility>
 
 namespace locograph {
 namespace {
 
 /// The first violation for which the judge refused.
 std::string describe(const CheckReport& check) {
-  std::ostringstream text;
-  for (const Violation& violation : check.violations) {
-    if (!violation.violated) continue;
-    text << violation.constraint << " " << violation.worst << " " << violation.unit << " (limit "
-         << violation.limit << ") on the way to the next";
-    break;
-  }
-  return text.str();
+  const auto refused = std::ranges::find_if(check.violations, &Violation::violated);
+  const std::string what =
+      refused == check.violations.end() ? "the judge's refusal" : violation_text(*refused);
+  return what + " on the way to the next";
 }
 
 /// Steps before the executed one are judged with it, at most so many.
 constexpr int kMostVerifiedSteps = 12;
-/// Motions that come to rest within one to so many steps are tried.
+/// Motions that come to rest within one to so many steps are tried: on wheels, and on legs, whose
+/// steps are short.
 constexpr int kMostBrakingSteps = 12;
+constexpr int kFewestBrakingStepsOfLegs = 4, kMostBrakingStepsOfLegs = 64;
 
 /// How many times as fast as another one a slope is, along it; up to twice, as on any ramp.
 double ratio(const Eigen::VectorXd& slope, const Eigen::VectorXd& along) {
@@ -47,6 +49,10 @@ class Walk {
         planned_(motion_of(graph, planner_.plan())) {
     const MotionCurve curve(model_, planned_);
     for (int i = 0; i < planner_.plan_size(); ++i) {
+      if (!rolls(i)) {
+        faster_.push_back(1.0);
+        continue;
+      }
       vertex(i).slopes = curve.slope(i);
       const bool inside = i > 0 && i + 1 < planner_.plan_size();
       faster_.push_back(inside ? ratio(curve.slope(i), careful_slope(model_, planned_, i)) : 0.0);
@@ -61,18 +67,17 @@ class Walk {
     report_.configurations = planner_.plan_size();
   }
 
-  WalkReport run(const WorldAt& world_at) {
-    const Stopwatch watch;
-    if (walk(world_at)) arrive();
-    report_.statistics.iterations = static_cast<int>(report_.cycles.size());
-    report_.statistics.total_s = watch.seconds();
+  /// From a configuration at which the robot is, or is at rest.
+  WalkReport run(int first, const WorldAt& world_at) {
+    verified_to_ = first;
+    if (walk(first, world_at)) arrive();
     return std::move(report_);
   }
 
  private:
   /// Whether every step could be taken.
-  bool walk(const WorldAt& world_at) {
-    for (int executed = 0; executed + 1 < planner_.plan_size(); ++executed) {
+  bool walk(int first, const WorldAt& world_at) {
+    for (int executed = first; executed + 1 < planner_.plan_size(); ++executed) {
       if (ends_at(executed) || !step(executed, world_at)) return false;
     }
     return true;
@@ -81,38 +86,83 @@ class Walk {
   /// Whether the termination ends the walk, which then is where the robot is.
   bool ends_at(int executed) {
     const auto end = end_by(options_.termination, executed);
-    if (end) end_at(executed, *end);
+    if (end) end_at(executed, executed, *end);
     return end.has_value();
   }
 
   bool step(int executed, const WorldAt& world_at) {
     const Stopwatch watch;
-    if (auto world = world_at ? world_at(executed) : nullptr) planner_.show(std::move(world));
+    if (auto world = world_at ? world_at(executed) : nullptr) {
+      planner_.show(std::move(world));
+      verified_to_ = executed;
+    }
     report_.map_update_s.push_back(watch.seconds());
     if (ends_at(executed)) return false;  // meanwhile: to show the world takes its time
     if (options_.pace) {
       go_at(executed, options_.pace(executed));
       if (ends_too_late(executed)) return false;
     }
-    const CycleReport cycle =
-        planner_.cycle(executed, {.deadline = Deadline::of_limit(options_.cycle_deadline_s)});
+    const Passing before = passing(executed);
+    for (int cycle = cycles_of(executed); cycle > 1; --cycle) run_cycle(executed);
+    const CycleReport cycle = run_cycle(executed);
+    std::string refused;
+    if (!cycle.next_feasible) {
+      refused = cycle.reason;
+    } else {
+      pass_through(executed + 1);
+      if (options_.verify) refused = verify(executed);
+    }
+    if (!refused.empty()) {
+      restore(executed, before);  // it bears the step that is not made
+      stop(executed, executed, refused);
+      return false;
+    }
+    if (rolls(executed) || cycle.success()) return true;
+    if (vertex(cycle.violated_at).time_s - vertex(executed).time_s > kDecide_s) return true;
+    if (rests(executed)) restore(executed, before);
+    stop(executed, executed + cycle.feasible_steps, cycle.reason);
+    return false;
+  }
+
+  /// Of the step that begins at a configuration.
+  int cycles_of(int executed) {
+    const auto before = [this](int i) { return std::ceil(vertex(i).time_s * options_.rate_hz); };
+    return std::max(1, static_cast<int>(before(executed + 1) - before(executed)));
+  }
+
+  CycleReport run_cycle(int executed) {
+    CycleReport cycle =
+        planner_.cycle(executed, {.deadline = Deadline::of_limit(options_.cycle_deadline_s),
+                                  .max_iterations = options_.cycle_iterations});
+    if (rolls(executed) || cycle.statistics.iterations > 0) verified_to_ = executed;
     report_.cycles.push_back(cycle);
     report_.feasible_cycles += cycle.success() ? 1 : 0;
     report_.deadline_misses += cycle.deadline_missed ? 1 : 0;
     if (options_.on_cycle) options_.on_cycle(cycle);
-    if (!cycle.next_feasible) {
-      stop(executed, cycle.reason);
-      return false;
-    }
-    pass_through(executed + 1);
-    if (!options_.verify) return true;
-    const Stopwatch verify_watch;
-    const CheckReport check =
-        options_.verify(motion_of(graph_, planner_.plan(), stretch_before(executed), executed + 1));
-    report_.verify_s.push_back(verify_watch.seconds());
-    if (!check.feasible) stop(executed, describe(check));
-    return check.feasible;
+    return cycle;
   }
+
+  /// Why the judge does not let the robot take the step; empty: it does. All of a window that is as
+  /// planned is judged at once, and its steps hold until something changes.
+  std::string verify(int executed) {
+    if (executed < verified_to_) return "";
+    const Stopwatch watch;
+    const auto judged_to = [&](int last) {
+      return options_.verify(motion_of(graph_, planner_.plan(), stretch_before(executed), last));
+    };
+    const bool moved = rolls(executed) || report_.cycles.back().statistics.iterations > 0;
+    const int last = moved ? executed + 1 : planner_.last_of_window(executed);
+    CheckReport check = judged_to(last);
+    if (check.feasible) {
+      verified_to_ = last;
+    } else if (last > executed + 1) {
+      check = judged_to(executed + 1);
+    }
+    report_.verify_s.push_back(watch.seconds());
+    return check.feasible ? "" : describe(check);
+  }
+
+  bool rolls(int i) const { return planner_.online_plan().rolls(i); }
 
   /// The configuration from which the robot has gone the stretch within which slip of wheels
   /// counts.
@@ -152,14 +202,14 @@ class Walk {
     std::ostringstream text;
     text << std::setprecision(10) << "as slow as it goes now, the plan would end at " << end_s
          << " s, which is later than " << ranges::kTime_s << " s";
-    end_at(executed, {PlannerStatus::kNotFound, text.str()});
+    end_at(executed, executed, {PlannerStatus::kNotFound, text.str()});
     return true;
   }
 
   /// Decides how fast the robot passes a configuration: as fast as fits the window after it, and as
   /// fast as the plan did where nothing has moved. Later cycles change the window, but not this.
   void pass_through(int i) {
-    if (i + 1 >= planner_.plan_size()) return;  // at rest
+    if (i + 1 >= planner_.plan_size() || !rolls(i)) return;  // at rest, or as the plan has it
     const Motion around = motion_of(graph_, planner_.plan(), i - 1, i + 1);
     VertexConfiguration& here = vertex(i);
     here.slopes = careful_slope(model_, around, 1) * faster_[static_cast<std::size_t>(i)];
@@ -169,11 +219,13 @@ class Walk {
   }
 
   /// Lets the robot come to rest at a configuration, over some steps: on the same way, slower and
-  /// slower.
-  void brake(int last, int steps) {
+  /// slower. On legs its speed goes with the way x that is left of it as (1 - x²)^(2/3), so that
+  /// forces do not jump.
+  void brake(int last, int steps, bool wheels) {
     double time_s = vertex(last - steps).time_s, before_s = time_s, faster = 1.0;
     for (int i = last - steps + 1; i <= last; ++i) {
-      const double slower = std::sqrt(static_cast<double>(last - i) / steps);
+      const double left = static_cast<double>(last - i) / steps, x = 1.0 - left;
+      const double slower = wheels ? std::sqrt(left) : std::pow(1.0 - x * x, 2.0 / 3.0);
       const double duration_s = vertex(i).time_s - before_s;
       before_s = vertex(i).time_s;
       time_s += duration_s * 2.0 / (faster + slower);
@@ -181,27 +233,108 @@ class Walk {
       vertex(i).slopes *= slower;
       faster = slower;
     }
+    if (wheels) return;
+    balance_wrenches(plan_of_part(0, last), graph_, {last - steps, last - 1});
+    stay(last);
   }
 
-  /// The last configuration, up to `executed`, at which the robot can come to rest; it does so.
-  int come_to_rest(int executed) {
+  /// For balance_wrenches().
+  Plan plan_of_part(int first, int last) const {
+    const Plan& whole = planner_.plan();
+    const auto part = [&](const auto& all) {
+      return std::decay_t<decltype(all)>(all.begin() + first, all.begin() + last + 1);
+    };
+    Plan plan;
+    plan.robot = whole.robot;
+    plan.states_wrenches = whole.states_wrenches;
+    plan.slots = part(whole.slots);
+    plan.stance_from = part(whole.stance_from);
+    plan.index.wrenches = part(whole.index.wrenches);
+    return plan;
+  }
+
+  /// What braking changes.
+  struct Passing {
+    double time_s;
+    Eigen::VectorXd slopes;
+    std::vector<Eigen::VectorXd> wrenches;
+  };
+
+  Passing passing(int i) {
+    Passing now{vertex(i).time_s, vertex(i).slopes, {}};
+    for (const int slot : wrenches_at(i)) {
+      now.wrenches.emplace_back(
+          Eigen::Map<const Eigen::VectorXd>(graph_.state(slot), graph_.state_size(slot)));
+    }
+    return now;
+  }
+
+  void restore(int i, const Passing& before) {
+    vertex(i).time_s = before.time_s;
+    vertex(i).slopes = before.slopes;
+    for (std::size_t k = 0; k < before.wrenches.size(); ++k) {
+      std::ranges::copy(before.wrenches[k], graph_.state(wrenches_at(i)[k]));
+    }
+  }
+
+  const std::vector<int>& wrenches_at(int i) const {
+    return planner_.plan().index.wrenches[static_cast<std::size_t>(i)];
+  }
+
+  int last_rest_before(int i) {
+    do --i;
+    while (i > 0 && !rests(i));
+    return i;
+  }
+
+  bool rests(int i) { return vertex(i).slopes.size() > 0 && vertex(i).slopes.isZero(); }
+
+  /// Where the robot comes to rest, as it does then: on legs as soon as it can after `executed`, up
+  /// to `furthest`; else at the last configuration, up to `executed`, at which it can.
+  int come_to_rest(int executed, int furthest) {
+    for (int steps = kFewestBrakingStepsOfLegs; executed + steps <= furthest; steps += steps / 2) {
+      if (rests(executed)) return stay(executed);
+      if (last_rest_before(executed + steps) > executed) break;
+      if (comes_to_rest(executed + steps, steps, false)) return executed + steps;
+    }
     for (int last = executed; last > 0; --last) {
-      if (vertex(last).slopes.isZero()) return last;
-      for (int steps = 1; steps <= std::min(last, kMostBrakingSteps); ++steps) {
-        const Motion moving = motion_of(graph_, planner_.plan(), last - steps, last);
-        brake(last, steps);
-        if (vertex(last).time_s <= ranges::kTime_s &&
-            (!options_.verify ||
-             options_.verify(motion_of(graph_, planner_.plan(), last - steps, last)).feasible)) {
-          return last;
+      if (rests(last)) return stay(last);
+      if (!rolls(last - 1)) {
+        const int most = std::min(kMostBrakingStepsOfLegs, last - last_rest_before(last));
+        for (int steps = kFewestBrakingStepsOfLegs; steps <= most; steps *= 2) {
+          if (comes_to_rest(last, steps, false)) return last;
         }
-        for (int i = 0; i <= steps; ++i) {
-          vertex(last - steps + i).time_s = moving.time_s[static_cast<std::size_t>(i)];
-          vertex(last - steps + i).slopes = moving.slopes[static_cast<std::size_t>(i)];
+      } else {
+        for (int steps = 1; steps <= std::min(last, kMostBrakingSteps); ++steps) {
+          if (comes_to_rest(last, steps, true)) return last;
         }
       }
     }
     return 0;
+  }
+
+  /// What bears a configuration at which the robot rests does not move it.
+  int stay(int at) {
+    balance_wrenches(plan_of_part(at, at), graph_, {0, 0});
+    return at;
+  }
+
+  /// Whether the judge lets the robot brake so; else nothing changes.
+  bool comes_to_rest(int last, int steps, bool wheels) {
+    std::vector<Passing> moving;
+    for (int i = last - steps; i <= last; ++i) moving.push_back(passing(i));
+    brake(last, steps, wheels);
+    // Where braking begins forces may jump.
+    const int first = wheels ? last - steps : std::max(0, last - steps - 2);
+    if (vertex(last).time_s <= ranges::kTime_s &&
+        (!options_.verify ||
+         options_.verify(motion_of(graph_, planner_.plan(), first, last)).feasible)) {
+      return true;
+    }
+    for (int i = 0; i <= steps; ++i) {
+      restore(last - steps + i, moving[static_cast<std::size_t>(i)]);
+    }
+    return false;
   }
 
   void measure_goal(int at) {
@@ -232,25 +365,25 @@ class Walk {
     return executed;
   }
 
-  void stop(int executed, const std::string& symptom) {
+  void stop(int executed, int furthest, const std::string& symptom) {
     const std::string cause = cause_after(executed);
-    end_at(executed, {PlannerStatus::kNotFound,
-                      (cause.empty() ? "" : cause + "; what gave way is ") + symptom});
+    end_at(
+        executed, furthest,
+        {PlannerStatus::kNotFound, (cause.empty() ? "" : cause + "; what gave way is ") + symptom});
   }
 
   /// The rest of the plan is removed, and the robot comes to rest: where it is, or earlier.
-  void end_at(int arrived, const PlannerAnswer& why) {
-    const int executed = come_to_rest(arrived);
+  void end_at(int arrived, int furthest, const PlannerAnswer& why) {
+    const int executed = come_to_rest(arrived, furthest);
+    report_.stopped_at = executed;
     measure_goal(executed);
     report_.status = why.status;
     report_.reason = "stopped at configuration " + std::to_string(executed) + ": " + why.reason +
                      "; after " + std::to_string(executed) + " of " +
                      std::to_string(planner_.plan_size() - 1) + " steps, " + goal_text() +
                      " from the goal";
-    const Plan plan = planner_.plan();
-    for (int i = executed + 1; i < planner_.plan_size(); ++i) graph_.remove_vertex(plan.slots[i]);
+    cut_plan(graph_, planner_.plan(), executed);
     report_.configurations = executed + 1;
-    mark_incomplete(graph_);
   }
 
   void arrive() {
@@ -280,13 +413,28 @@ class Walk {
   const Motion planned_;
   std::vector<double> faster_;  // than careful, of slopes of the plan
   double pace_ = 1.0;           // how many times as long as planned steps take
+  int verified_to_ = 0;         // steps up to this configuration hold for the judge
   WalkReport report_;
 };
+
+/// Adds what a walk did before it stopped and was planned on.
+void put_before(const WalkReport& before, WalkReport& report) {
+  const auto join = [](const auto& first, auto& then) {
+    then.insert(then.begin(), first.begin(), first.end());
+  };
+  join(before.cycles, report.cycles);
+  join(before.map_update_s, report.map_update_s);
+  join(before.verify_s, report.verify_s);
+  report.feasible_cycles += before.feasible_cycles;
+  report.deadline_misses += before.deadline_misses;
+  report.resumed = before.resumed + 1;
+}
 
 }  // namespace
 
 void WalkOptions::validate() const {
   planner.validate();
+  check_option(rate_hz >= 0.0, "rate_hz", "0 (one cycle for each step) or more");
   check_option(goal_tolerance_m >= 0.0, "goal_tolerance_m", "0 or more");
   check_option(goal_tolerance_rad >= 0.0, "goal_tolerance_rad", "0 or more");
   check_option(cycle_deadline_s >= 0.0, "cycle_deadline_s", "0 (none) or more");
@@ -295,7 +443,29 @@ void WalkOptions::validate() const {
 
 WalkReport walk_plan(Graph& graph, const WorldAt& world_at, const WalkOptions& options) {
   options.validate();
-  return Walk(graph, options).run(world_at);
+  const Stopwatch watch;
+  std::shared_ptr<const WorldSnapshot> newest;
+  bool goes_on = false;
+  const WorldAt shown = [&](int executed) {
+    std::shared_ptr<const WorldSnapshot> world = world_at ? world_at(executed) : nullptr;
+    if (world) newest = world;
+    if (std::exchange(goes_on, false)) world = newest;
+    return world;
+  };
+  WalkReport report = Walk(graph, options).run(0, shown);
+  while (options.resume && report.stopped_at && report.resumed < options.most_resumed &&
+         !options.termination.stopped()) {
+    std::optional<Graph> resumed = options.resume(graph);
+    if (!resumed) break;
+    graph = std::move(*resumed);
+    goes_on = true;
+    WalkReport more = Walk(graph, options).run(*report.stopped_at, shown);
+    put_before(report, more);
+    report = std::move(more);
+  }
+  report.statistics.iterations = static_cast<int>(report.cycles.size());
+  report.statistics.total_s = watch.seconds();
+  return report;
 }
 
 }  // namespace locograph

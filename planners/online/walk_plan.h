@@ -1,11 +1,13 @@
 #pragma once
-/// A simulation that uses the local planner: walks along a plan as if a robot executed it, with one
-/// cycle of the planner at each step. The command `refine`.
+/// A simulation that uses the local planner: walks along a plan as if a robot executed it, with a
+/// cycle of the planner or more at each step. The command `refine`.
 ///
 ///     WalkOptions options;
 ///     options.verify = [&](const Motion& step) { return judge.check(step, limits); };
 ///     WalkReport report = walk_plan(graph, world_seen_at, options);
 ///
+/// On legs the robot begins to come to rest kDecide_s before what it finds no way past, as long as
+/// forces allow; on wheels, and where there is no time for that, it is as if it had braked before.
 /// Stops before a configuration that cannot be made feasible: the rest of the plan is removed from
 /// the graph, which is marked as incomplete (plan_parameters.h), and the report tells the obstacle
 /// (window_cause.h) and how far the robot got. A plan that is feasible but does not end at its
@@ -18,18 +20,26 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 namespace locograph {
 
 struct WalkOptions {
   LocalPlannerOptions planner = {};
+  /// Cycles in a second of the plan: one for each step at least, and no more than that when 0.
+  double rate_hz = 0.0;
   /// How far from where it was planned the last configuration's base may end, in any direction.
   /// A plan that ends further away than the judge takes for a goal (limits.h) is marked incomplete.
   double goal_tolerance_m = limits::kGoal_m;
   double goal_tolerance_rad = limits::kGoal_rad;
   double cycle_deadline_s = 0.0;  ///< for one cycle; 0: none
+  int cycle_iterations = 0;  ///< of one cycle at most, which the next one continues; 0: no limit
   /// Of the walk, which ends between two cycles where the robot is.
   Termination termination = {};
+  /// Asked where a robot on legs has stopped: the plan as far as it was executed, and how it goes
+  /// on from there (resumed_plan.h). Nothing: the walk ends. May be empty.
+  std::function<std::optional<Graph>(const Graph& stopped)> resume = {};
+  int most_resumed = 5;  ///< how often
   /// Called after each cycle, e.g. to show progress; may be empty.
   std::function<void(const CycleReport&)> on_cycle = {};
   /// The independent verdict on the motion from the executed configuration to the next, before it
@@ -53,12 +63,17 @@ struct WalkReport : PlannerAnswer {
   int dof = 0;
   int feasible_cycles = 0;
   int deadline_misses = 0;
-  int configurations = 0;        ///< left in the plan
-  double short_of_goal_m = 0.0;  ///< how far the last configuration is behind where it was planned
+  std::optional<int> stopped_at;  ///< before the end of the plan
+  int resumed = 0;                ///< how often the plan was planned on
+  int configurations = 0;         ///< left in the plan
+  double short_of_goal_m = 0.0;   ///< how far the last configuration is behind where it was planned
   /// From the base of the last configuration that is left to that of the plan's goal.
   double goal_distance_m = 0.0, goal_angle_rad = 0.0;
   PlannerStatistics statistics;  ///< iterations: cycles
 };
+
+/// How far ahead of a violation of its window a robot on legs decides to stop [s].
+inline constexpr double kDecide_s = 0.8;
 
 /// The world as it is seen when the robot is at configuration `executed`; null: nothing new.
 using WorldAt = std::function<std::shared_ptr<const WorldSnapshot>(int executed)>;

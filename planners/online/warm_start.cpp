@@ -12,6 +12,7 @@ Eigen::VectorXd WarmStart::planned_step_with_drift(int index, const Eigen::Vecto
   const Robot& robot = plan_.robot();
   const std::vector<Eigen::VectorXd>& planned = plan_.planned();
   const auto i = static_cast<std::size_t>(index);
+  if (!plan_.rolls(index - 1)) return planned[i];
   Eigen::VectorXd step(robot.tangent_size()), planned_before(robot.tangent_size());
   robot.difference(planned[i - 1].data(), planned[i].data(), step.data());
   if (before_that != nullptr) {

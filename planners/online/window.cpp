@@ -38,7 +38,7 @@ void Window::move_to(int executed) {
     for (const int e : plan_.graph().incident_edges(plan_.slot(i))) {
       for (const int v : plan_.graph().edge_vertices(e)) {
         const int index = plan_.index_of(v);
-        if (contains(index) || index >= end_) continue;
+        if (contains(index) || (index >= end_ && plan_.rolls(end_ - 1))) continue;
         if (index < 0 && owns(v)) {
           add_once(free_, v);
         } else {
@@ -49,8 +49,9 @@ void Window::move_to(int executed) {
   }
 }
 
-/// Whether all configurations that share an edge with a vertex of another type lie in the window.
+/// Whether the window decides a vertex of another type.
 bool Window::owns(int slot) const {
+  if (const int borne = plan_.borne_at(slot); borne >= 0) return borne >= executed_ && borne < end_;
   for (const int e : plan_.graph().incident_edges(slot)) {
     for (const int v : plan_.graph().edge_vertices(e)) {
       if (plan_.index_of(v) >= 0 && !contains(plan_.index_of(v))) return false;

@@ -6,10 +6,12 @@
 ///     problem.compile(graph, window.free_vertices(), window.held_vertices());
 ///
 /// A half-open range of plan indices that slides with the executed configuration. Its
-/// configurations are free, and so are vertices of other types whose configurations all lie in it.
-/// Held are the executed configuration, earlier ones that edges tie to the window (rolling,
-/// velocity, acceleration), and vertices that the window shares with configurations outside. Edges
-/// that reach beyond the end of the window do not count.
+/// configurations are free, and so are the wrenches that bear them or the executed one, and
+/// vertices of other types whose configurations all lie in it. Held are the executed configuration,
+/// earlier ones that edges tie to the window (rolling, velocity, acceleration), and vertices that
+/// the window shares with configurations outside. On wheels edges that reach beyond the end of the
+/// window do not count: a detour may be longer. On legs configurations after it that edges tie to
+/// it are held, where they are now.
 ///
 /// Moving it takes time and memory by its length, not by that of the plan.
 

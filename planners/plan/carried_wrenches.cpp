@@ -20,10 +20,12 @@ constexpr double kLeftOver = 0.9 * limits::kWrenchLeftOver;
 
 class CarriedWrenches {
  public:
-  CarriedWrenches(const Plan& plan, Graph& graph)
+  /// around: the configurations that may be asked about, and two more on either side.
+  CarriedWrenches(const Plan& plan, Graph& graph, const PlanRange& around)
       : plan_(plan),
         graph_(graph),
-        motion_(motion_of(graph, plan)),
+        first_(around.first),
+        motion_(motion_of(graph, plan, around.first, around.last)),
         curve_(*plan.robot->robot, motion_),
         dynamics_(*plan.robot->robot),
         state_(plan.robot),
@@ -31,9 +33,9 @@ class CarriedWrenches {
 
   const Motion& motion() const { return motion_; }
 
-  void balance(std::size_t i) {
-    state_.update(motion_.configurations[i].data());
-    for (const int slot : plan_.index.wrenches[i]) {
+  void balance(int i) {
+    state_.update(motion_.configurations[static_cast<std::size_t>(i - first_)].data());
+    for (const int slot : plan_.index.wrenches[static_cast<std::size_t>(i)]) {
       VertexWrenches& vertex = graph_.vertex(VertexId<VertexWrenches>{slot});
       WrenchesState wrenches = vertex.make_derived();
       vertex.derive(vertex.state.data(), wrenches);
@@ -45,11 +47,11 @@ class CarriedWrenches {
 
  private:
   /// What the curve asks of the base beyond gravity, less what the wrenches do beyond it.
-  BaseLoad left_over(std::size_t i, const WrenchesState& wrenches) {
+  BaseLoad left_over(int i, const WrenchesState& wrenches) {
     BaseLoad borne;
     balance_of_base("wrenches", state_, wrenches, borne);
-    const bool first = i == 0, last = i + 1 == plan_.slots.size();
-    const int vertex = static_cast<int>(i);
+    const bool first = i == 0, last = i + 1 == static_cast<int>(plan_.slots.size());
+    const int vertex = i - first_;
     const BaseLoad before = first ? rest() : asked(vertex - 1, 1.0);
     const BaseLoad after = last ? rest() : asked(vertex, 0.0);
     const BaseLoad jump = after - before;
@@ -100,7 +102,8 @@ class CarriedWrenches {
 
   const Plan& plan_;
   Graph& graph_;
-  const Motion motion_;
+  int first_;
+  const Motion motion_;  // from configuration first_ on
   const MotionCurve curve_;
   RobotDynamics dynamics_;
   ConfigurationState state_;
@@ -108,14 +111,32 @@ class CarriedWrenches {
   double weight_N_;
 };
 
+/// Calls f(carried, i) for each configuration of a range.
+template <class F>
+void for_each_in(const PlanRange& range, const Plan& plan, Graph& graph, F&& f) {
+  if (plan.stances_only || !plan.states_wrenches) return;
+  constexpr int kBeside = 2;  // slopes by rule have vertices on both sides
+  const int end = static_cast<int>(plan.slots.size()) - 1;
+  const PlanRange around = {std::max(range.first - kBeside, 0),
+                            std::min(range.last + kBeside, end)};
+  CarriedWrenches carried(plan, graph, around);
+  for (int i = std::max(range.first, 0); i <= std::min(range.last, end); ++i) f(carried, i);
+}
+
 }  // namespace
 
 void carry_wrenches(const Motion& before, const Plan& plan, Graph& graph) {
-  if (plan.stances_only || !plan.states_wrenches) return;
-  CarriedWrenches carried(plan, graph);
-  for (std::size_t i = 0; i < plan.slots.size(); ++i) {
-    if (moved_around(before, carried.motion(), i)) carried.balance(i);
-  }
+  carry_wrenches(before, plan, graph, {0, static_cast<int>(plan.slots.size()) - 1});
+}
+
+void carry_wrenches(const Motion& before, const Plan& plan, Graph& graph, const PlanRange& range) {
+  for_each_in(range, plan, graph, [&](CarriedWrenches& carried, int i) {
+    if (moved_around(before, plan, graph, i)) carried.balance(i);
+  });
+}
+
+void balance_wrenches(const Plan& plan, Graph& graph, const PlanRange& range) {
+  for_each_in(range, plan, graph, [](CarriedWrenches& carried, int i) { carried.balance(i); });
 }
 
 }  // namespace locograph

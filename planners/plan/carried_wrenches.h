@@ -25,7 +25,10 @@ namespace locograph {
 /// Changes the wrenches of configurations that moved, or have a neighbour that did; those of others
 /// stay as they are. Where the curve's acceleration jumps, the nearest between both sides counts,
 /// as the judge has it. Plans of stances stay as they are. before: the plan's motion before, with
-/// the same times.
-void carry_wrenches(const Motion& before, const Plan& plan, Graph& graph);
+/// the same times. range: of the configurations that are looked at.
+void carry_wrenches(const Motion& before, const Plan& plan, Graph& graph, const PlanRange& range);
+void carry_wrenches(const Motion& before, const Plan& plan, Graph& graph);  ///< of all
+/// The same of every configuration in the range, also where only times have changed.
+void balance_wrenches(const Plan& plan, Graph& graph, const PlanRange& range);
 
 }  // namespace locograph

@@ -1,6 +1,7 @@
 #include <locograph/planners/plan/plan.h>
 #include <locograph/planners/plan/plan_edges.h>
 #include <locograph/plugins/acceleration_limits/edge_acceleration_limits.h>
+#include <locograph/plugins/configuration/segment_parameter.h>
 #include <locograph/plugins/contact/edge_contact.h>
 #include <locograph/plugins/joint_limits/edge_joint_limits.h>
 #include <locograph/plugins/obstacle_distance/edge_obstacle_distance.h>
@@ -513,6 +514,38 @@ bool add_configurations(Graph& graph, const Motion& motion, const std::vector<in
 bool add_plan_edges(Graph& graph, const PlanEdgeOptions& options,
                     const std::vector<StanceWrenches>& wrenches, const JobControl& job) {
   return PlanEdges(graph, options, job).add(wrenches);
+}
+
+void cut_plan(Graph& graph, const Plan& plan, int last) {
+  const auto at = static_cast<std::size_t>(last);
+  // Balance in motion goes with the next configuration.
+  for (const EdgeMovingBalance& moving : graph.edges_of<EdgeMovingBalance>()) {
+    if (moving.vertices[0] != plan.slots[at] || at + 1 == plan.slots.size()) continue;
+    const EdgeBalance resting(moving.weights[0], moving.weights[3]);
+    graph.add_edge(resting, Configuration{plan.slots[at]},
+                   VertexId<VertexWrenches>{moving.vertices[1]});
+    break;
+  }
+  for (std::size_t i = at + 1; i < plan.slots.size(); ++i) {
+    for (const int slot : plan.index.wrenches[i]) graph.remove_vertex(slot);
+    graph.remove_vertex(plan.slots[i]);
+  }
+  std::vector<int> numbers;
+  for (const int number : graph.parameters().numbers_of<SegmentParameter>()) {
+    numbers.push_back(number);
+  }
+  for (const int number : numbers) {
+    const auto given = graph.parameters().get<SegmentParameter>(number);
+    const PlanSegment& segment = plan.segments.at(static_cast<std::size_t>(given->segment));
+    if (segment.first >= last) {
+      graph.parameters().remove(number);
+    } else if (segment.last > last) {
+      const auto shorter = std::make_shared<SegmentParameter>(*given);
+      shorter->duration_s = graph.vertex(Configuration{plan.slots[at]}).time_s - shorter->from_s;
+      graph.parameters().replace(number, shorter);
+    }
+  }
+  mark_incomplete(graph);
 }
 
 }  // namespace locograph

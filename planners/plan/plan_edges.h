@@ -22,6 +22,7 @@
 #include <locograph/check/motion.h>
 #include <locograph/common/job_control.h>
 #include <locograph/core/graph.h>
+#include <locograph/planners/plan/plan.h>
 
 #include <vector>
 
@@ -99,5 +100,9 @@ bool add_configurations(Graph& graph, const Motion& motion, const std::vector<in
 /// configurations or contacts. Returns false when the job ended before the plan was whole.
 bool add_plan_edges(Graph& graph, const PlanEdgeOptions& options,
                     const std::vector<StanceWrenches>& wrenches = {}, const JobControl& job = {});
+
+/// Ends a plan at one of its configurations, where it comes to rest: removes the later ones and
+/// what bears them, and marks it incomplete. The plan is that of the graph as it was.
+void cut_plan(Graph& graph, const Plan& plan, int last);
 
 }  // namespace locograph

@@ -4,6 +4,22 @@
 #include <algorithm>
 
 namespace locograph {
+namespace {
+
+Motion without_slopes(const Motion& motion, const PlanRange& range) {
+  Motion part;
+  part.stances = motion.stances;
+  part.stances_only = motion.stances_only;
+  for (int i = range.first; i <= range.last; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    part.time_s.push_back(motion.time_s[at]);
+    part.configurations.push_back(motion.configurations[at]);
+    part.stance_from.push_back(motion.stance_from[at]);
+  }
+  return part;
+}
+
+}  // namespace
 
 Eigen::VectorXd careful_slope(const Robot& robot, const Motion& motion, int vertex) {
   const auto first = static_cast<std::size_t>(vertex) - 1;
@@ -49,30 +65,41 @@ Motion motion_of_slopes(const Graph& graph, const Plan& plan) {
   return off(planned) < off(is) ? planned : is;
 }
 
-bool moved_around(const Motion& before, const Motion& after, std::size_t vertex) {
+bool moved_around(const Motion& before, const Plan& plan, const Graph& graph, int i) {
   constexpr double kMoved = 1e-9;
-  const std::size_t last = std::min(vertex + 2, before.configurations.size());
-  for (std::size_t i = vertex == 0 ? 0 : vertex - 1; i < last; ++i) {
-    const Eigen::VectorXd by = after.configurations[i] - before.configurations[i];
-    if (by.lpNorm<Eigen::Infinity>() > kMoved) return true;
+  const int end = static_cast<int>(plan.slots.size()) - 1;
+  for (int k = std::max(i - 1, 0); k <= std::min(i + 1, end); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const int slot = plan.slots[at];
+    const Eigen::Map<const Eigen::VectorXd> is(graph.state(slot), graph.state_size(slot));
+    if ((is - before.configurations[at]).lpNorm<Eigen::Infinity>() > kMoved) return true;
   }
   return false;
 }
 
 void carry_slopes(const Motion& before, const Plan& plan, Graph& graph) {
+  carry_slopes(before, plan, graph, {0, static_cast<int>(plan.slots.size()) - 1});
+}
+
+void carry_slopes(const Motion& before, const Plan& plan, Graph& graph, const PlanRange& range) {
   const Robot& robot = *plan.robot->robot;
-  Motion rule_before = before, rule_after = motion_of(graph, plan);
-  rule_before.slopes.clear();
+  const int end = static_cast<int>(plan.slots.size()) - 1;
+  const PlanRange around = {std::max(range.first - 1, 0), std::min(range.last + 1, end)};
+  const Motion rule_before = without_slopes(before, around);
+  Motion rule_after = motion_of(graph, plan, around.first, around.last);
   rule_after.slopes.clear();
   const MotionCurve was(robot, rule_before), is(robot, rule_after);
-  for (std::size_t i = 1; i + 1 < plan.slots.size(); ++i) {
-    Eigen::VectorXd& slope = graph.vertex(VertexId<VertexConfiguration>{plan.slots[i]}).slopes;
-    if (slope.size() == 0 || slope.isZero() || !moved_around(before, rule_after, i)) continue;
-    const double step_s =
-        std::max(before.time_s[i] - before.time_s[i - 1], before.time_s[i + 1] - before.time_s[i]);
+  for (int i = around.first + 1; i < around.last; ++i) {
+    const int vertex = i - around.first;
+    const auto at = static_cast<std::size_t>(vertex);
+    Eigen::VectorXd& slope =
+        graph.vertex(VertexId<VertexConfiguration>{plan.slots[static_cast<std::size_t>(i)]}).slopes;
+    if (slope.size() == 0 || slope.isZero() || !moved_around(before, plan, graph, i)) continue;
+    const std::vector<double>& time_s = rule_before.time_s;
+    const double step_s = std::max(time_s[at] - time_s[at - 1], time_s[at + 1] - time_s[at]);
     if (!(step_s > 0.0)) continue;
-    slope += is.slope(static_cast<int>(i)) - was.slope(static_cast<int>(i));
-    keep_within_limits(robot, rule_after.configurations[i], step_s, slope);
+    slope += is.slope(vertex) - was.slope(vertex);
+    keep_within_limits(robot, rule_after.configurations[at], step_s, slope);
   }
 }
 

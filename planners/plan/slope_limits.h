@@ -26,6 +26,11 @@
 
 namespace locograph {
 
+/// Configurations of a plan, the last one included.
+struct PlanRange {
+  int first = 0, last = 0;
+};
+
 /// The slope at a vertex, neither first nor last, whatever slope the motion has there.
 Eigen::VectorXd careful_slope(const Robot& robot, const Motion& motion, int vertex);
 
@@ -34,15 +39,17 @@ Eigen::VectorXd careful_slope(const Robot& robot, const Motion& motion, int vert
 /// is so where configurations were disturbed and slopes were not. All with the slopes of the plan.
 Motion motion_of_slopes(const Graph& graph, const Plan& plan);
 
-/// Whether a vertex or one beside it is elsewhere in a motion with as many, by more than 1e-9 m or
-/// rad.
-bool moved_around(const Motion& before, const Motion& after, std::size_t vertex);
+/// Whether configuration i of a plan or one beside it is elsewhere than in the plan's motion
+/// before, by more than 1e-9 m or rad.
+bool moved_around(const Motion& before, const Plan& plan, const Graph& graph, int i);
 
 /// Gives a plan whose configurations were moved the slopes that go with them: at each configuration
 /// that moved, or has a neighbour that did, what a stored slope was away from the rule of the curve
 /// it stays away, within limits of joints. A configuration at rest stays at rest, as do both ends.
 /// Slopes by the rule follow by themselves. before: the plan's motion before, with the same times.
-void carry_slopes(const Motion& before, const Plan& plan, Graph& graph);
+/// range: of the configurations that are looked at.
+void carry_slopes(const Motion& before, const Plan& plan, Graph& graph, const PlanRange& range);
+void carry_slopes(const Motion& before, const Plan& plan, Graph& graph);  ///< of all
 
 /// Slows joints of a configuration within limits. slope as Motion::slopes; step_s > 0 is the longer
 /// one of the steps on both sides. A joint that is at its limit, or beyond it, does not move.

@@ -350,7 +350,8 @@ TEST(PlanCommands, PlanNamesLinksThatTouchNothing) {
 
 TEST(PlanCommands, RefinePrintsOneJsonObjectWithEveryField) {
   const PlanRunner runner;
-  const Outcome outcome = runner.run("refine plan.g2o -o refined.g2o --horizon 10 --json");
+  const Outcome outcome =
+      runner.run("refine plan.g2o -o refined.g2o --horizon 10 --rate 0.1 --json");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   const nlohmann::json json = outcome.json();
@@ -358,6 +359,7 @@ TEST(PlanCommands, RefinePrintsOneJsonObjectWithEveryField) {
   EXPECT_EQ(json["status"], "solved");
   EXPECT_TRUE(json["reason"].is_string());
   EXPECT_EQ(json["cycles"], 49);
+  EXPECT_EQ(json["rate_hz"], 0.1);
   EXPECT_EQ(json["horizon"], 10);
   EXPECT_EQ(json["dof"], 30);
   EXPECT_EQ(json["feasible_cycles"], 49);
@@ -370,6 +372,22 @@ TEST(PlanCommands, RefinePrintsOneJsonObjectWithEveryField) {
     }
     EXPECT_LE(json[times]["mean"].get<double>(), before) << times;
   }
+}
+
+/// A ball that hangs where COMAN+ moves its right leg two seconds later.
+const char kBall[] =
+    "<obstacles version='1'>\n<sphere name='ball' center='0.872 -0.266 0.5' radius='0.135' "
+    "appears='7.8'/>\n</obstacles>\n";
+
+TEST(PlanCommands, RefinePlansOnWhereARobotOnLegsHadToStop) {
+  const CommandRunner runner;
+  ASSERT_EQ(runner.run("plan standing_up --seed 9511 -o plan.g2o").exit_code, 0);
+  runner.write("ball.xml", kBall);
+  const Outcome arrived =
+      runner.run("refine plan.g2o --obstacles ball.xml --replan -o arrived.g2o --json");
+  EXPECT_EQ(arrived.exit_code, 0) << arrived.err << arrived.out;
+  EXPECT_GE(arrived.json()["resumed"], 1);
+  EXPECT_EQ(runner.run("check arrived.g2o").exit_code, 0);
 }
 
 TEST(PlanCommands, ARefinedPlanPassesTheBoxAndTakesItsWorldAlong) {
@@ -515,15 +533,30 @@ TEST(PlanCommands, RefuseAMapOfAnotherTypeAndObstaclesThatAreNone) {
 
 TEST(PlanCommands, RefuseWrongUsageInOneLineAndWriteNothing) {
   const PlanRunner runner;
-  for (const char* usage :
-       {"plan", "plan centauro_drive", "plan nonsense -o out.g2o",
-        "plan centauro_drive -o none/out.g2o", "plan centauro_drive -o out.g2o --timeout -1",
-        "refine plan.g2o", "refine plan.g2o -o none/out.g2o",
-        "refine plan.g2o -o out.g2o --horizon 0", "refine plan.g2o -o out.g2o --horizon -3",
-        "refine plan.g2o -o out.g2o --horizon many", "refine plan.g2o -o out.g2o --deadline-ms -1",
-        "refine plan.g2o -o out.g2o --threads 0", "check", "check plan.g2o --clearance -1",
-        "check plan.g2o --bogus", "check plan.g2o --torque-limits no",
-        "check plan.g2o --until soon", "check plan.g2o --scenario nonsense"}) {
+  for (const char* usage : {"plan",
+                            "plan centauro_drive",
+                            "plan nonsense -o out.g2o",
+                            "plan centauro_drive -o none/out.g2o",
+                            "plan centauro_drive -o out.g2o --timeout -1",
+                            "refine plan.g2o",
+                            "refine plan.g2o -o none/out.g2o",
+                            "refine plan.g2o -o out.g2o --horizon 0",
+                            "refine plan.g2o -o out.g2o --horizon -3",
+                            "refine plan.g2o -o out.g2o --horizon many",
+                            "refine plan.g2o -o out.g2o --horizon -2s",
+                            "refine plan.g2o -o out.g2o --horizon 1000s",
+                            "refine plan.g2o -o out.g2o --horizon 50",
+                            "refine plan.g2o -o out.g2o --rate 0",
+                            "refine plan.g2o -o out.g2o --rate nan",
+                            "refine plan.g2o -o out.g2o --replan",
+                            "refine plan.g2o -o out.g2o --deadline-ms -1",
+                            "refine plan.g2o -o out.g2o --threads 0",
+                            "check",
+                            "check plan.g2o --clearance -1",
+                            "check plan.g2o --bogus",
+                            "check plan.g2o --torque-limits no",
+                            "check plan.g2o --until soon",
+                            "check plan.g2o --scenario nonsense"}) {
     SCOPED_TRACE(usage);
     expect_refusal(runner.run(usage), "", "");
   }

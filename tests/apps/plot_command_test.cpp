@@ -61,7 +61,9 @@ TEST(Plot, RefineReportsTheTimesOfItsCycles) {
   ASSERT_EQ(refined.exit_code, 0) << refined.err;
   EXPECT_EQ(refined.json()["cycle_times"].size(), refined.json()["cycles"]);
   runner.write("r.json", refined.out);
-  EXPECT_TRUE(contains(plot(runner, "r.json"), "49 cycles"));
+  EXPECT_GT(refined.json()["cycles"], 49) << "more than one for each step";
+  EXPECT_TRUE(contains(plot(runner, "r.json"),
+                       std::to_string(refined.json()["cycles"].get<int>()) + " cycles"));
 }
 
 TEST(Plot, ConstraintsOfACheckAndAPlanAgainstItsLimits) {

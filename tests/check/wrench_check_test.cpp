@@ -97,9 +97,23 @@ TEST_F(Stated, PlansWithoutWrenchesAreNotRefused) {
   none.wrenches.clear();
   EXPECT_FALSE(judged(none).judged);
   EXPECT_EQ(judged(none).why_not, "no wrenches are stated");
+}
+
+TEST_F(Stated, OfAPartAreJudgedButForBalanceWhereItGoesOn) {
   CheckOptions part;
-  part.starts_at_rest = false;
-  EXPECT_EQ(judged(motion(), part).why_not, "it is a part of a motion");
+  part.starts_at_rest = part.ends_at_rest = false;
+  Motion lies = motion();
+  EXPECT_FALSE(judged(lies, part).violated);
+  const std::size_t last = lies.wrenches.size() - 1;
+  // Nobody knows how it moves on.
+  lies.wrenches[0][0][2] *= 1.0 + 2e-3;
+  lies.wrenches[last][0][2] *= 1.0 + 2e-3;
+  EXPECT_TRUE(judged(lies).violated);
+  EXPECT_TRUE(judged(lies, part).judged);
+  EXPECT_FALSE(judged(lies, part).violated);
+  lies.wrenches[3][0][2] *= 1.0 + 2e-3;
+  EXPECT_EQ(judged(lies, part).at_vertex, 3);
+  EXPECT_TRUE(judged(lies, part).violated);
 }
 
 TEST_F(Stated, WhatDoesNotBalanceIsRefused) {

@@ -30,6 +30,7 @@
 #include <locograph/planners/offline/stance/started_task.h>
 #include <locograph/planners/offline/timing/path_timing.h>
 #include <locograph/planners/online/camera_walk.h>
+#include <locograph/planners/online/resumed_plan.h>
 #include <locograph/planners/online/sideways_detour.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/judging.h>
@@ -543,6 +544,20 @@ struct Context : DriveContext {
   WalkOptions options;
 };
 }  // namespace online_camera_walk_h
+namespace online_resumed_plan_h {
+/// COMAN+ at rest in its start, which is all of its plan.
+struct Context {
+  const Task task = started_task(load_scenario("standing_up", data_folder())).task;
+  Graph graph, stopped_graph;
+  std::shared_ptr<const WorldSnapshot> world_now = task.world;
+  Context() {
+    MotionPlan plan;
+    plan.motion = stances_motion({task.start}, {task.start_configuration});
+    plan.motion.stances_only = false;
+    stopped_graph = motion_graph(task, plan);
+  }
+};
+}  // namespace online_resumed_plan_h
 namespace online_walk_plan_h {
 /// Nothing new is seen.
 struct Context : DriveContext {

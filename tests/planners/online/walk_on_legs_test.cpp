@@ -1,0 +1,244 @@
+// Plans on legs under the online planner: left as they are, stopped before what is in the way, and
+// planned on from there.
+#include <gtest/gtest.h>
+#include <locograph/planners/offline/motion/motion_graph.h>
+#include <locograph/planners/offline/motion/motion_planner.h>
+#include <locograph/planners/offline/stance/stance_graph.h>
+#include <locograph/planners/online/resumed_plan.h>
+#include <locograph/planners/online/walk_plan.h>
+#include <locograph/planners/plan/judging.h>
+#include <locograph/plugins/static_balance/vertex_wrenches.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "common/sanitized.h"
+#include "planners/stance_tasks.h"
+
+namespace locograph::test {
+namespace {
+
+class WalkOnLegs : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    if (kSanitized) return;
+    task_ = std::make_shared<const Task>(started_task(changed_scenario("standing_up", {})).task);
+    plan_ = std::make_shared<const MotionPlan>(plan_motion(*task_, {.seed = 1}));
+  }
+  static void TearDownTestSuite() {
+    plan_.reset();
+    task_.reset();
+  }
+  void SetUp() override {
+    if (kSanitized) GTEST_SKIP() << "takes long there";
+    ASSERT_TRUE(plan_->success()) << plan_->reason;
+    graph_ = motion_graph(*task_, *plan_);
+  }
+
+  const Motion& planned() const { return plan_->motion; }
+  Motion now() const { return motion_of(graph_, plan_of(graph_)); }
+
+  /// How far the robot is from a ball, as its spheres are, at one of its configurations.
+  double clearance(const Obstacle& ball, std::size_t i) const {
+    RobotState state(*task_->robot->robot);
+    state.update(planned().configurations[i].data());
+    double least = std::numeric_limits<double>::infinity();
+    for (const CollisionSphere& sphere : task_->robot->spheres) {
+      const Eigen::Vector3d centre = state.world_from_link(sphere.link) * sphere.center;
+      least = std::min(least, ball.distance(centre, 0.0) - sphere.radius);
+    }
+    return least;
+  }
+
+  /// A ball in the way of the head, the first that the robot is clear of 1.5 s before, when it sees
+  /// it, and at its goal.
+  Obstacle in_the_way() {
+    Obstacle ball;
+    ball.name = "ball";
+    ball.shape = Obstacle::Shape::kSphere;
+    ball.size.x() = 0.1;
+    RobotState state(*task_->robot->robot);
+    const int head = task_->robot->robot->link_index("Head");
+    const std::vector<double>& time_s = planned().time_s;
+    for (std::size_t at = 0; at < time_s.size(); at += 20) {
+      seen_s_ = time_s[at] - 1.5;
+      if (seen_s_ < 1.0) continue;
+      state.update(planned().configurations[at].data());
+      ball.world_from_obstacle.translation() = state.world_from_link(head).translation();
+      const auto seen =
+          static_cast<std::size_t>(std::ranges::lower_bound(time_s, seen_s_) - time_s.begin());
+      if (clearance(ball, seen) > 0.05 && clearance(ball, 0) > 0.05 &&
+          clearance(ball, time_s.size() - 1) > 0.05) {
+        ball.appears_s = seen_s_;
+        return ball;
+      }
+    }
+    ADD_FAILURE() << "the head never moves far enough";
+    return ball;
+  }
+
+  WalkReport walk(const std::vector<Obstacle>& obstacles, WalkOptions options = {}) {
+    World seen, truth = task_->world->world();
+    seen.obstacles = truth.obstacles = obstacles;
+    for (Obstacle& obstacle : seen.obstacles) obstacle.appears_s = -1e9;
+    judging_ = judging_of(task_);
+    judging_.world = std::make_shared<const WorldSnapshot>(std::move(truth));
+    options.planner.horizon_s = 2.0;
+    options.cycle_iterations = 1;
+    options.verify = step_check(judging_);
+    DistanceFieldOptions view;
+    if (const auto ground = plan_of(graph_).world->ground_z_m) view.ground_z = *ground;
+    const auto known = std::make_shared<const WorldSnapshot>(seen, 0.0, WorldFiles(), view);
+    bool shown = obstacles.empty();
+    return walk_plan(
+        graph_,
+        [&](int executed) -> std::shared_ptr<const WorldSnapshot> {
+          if (shown || planned().time_s[static_cast<std::size_t>(executed)] < seen_s_) return {};
+          shown = true;
+          return known;
+        },
+        options);
+  }
+
+  CheckReport check() {
+    const Plan plan = plan_of(graph_);
+    judging_.incomplete = plan.incomplete;
+    return judged(graph_, plan, judging_);
+  }
+
+  static std::shared_ptr<const Task> task_;
+  static std::shared_ptr<const MotionPlan> plan_;
+  Graph graph_;
+  Judging judging_;
+  double seen_s_ = 0.0;
+};
+
+std::shared_ptr<const Task> WalkOnLegs::task_;
+std::shared_ptr<const MotionPlan> WalkOnLegs::plan_;
+
+TEST_F(WalkOnLegs, LeavesAPlanInAnEmptyWorldAsItIsAtAnyRate) {
+  for (const double rate_hz : {0.0, 130.0}) {
+    graph_ = motion_graph(*task_, *plan_);
+    const WalkReport report = walk({}, {.rate_hz = rate_hz});
+    ASSERT_TRUE(report.success()) << report.reason;
+    const double steps = static_cast<double>(planned().configurations.size()) - 1.0;
+    const double cycles = static_cast<double>(report.cycles.size());
+    if (rate_hz > 0.0) {
+      EXPECT_NEAR(cycles, rate_hz * planned().time_s.back(), 0.2 * cycles);
+    } else {
+      EXPECT_EQ(cycles, steps);
+    }
+    EXPECT_EQ(report.feasible_cycles, static_cast<int>(report.cycles.size()));
+    const Motion after = now();
+    ASSERT_EQ(after.configurations.size(), planned().configurations.size());
+    for (std::size_t i = 0; i < after.configurations.size(); ++i) {
+      EXPECT_EQ(after.time_s[i], planned().time_s[i]);
+      EXPECT_LE((after.configurations[i] - planned().configurations[i]).lpNorm<Eigen::Infinity>(),
+                1e-6);
+      EXPECT_LE((after.slopes[i] - planned().slopes[i]).lpNorm<Eigen::Infinity>(), 1e-6);
+    }
+  }
+}
+
+TEST_F(WalkOnLegs, StopsAtRestBeforeWhatIsInTheWay) {
+  const WalkReport report = walk({in_the_way()});
+  EXPECT_FALSE(report.success());
+  EXPECT_NE(report.reason.find("near an obstacle on its way (ball)"), std::string::npos)
+      << report.reason;
+  const Motion stopped = now();
+  EXPECT_EQ(report.configurations, static_cast<int>(stopped.configurations.size()));
+  EXPECT_LT(report.configurations, static_cast<int>(planned().configurations.size()));
+  EXPECT_GT(stopped.time_s.back(), seen_s_);
+  EXPECT_TRUE(stopped.slopes.back().isZero(0.0));
+  EXPECT_TRUE(plan_of(graph_).incomplete);
+  const CheckReport report_of_judge = check();
+  EXPECT_TRUE(report_of_judge.feasible) << violation_text(report_of_judge.worst());
+  EXPECT_TRUE(report_of_judge.constraint("plan_wrenches").judged);
+  EXPECT_GT(report_of_judge.min_clearance_m.value_or(0.0), 0.0);
+  // What was executed before it was seen is as it was planned.
+  for (std::size_t i = 0; planned().time_s[i] < seen_s_; ++i) {
+    EXPECT_EQ(stopped.configurations[i], planned().configurations[i]) << i;
+    EXPECT_EQ(stopped.time_s[i], planned().time_s[i]) << i;
+  }
+}
+
+TEST_F(WalkOnLegs, IsPlannedOnFromWhereItHasStopped) {
+  const std::vector<Obstacle> obstacles = {in_the_way()};
+  int asked = 0, executed = 0;
+  Motion stopped;
+  WalkOptions options;
+  options.resume = [&](const Graph& cut) -> std::optional<Graph> {
+    ++asked;
+    const Plan plan = plan_of(cut);
+    stopped = motion_of(cut, plan);
+    executed = static_cast<int>(plan.slots.size());
+    ResumedPlan resumed = resume_plan(cut, *task_,
+                                      std::make_shared<const WorldSnapshot>(world_at_rest(
+                                          judging_.world->world(), stopped.time_s.back())),
+                                      {.seed = 1});
+    EXPECT_TRUE(resumed.success()) << resumed.reason;
+    return std::move(resumed.graph);
+  };
+  const WalkReport report = walk(obstacles, options);
+  ASSERT_TRUE(report.success()) << report.reason;
+  EXPECT_EQ(report.resumed, asked);
+  EXPECT_GE(asked, 1);
+  const CheckReport report_of_judge = check();
+  EXPECT_TRUE(report_of_judge.feasible) << violation_text(report_of_judge.worst());
+  EXPECT_EQ(report_of_judge.ends->goals_reached, report_of_judge.ends->goals);
+  const Motion whole = now();
+  ASSERT_GT(whole.configurations.size(), static_cast<std::size_t>(executed));
+  for (std::size_t i = 0; i < static_cast<std::size_t>(executed); ++i) {
+    EXPECT_EQ(whole.configurations[i], stopped.configurations[i]) << i;
+  }
+}
+
+TEST_F(WalkOnLegs, SaysWhyItIsNotPlannedOn) {
+  // Where the robot is to put a foot.
+  Obstacle block = in_the_way();
+  block.name = "block";
+  block.shape = Obstacle::Shape::kBox;
+  block.size.setConstant(0.4);
+  block.world_from_obstacle.translation() = task_->goals.back().contacts.front().position;
+  WalkOptions options;
+  PlannerAnswer answer;
+  options.resume = [&](const Graph& cut) -> std::optional<Graph> {
+    ResumedPlan resumed =
+        resume_plan(cut, *task_,
+                    std::make_shared<const WorldSnapshot>(
+                        world_at_rest(judging_.world->world(), plan_->motion.time_s.back())),
+                    {.seed = 1, .termination = {.max_iterations = 200}, .max_transitions = 50});
+    answer = resumed;
+    EXPECT_FALSE(resumed.graph.has_value());
+    return std::move(resumed.graph);
+  };
+  const WalkReport report = walk({block}, options);
+  EXPECT_FALSE(report.success());
+  EXPECT_EQ(report.resumed, 0);
+  EXPECT_FALSE(answer.success());
+  EXPECT_FALSE(answer.reason.empty());
+  EXPECT_TRUE(check().feasible);
+}
+
+TEST_F(WalkOnLegs, PlansOfStancesAreRefused) {
+  Graph stances = stance_graph(*task_, plan_->stances);
+  EXPECT_THROW(LocalPlanner(stances, {}), Error);
+}
+
+TEST(WorldAtRest, IsWhatIsThereThen) {
+  Obstacle cart, later;
+  cart.size.setConstant(0.1);
+  cart.motion = {KeyFrame{2.0, Eigen::Isometry3d(Eigen::Translation3d(2.0, 0.0, 0.0))}};
+  later.size.setConstant(0.1);
+  later.appears_s = 5.0;
+  World world;
+  world.obstacles = {cart, later};
+  const World now = world_at_rest(world, 1.0);
+  ASSERT_EQ(now.obstacles.size(), 1u);
+  EXPECT_TRUE(now.obstacles[0].motion.empty());
+  EXPECT_NEAR(now.obstacles[0].world_from_obstacle.translation().x(), 1.0, 1e-12);
+  EXPECT_EQ(world_at_rest(world, 6.0).obstacles.size(), 2u);
+}
+
+}  // namespace
+}  // namespace locograph::test
