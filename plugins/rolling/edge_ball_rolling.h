@@ -24,7 +24,7 @@ struct EdgeBallRolling : WeightedEdge<3, VertexConfiguration, VertexConfiguratio
   static constexpr std::string_view kTag = "EDGE_BALL_ROLLING";
   static constexpr ConstraintKind kConstraint = ConstraintKind::kEquality;
   /// m; the judge allows 1 mm of slip while the ball is held, and 1e-4 m of height.
-  static constexpr double kTolerance = 3e-5;
+  static constexpr double kSlipTolerance = 1e-4, kHeightTolerance = 3e-5;
   int contact_number = 0;
   std::shared_ptr<const ContactParameter> contact;  ///< looked up by bind()
   std::optional<BallTrack> track;                   ///< likewise
@@ -39,6 +39,7 @@ struct EdgeBallRolling : WeightedEdge<3, VertexConfiguration, VertexConfiguratio
              Eigen::Ref<Eigen::Vector3d> e) const;
   void jacobians(const ConfigurationState& a, const ConfigurationState& b,
                  JacobianRef<EdgeBallRolling, 0> ja, JacobianRef<EdgeBallRolling, 1> jb) const;
+  double row_tolerance(int row) const { return row < 2 ? kSlipTolerance : kHeightTolerance; }
   RowLabel row_label(int row) const;
 
  private:

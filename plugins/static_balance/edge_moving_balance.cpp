@@ -117,7 +117,8 @@ void EdgeMovingBalance::error(const ConfigurationState& here, const WrenchesStat
 double EdgeMovingBalance::row_tolerance(int, const VertexConfiguration& here, const VertexWrenches&,
                                         const VertexConfiguration&,
                                         const VertexConfiguration&) const {
-  return balance_tolerance(*here.robot->robot);
+  constexpr double kOfCurve = 2.5;  // the parabola is not the curve, which plans' wrenches go with
+  return kOfCurve * balance_tolerance(*here.robot->robot);
 }
 
 void EdgeMovingBalance::jacobians(const ConfigurationState& here, const WrenchesState& wrenches,

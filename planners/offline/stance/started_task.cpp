@@ -4,6 +4,7 @@
 #include <locograph/planners/posture/posture_solver.h>
 #include <locograph/planners/scenario/contact_place.h>
 #include <locograph/planners/task/task_stances.h>
+#include <locograph/robots/robot_state.h>
 
 #include <algorithm>
 #include <cmath>
@@ -60,6 +61,25 @@ void require_sound_goals(const Scenario& scenario, const Task& task) {
       }
     });
   }
+}
+
+/// Soles whose direction in their plane is left open are held and put down as the robot has them at
+/// its start: a sole that is held does not turn from one transition to the next.
+void direct_soles(Task& task) {
+  constexpr double kLeast = 1e-3;  // of a unit vector along the plane
+  RobotState state(*task.robot->robot);
+  state.update(task.start_configuration.data());
+  const auto direct = [&](Contact& contact) {
+    const EndEffector& sole = contact.effector;
+    if (sole.kind != ContactKind::kSurface || contact.forward) return;
+    const int link = task.robot->robot->link_index(sole.link);
+    const Eigen::Vector3d along = state.world_from_link(link).linear() * axes_in_link(sole).col(0);
+    const Eigen::Vector3d normal = contact.normal.normalized();
+    const Eigen::Vector3d forward = along - along.dot(normal) * normal;
+    if (forward.norm() > kLeast) contact.forward = forward.normalized();
+  };
+  std::ranges::for_each(task.start.contacts, direct);
+  for (Stance& goal : task.goals) std::ranges::for_each(goal.contacts, direct);
 }
 
 /// Finds a configuration that stands at the start, the given one if it does. Returns why there is
@@ -136,7 +156,10 @@ StartedTask started_task(const Scenario& scenario, const ContactMoves& moves,
       given = given_configuration(scenario, robot, task.start);
     });
     const std::string reason = find_start(judge, given, deadline, started);
-    if (reason.empty()) return started;
+    if (reason.empty()) {
+      direct_soles(task);
+      return started;
+    }
     if (moved && task.moves.draws < kMostDraws) continue;
     throw Error(scenario.source, start_line, "no configuration stands at the start: " + reason,
                 "contacts that can be held");

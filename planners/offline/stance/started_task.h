@@ -22,6 +22,9 @@ struct StartedTask {
 /// joints, contacts that are on nothing, and a start for which no configuration is found: with the
 /// line and by how much.
 ///
+/// Soles of start and goals without a direction `forward` get the one that they have in the start
+/// configuration.
+///
 /// moves: of the contacts, see task_stances.h; its draws are found, not asked for. A start in which
 /// no configuration is found to stand is drawn again, up to kMostDraws times in all, as without one
 /// there is no task; goals are not, whether they can be reached or not.

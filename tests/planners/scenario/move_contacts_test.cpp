@@ -175,6 +175,25 @@ double furthest_m(const Stance& a, Stance b) {
   return most;
 }
 
+/// Else each transition would choose one, and a sole that is held turn meanwhile.
+TEST(StartedTask, GivesSolesTheDirectionThatTheyHaveAtTheStart) {
+  Scenario scenario = test::changed_scenario("standing_up", {});
+  const Task given = started_task(scenario).task;
+  for (Stance* stance : {&scenario.contacts->start, &scenario.contacts->goals.back()}) {
+    for (Contact& contact : stance->contacts) contact.forward.reset();
+  }
+  const Task open = started_task(scenario).task;
+  for (const char* foot : {"left_foot", "right_foot"}) {
+    Stance start = open.start, goal = open.goals.back(), start_given = given.start;
+    const auto forward = test::contact_of(start, foot).forward;
+    ASSERT_TRUE(forward && test::contact_of(goal, foot).forward) << foot;
+    EXPECT_LT(angle_between(*forward, *test::contact_of(start_given, foot).forward), 5e-3);
+    EXPECT_LT(angle_between(*forward, *test::contact_of(goal, foot).forward), 1e-9);
+  }
+  Stance start = open.start;
+  EXPECT_FALSE(test::contact_of(start, "left_hand").forward) << "a ball turns";
+}
+
 TEST(MovedTask, HasOtherContactsOnTheSameSurfacesAndAStartThatStands) {
   constexpr double kFar_m = 0.02;
   const Scenario scenario = test::changed_scenario("standing_up", {});
