@@ -16,6 +16,7 @@
 #include <locograph/planners/offline/stance/stance_graph.h>
 #include <locograph/planners/offline/stance/stance_planners.h>
 #include <locograph/planners/offline/stance/started_task.h>
+#include <locograph/planners/offline/stance/unheld_goal.h>
 
 #include <algorithm>
 #include <optional>
@@ -31,6 +32,7 @@ struct ContactTaskPlan {
   MotionPlan motion;
   std::optional<Graph> graph;  ///< nothing: the time was used up before the search began
   StartedTask started;
+  std::optional<UnheldGoal> unheld;  ///< then nothing was looked for
   int improved = 0;
   double total_s = 0.0;
 
@@ -84,6 +86,23 @@ void plan_whole_motion(const PlanOptions& options, const StancePlannerOptions& a
   plan.graph = motion_graph(task, plan.motion);
 }
 
+/// There is no use in looking for a way to a goal that no posture holds.
+void stay_at_start(const PlanOptions& options, ContactTaskPlan& plan) {
+  const Task& task = plan.started.task;
+  StancePlan& stances = plan.motion.stances;
+  stances.stances = {task.start};
+  stances.configurations = {task.start_configuration};
+  plan.motion.status = stances.status = PlannerStatus::kNotFound;
+  plan.motion.reason = stances.reason = plan.unheld->text;
+  if (options.stances_only) {
+    plan.graph = stance_graph(task, stances);
+    return;
+  }
+  plan.motion.motion = stances_motion(stances);
+  plan.motion.motion.stances_only = false;
+  plan.graph = motion_graph(task, plan.motion);
+}
+
 /// finish: from when on there is something to keep when it is asked to stop.
 ContactTaskPlan plan_of_task(const Scenario& scenario, const PlanOptions& options,
                              std::optional<FinishOnSignal>& finish) {
@@ -103,6 +122,12 @@ ContactTaskPlan plan_of_task(const Scenario& scenario, const PlanOptions& option
   finish.emplace();
   asked.termination.stop = &stop_flag();
   progress.emplace("planning " + options.scenario);
+  plan.unheld = unheld_goal(plan.started.task, asked.termination.deadline);
+  if (plan.unheld) {
+    stay_at_start(options, plan);
+    plan.total_s = total.seconds();
+    return plan;
+  }
   if (options.stances_only) {
     plan_stances_only(options, asked, plan);
   } else {
@@ -231,6 +256,10 @@ Json answer_json(const PlanOptions& options, const ContactTaskPlan& plan) {
   if (options.move_contacts_m > 0.0) {
     json["moved_contacts"] = {{"up_to_m", options.move_contacts_m},
                               {"start_draws", started.task.moves.draws}};
+  }
+  if (plan.unheld && !plan.unheld->contact.empty()) {
+    const Eigen::Vector3d& by = plan.unheld->move_m;
+    json["move"] = {{"contact", plan.unheld->contact}, {"by_m", {by.x(), by.y(), by.z()}}};
   }
   if (!motion.success()) {
     json["best"] = {{"stances", stances.stances.size()},

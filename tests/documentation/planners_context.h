@@ -28,6 +28,7 @@
 #include <locograph/planners/offline/stance/stance_tree.h>
 #include <locograph/planners/offline/stance/standing_wheels.h>
 #include <locograph/planners/offline/stance/started_task.h>
+#include <locograph/planners/offline/stance/unheld_goal.h>
 #include <locograph/planners/offline/timing/path_timing.h>
 #include <locograph/planners/online/camera_walk.h>
 #include <locograph/planners/online/resumed_plan.h>
@@ -365,6 +366,9 @@ struct Context : TransitionContext {
   const double mass_kg = robot->robot->total_mass();
 };
 }  // namespace offline_stance_transition_task_h
+namespace offline_stance_unheld_goal_h {
+using Context = StepContext;
+}
 namespace offline_motion_motion_graph_h {
 struct Context : StepContext {
   const MotionPlan plan = plan_motion(task, {.seed = 7});
