@@ -3,6 +3,7 @@
 #include <locograph/planners/offline/motion/motion_graph.h>
 #include <locograph/planners/offline/motion/motion_loads.h>
 #include <locograph/planners/offline/motion/motion_planner.h>
+#include <locograph/planners/offline/stance/unheld_goal.h>
 #include <locograph/planners/online/resumed_plan.h>
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
@@ -201,6 +202,12 @@ ResumedPlan resume_plan(const Graph& stopped, const Task& task,
   CheckOptions going_on = task.check;
   going_on.starts_at_rest = false;  // balls are on their way
   ResumedPlan resumed;
+  if (const auto unheld = unheld_goal(rest, options.termination.deadline)) {
+    resumed.status = PlannerStatus::kNotFound;
+    resumed.reason = unheld->text;
+    resumed.total_s = watch.seconds();
+    return resumed;
+  }
   StancePlannerOptions asked = options;
   for (int tried = 0; tried < kMostTried && !resumed.graph; ++tried, ++asked.seed) {
     if (tried > 0 && options.termination.ended()) break;

@@ -113,21 +113,8 @@ StancePlan StanceSearch::result() {
   return plan;
 }
 
-std::string StanceSearch::why_none_stands(const Stance& goal) {
-  constexpr int kAttempts = 2;
-  std::string reason;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    const StanceSpace::Attempt found = space_.stand(goal, taken_.configurations.back(), attempt);
-    if (found.found) return "";
-    if (reason.empty()) reason = found.reason;
-  }
-  return reason;
-}
-
 void StanceSearch::explain(StancePlan& plan) {
   const std::size_t goals = task_.goals.size();
-  const std::string none_stands =
-      why_none_stands(task_.goals[static_cast<std::size_t>(plan.goals_reached)]);
   std::string& reason = plan.reason;
   reason = goals > 1 ? "goal " + std::to_string(plan.goals_reached + 1) + " of " +
                            std::to_string(goals) + " is not reached"
@@ -137,9 +124,6 @@ void StanceSearch::explain(StancePlan& plan) {
     reason += ": " + end->reason;
   } else if (space_.tried_enough()) {
     reason += ": the transitions allowed are used up (allow more)";
-  }
-  if (!none_stands.empty()) {
-    reason += "; no posture was found that holds the goal's contacts: " + none_stands;
   }
   if (refused_ > 0) {
     reason += "; refused: " + std::to_string(refused_) +

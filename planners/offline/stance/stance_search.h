@@ -65,8 +65,6 @@ class StanceSearch {
   void count_refused(const std::string& reason);
   /// Why the goal after those that are reached is not.
   void explain(StancePlan& plan);
-  /// Why no posture was found in the goal's stance; empty: one was.
-  std::string why_none_stands(const Stance& goal);
 
   const Task& task_;
   const StancePlannerOptions options_;
