@@ -219,8 +219,8 @@ class Walk {
   }
 
   /// Lets the robot come to rest at a configuration, over some steps: on the same way, slower and
-  /// slower. On legs its speed goes with the way x that is left of it as (1 - x²)^(2/3), so that
-  /// forces do not jump.
+  /// slower. On legs its speed goes with the share x of the way that it has gone as
+  /// (1 - x²)^(2/3), so that forces do not jump.
   void brake(int last, int steps, bool wheels) {
     double time_s = vertex(last - steps).time_s, before_s = time_s, faster = 1.0;
     for (int i = last - steps + 1; i <= last; ++i) {
@@ -434,7 +434,9 @@ void put_before(const WalkReport& before, WalkReport& report) {
 
 void WalkOptions::validate() const {
   planner.validate();
-  check_option(rate_hz >= 0.0, "rate_hz", "0 (one cycle for each step) or more");
+  constexpr double kMostRate_Hz = 1e5;
+  check_option(rate_hz >= 0.0 && rate_hz <= kMostRate_Hz, "rate_hz",
+               "0 (one cycle for each step) to 1e5");
   check_option(goal_tolerance_m >= 0.0, "goal_tolerance_m", "0 or more");
   check_option(goal_tolerance_rad >= 0.0, "goal_tolerance_rad", "0 or more");
   check_option(cycle_deadline_s >= 0.0, "cycle_deadline_s", "0 (none) or more");

@@ -547,6 +547,7 @@ TEST(PlanCommands, RefuseWrongUsageInOneLineAndWriteNothing) {
                             "refine plan.g2o -o out.g2o --horizon 1000s",
                             "refine plan.g2o -o out.g2o --horizon 50",
                             "refine plan.g2o -o out.g2o --rate 0",
+                            "refine plan.g2o -o out.g2o --rate 1e9",
                             "refine plan.g2o -o out.g2o --rate nan",
                             "refine plan.g2o -o out.g2o --replan",
                             "refine plan.g2o -o out.g2o --deadline-ms -1",
