@@ -32,7 +32,7 @@ struct ContactTaskPlan {
   MotionPlan motion;
   std::optional<Graph> graph;  ///< nothing: the time was used up before the search began
   StartedTask started;
-  std::optional<UnheldGoal> unheld;  ///< then nothing was looked for
+  std::optional<UnheldGoal> unheld;
   int improved = 0;
   double total_s = 0.0;
 
@@ -86,22 +86,9 @@ void plan_whole_motion(const PlanOptions& options, const StancePlannerOptions& a
   plan.graph = motion_graph(task, plan.motion);
 }
 
-/// There is no use in looking for a way to a goal that no posture holds.
-void stay_at_start(const PlanOptions& options, ContactTaskPlan& plan) {
-  const Task& task = plan.started.task;
-  StancePlan& stances = plan.motion.stances;
-  stances.stances = {task.start};
-  stances.configurations = {task.start_configuration};
-  plan.motion.status = stances.status = PlannerStatus::kNotFound;
-  plan.motion.reason = stances.reason = plan.unheld->text;
-  if (options.stances_only) {
-    plan.graph = stance_graph(task, stances);
-    return;
-  }
-  plan.motion.motion = stances_motion(stances);
-  plan.motion.motion.stances_only = false;
-  plan.graph = motion_graph(task, plan.motion);
-}
+/// Transitions that are worth while towards a goal that no posture holds, for the part of the way
+/// that there is: where it is the only one, and where others come before it.
+constexpr int kTowardsUnheld = 500, kTowardsUnheldAfterOthers = 5000;
 
 /// finish: from when on there is something to keep when it is asked to stop.
 ContactTaskPlan plan_of_task(const Scenario& scenario, const PlanOptions& options,
@@ -124,14 +111,19 @@ ContactTaskPlan plan_of_task(const Scenario& scenario, const PlanOptions& option
   progress.emplace("planning " + options.scenario);
   plan.unheld = unheld_goal(plan.started.task, asked.termination.deadline);
   if (plan.unheld) {
-    stay_at_start(options, plan);
-    plan.total_s = total.seconds();
-    return plan;
+    const int worth_while = plan.unheld->goal == 0 ? kTowardsUnheld : kTowardsUnheldAfterOthers;
+    asked.max_transitions =
+        asked.max_transitions > 0 ? std::min(asked.max_transitions, worth_while) : worth_while;
   }
   if (options.stances_only) {
     plan_stances_only(options, asked, plan);
   } else {
     plan_whole_motion(options, asked, plan);
+  }
+  if (plan.unheld) {
+    for (std::string* reason : {&plan.motion.reason, &plan.motion.stances.reason}) {
+      *reason += "; " + plan.unheld->text;
+    }
   }
   plan.total_s = total.seconds();
   return plan;

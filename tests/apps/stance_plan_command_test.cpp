@@ -176,6 +176,9 @@ TEST(StancePlanCommand, AnIncompletePlanIsWrittenAndCheckSaysSo) {
       "the goal is not reached: the transitions allowed are used up (allow more); "))
       << reason;
   EXPECT_NE(reason.find("left_hand"), std::string::npos) << reason;
+  EXPECT_NE(reason.find("no posture is found that holds the goal ("), std::string::npos) << reason;
+  EXPECT_EQ(json["move"]["contact"], "left_hand");
+  EXPECT_EQ(json["move"]["by_m"].size(), 3u);
   EXPECT_EQ(json["best"]["goal_contacts_reached"], 3);
   EXPECT_TRUE(json["best"]["stances"].is_number_integer());
   ASSERT_TRUE(runner.exists("part.g2o"));

@@ -1,6 +1,6 @@
 #pragma once
 /// Whether a posture holds the goals of a contact task, and which contact to move where none is
-/// found: asked before stances are looked for, which cannot get to such a goal.
+/// found: asked before stances are looked for, which get no nearer to such a goal in the end.
 ///
 ///     if (const std::optional<UnheldGoal> unheld = unheld_goal(task)) {
 ///       std::cerr << unheld->text << '\n';   // no posture is found that holds the goal …
