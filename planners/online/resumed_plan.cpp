@@ -11,7 +11,6 @@
 #include <locograph/robots/rolling_ball.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <set>
 #include <utility>
@@ -19,7 +18,7 @@
 namespace locograph {
 namespace {
 
-constexpr double kDwellStep_s = 0.1;
+constexpr double kLeastDwell_s = 0.1;
 /// Seeds, from that of the options on.
 constexpr int kMostTried = 3;
 
@@ -86,31 +85,24 @@ class Continuation {
   /// The last configuration, while forces go over to those of the motion that follows.
   void stand(const Motion& then) {
     Motion& motion = whole_.motion;
-    const Eigen::VectorXd q = motion.configurations.back();
     const int last = static_cast<int>(motion.configurations.size()) - 1;
-    StanceWrenches from, to;
-    double duration_s = std::max(task_.margin.dwell_s, kDwellStep_s);
+    Dwell dwell{.configuration = motion.configurations.back(),
+                .stance = stands_in_,
+                .begin_s = motion.time_s.back(),
+                .least_s = std::max(task_.margin.dwell_s, kLeastDwell_s)};
     if (with_wrenches_) {
-      from = motion.wrenches.back();
-      to = reordered(then.wrenches.front(),
-                     then.stances[static_cast<std::size_t>(then.stance_from.front())],
-                     touched_down_);
-      duration_s = std::max(duration_s, loads_.change(from, to) / kFastestLoad);
+      dwell.from = motion.wrenches.back();
+      dwell.to = reordered(then.wrenches.front(),
+                           then.stances[static_cast<std::size_t>(then.stance_from.front())],
+                           touched_down_);
+      motion.wrenches.pop_back();
     }
-    const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / kDwellStep_s - 1e-9)));
-    const double begin_s = motion.time_s.back();
-    motion.slopes.back() = Eigen::VectorXd::Zero(task_.robot->robot->tangent_size());
-    for (int i = 1; i < steps; ++i) {
-      const double share = static_cast<double>(i) / steps;
-      motion.time_s.push_back(begin_s + share * duration_s);
-      motion.configurations.push_back(q);
-      motion.slopes.push_back(motion.slopes.back());
-      motion.stance_from.push_back(stands_in_);
-      if (!with_wrenches_) continue;
-      StanceWrenches& now = motion.wrenches.emplace_back(from);
-      for (std::size_t c = 0; c < now.size(); ++c) now[c] += share * (to[c] - from[c]);
-    }
-    begin_s_ = begin_s + duration_s;
+    motion.configurations.pop_back();  // the dwell begins with it
+    motion.slopes.pop_back();
+    motion.stance_from.pop_back();
+    motion.time_s.pop_back();
+    const double duration_s = loads_.append(dwell, motion);
+    begin_s_ = dwell.begin_s + duration_s;
     const int end = static_cast<int>(motion.configurations.size());
     if (!whole_.segments.empty() && whole_.segments.back().last == last) {
       whole_.segments.back().last = end;

@@ -31,8 +31,6 @@ class CarriedWrenches {
         state_(plan.robot),
         weight_N_(plan.robot->robot->total_mass() * standard_gravity().norm()) {}
 
-  const Motion& motion() const { return motion_; }
-
   void balance(int i) {
     state_.update(motion_.configurations[static_cast<std::size_t>(i - first_)].data());
     for (const int slot : plan_.index.wrenches[static_cast<std::size_t>(i)]) {

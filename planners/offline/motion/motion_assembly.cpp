@@ -2,13 +2,10 @@
 #include <locograph/planners/offline/motion/motion_assembly.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace locograph {
 namespace {
-
-constexpr double kDwellStep_s = 0.1;
 
 /// Whether the stance after segment j has one contact more than its own.
 bool gains(const StancePath& path, std::size_t j) {
@@ -125,15 +122,13 @@ void MotionAssembly::append(int stance, const Eigen::VectorXd& q, Eigen::VectorX
 /// Stands while forces go over, for as long as the margin says, or longer where they need it.
 void MotionAssembly::dwell(const Eigen::VectorXd& q, const StanceWrenches& from,
                            const StanceWrenches& to, SegmentRecord& record) {
-  const double duration_s = std::max(task_.margin.dwell_s, loads_.change(from, to) / kFastestLoad);
-  const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / kDwellStep_s - 1e-9)));
-  for (int i = 0; i < steps; ++i) {
-    const double share = static_cast<double>(i) / steps;
-    append(record.stance, q, Eigen::VectorXd::Zero(task_.robot->robot->tangent_size()));
-    motion_->time_s.push_back(time_s_ + share * duration_s);
-    StanceWrenches& now = motion_->wrenches.emplace_back(from);
-    for (std::size_t c = 0; c < now.size(); ++c) now[c] += share * (to[c] - from[c]);
-  }
+  const double duration_s = loads_.append({.configuration = q,
+                                           .stance = record.stance,
+                                           .from = from,
+                                           .to = to,
+                                           .begin_s = time_s_,
+                                           .least_s = task_.margin.dwell_s},
+                                          *motion_);
   time_s_ += duration_s;
   record.duration_s += duration_s;
 }

@@ -4,6 +4,7 @@
 #include <locograph/robots/statics.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace locograph {
 
@@ -49,6 +50,23 @@ double MotionLoads::change(const StanceWrenches& from, const StanceWrenches& to)
     most = std::max(most, (to[c].head<3>() - from[c].head<3>()).norm() / weight_N);
   }
   return most;
+}
+
+double MotionLoads::append(const Dwell& dwell, Motion& motion) const {
+  constexpr double kStep_s = 0.1;
+  const double duration_s = std::max(dwell.least_s, change(dwell.from, dwell.to) / kFastestLoad);
+  const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / kStep_s - 1e-9)));
+  for (int i = 0; i < steps; ++i) {
+    const double share = static_cast<double>(i) / steps;
+    motion.configurations.push_back(dwell.configuration);
+    motion.slopes.push_back(still_);
+    motion.stance_from.push_back(dwell.stance);
+    motion.time_s.push_back(dwell.begin_s + share * duration_s);
+    if (dwell.from.empty()) continue;
+    StanceWrenches& now = motion.wrenches.emplace_back(dwell.from);
+    for (std::size_t c = 0; c < now.size(); ++c) now[c] += share * (dwell.to[c] - dwell.from[c]);
+  }
+  return duration_s;
 }
 
 }  // namespace locograph

@@ -31,6 +31,15 @@ struct SegmentLoads {
   double fastest = 0.0;                  ///< change of a contact's force [weights per second]
 };
 
+/// A robot that stands while forces go over, a contact's by at most kFastestLoad.
+struct Dwell {
+  Eigen::VectorXd configuration;
+  int stance = 0;                     ///< of Motion::stances
+  StanceWrenches from = {}, to = {};  ///< at its contacts; both empty: not known
+  double begin_s = 0.0;
+  double least_s = 0.0;  ///< that it stands
+};
+
 class MotionLoads {
  public:
   explicit MotionLoads(const Robot& robot);
@@ -40,6 +49,8 @@ class MotionLoads {
                                     const Motion& motion);
   /// The largest change of a contact's force [weights].
   double change(const StanceWrenches& from, const StanceWrenches& to) const;
+  /// Appends it to a motion, but for its end. Returns how long it takes [s].
+  double append(const Dwell& dwell, Motion& motion) const;
 
  private:
   const Robot& robot_;
