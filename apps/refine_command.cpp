@@ -135,6 +135,12 @@ void replace_world(PlanFile& file, const WorldOptions& given, const World& world
   file.graph.replace_parameter(file.plan.world_number, file.plan.world);
 }
 
+/// Some of it, at least.
+bool is_on_legs(const Plan& plan) {
+  return !std::ranges::all_of(
+      plan.stance_from, [](const auto& stance) { return stance && rolls_on_wheels(*stance); });
+}
+
 /// As `--horizon` says, else what suits the plan. Throws Error for what is neither a number of
 /// configurations nor one of seconds, and for a horizon that is longer than the plan.
 void set_horizon(const std::string& text, const PlanFile& file, LocalPlannerOptions& options) {
@@ -146,11 +152,8 @@ void set_horizon(const std::string& text, const PlanFile& file, LocalPlannerOpti
   const double duration_s = time_s(slots.back()) - time_s(slots.front());
   const auto given = [&](const std::string& what) { return "--horizon " + text + ": " + what; };
   if (text.empty()) {
-    const auto rolls = [](const auto& stance) {
-      return stance && std::ranges::any_of(stance->wheels, [](const auto& w) { return !w.locked; });
-    };
     // Plans on legs are sampled finely, for their judge.
-    if (!std::ranges::all_of(file.plan.stance_from, rolls)) options.horizon_s = kHorizonOfLegs_s;
+    if (is_on_legs(file.plan)) options.horizon_s = kHorizonOfLegs_s;
     return;
   }
   if (text.ends_with('s')) {
@@ -203,7 +206,7 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
   check_not_input(options.output, files_of(file));
   const Judging judging = judging_of(file, options.world);
   if (options.replan) check_replan(file, judging, options.perception);
-  if (walk_options.planner.horizon_s > 0.0) walk_options.cycle_iterations = kIterationsOnLegs;
+  if (is_on_legs(file.plan)) walk_options.cycle_iterations = kIterationsOnLegs;
   const Stopwatch watch;
   std::optional<RefinePerception> eyes;
   std::shared_ptr<const WorldSnapshot> seen;

@@ -9,12 +9,15 @@
 
 namespace locograph {
 
+bool rolls_on_wheels(const StanceParameter& stance) {
+  return std::ranges::any_of(stance.wheels, [](const auto& wheel) { return !wheel.locked; });
+}
+
 OnlinePlan::OnlinePlan(Graph& graph) : graph_(graph), plan_(plan_of(graph)) {
   if (plan_.stances_only) throw Error("a plan of stances, which has no motions", "a whole plan");
   for (const auto& stance : plan_.stance_from) {
     if (!stance) throw Error("a configuration of the plan without a stance", "a stance for each");
-    const auto rolls = [](const auto& wheel) { return !wheel.locked; };
-    rolls_.push_back(std::ranges::any_of(stance->wheels, rolls));
+    rolls_.push_back(rolls_on_wheels(*stance));
   }
   if (!plan_.world) throw Error("the plan has no world", "a PARAMS_WORLD line");
   world_ = plan_.world;

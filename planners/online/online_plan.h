@@ -16,6 +16,9 @@
 
 namespace locograph {
 
+/// Whether a robot in this stance rolls on wheels: one of them is not locked.
+bool rolls_on_wheels(const StanceParameter& stance);
+
 class OnlinePlan {
  public:
   /// The graph must outlive it, and keep its vertices. Throws Error for a graph without a plan, for
