@@ -23,15 +23,12 @@
 namespace locograph {
 namespace {
 
-constexpr double kHorizonOfLegs_s = 2.0;
-constexpr int kIterationsOnLegs = 1;  // of a cycle
-
 struct CommandOptions {
   std::string input, output;
   WorldOptions world;
   PerceptionChoice perception;
   std::string horizon;
-  double rate_hz = 50.0;
+  double rate_hz = walk_options_for({}).rate_hz;
   double deadline_ms = 0.0;
   bool replan = false;
   double goal_tolerance_m = WalkOptions().goal_tolerance_m;
@@ -135,13 +132,7 @@ void replace_world(PlanFile& file, const WorldOptions& given, const World& world
   file.graph.replace_parameter(file.plan.world_number, file.plan.world);
 }
 
-/// Some of it, at least.
-bool is_on_legs(const Plan& plan) {
-  return !std::ranges::all_of(
-      plan.stance_from, [](const auto& stance) { return stance && rolls_on_wheels(*stance); });
-}
-
-/// As `--horizon` says, else what suits the plan. Throws Error for what is neither a number of
+/// As `--horizon` says. Throws Error for what is neither a number of
 /// configurations nor one of seconds, and for a horizon that is longer than the plan.
 void set_horizon(const std::string& text, const PlanFile& file, LocalPlannerOptions& options) {
   const std::vector<int>& slots = file.plan.slots;
@@ -151,11 +142,7 @@ void set_horizon(const std::string& text, const PlanFile& file, LocalPlannerOpti
   const int steps = static_cast<int>(slots.size()) - 1;
   const double duration_s = time_s(slots.back()) - time_s(slots.front());
   const auto given = [&](const std::string& what) { return "--horizon " + text + ": " + what; };
-  if (text.empty()) {
-    // Plans on legs are sampled finely, for their judge.
-    if (is_on_legs(file.plan)) options.horizon_s = kHorizonOfLegs_s;
-    return;
-  }
+  if (text.empty()) return;
   if (text.ends_with('s')) {
     if (!parse_number(text.substr(0, text.size() - 1), options.horizon_s) ||
         !(options.horizon_s > 0.0)) {
@@ -166,6 +153,7 @@ void set_horizon(const std::string& text, const PlanFile& file, LocalPlannerOpti
     }
     return;
   }
+  options.horizon_s = 0.0;
   if (!parse_number(text, options.horizon) || options.horizon < 1) {
     throw UsageError(given("expected configurations, 1 or more, as 20, or seconds, as 2s"));
   }
@@ -191,22 +179,21 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
       options.input, options.world.map, options.world.obstacles, options.perception.known_map};
   check_output(options.output, inputs, options.json);
   check_perception_options(parser, options.perception, inputs);
-  WalkOptions walk_options;
+  std::optional<Progress> progress("reading " + options.input);
+  PlanFile file = load_plan(options.input, options.plugins);
+  require_plan(file.plan, file.name);
+  WalkOptions walk_options = walk_options_for(file.plan);
   walk_options.rate_hz = options.rate_hz;
   walk_options.cycle_deadline_s = 1e-3 * options.deadline_ms;
   walk_options.goal_tolerance_m = options.goal_tolerance_m;
   walk_options.goal_tolerance_rad = options.goal_tolerance_rad;
   walk_options.validate();
   walk_options.termination.stop = &stop_flag();
-  std::optional<Progress> progress("reading " + options.input);
-  PlanFile file = load_plan(options.input, options.plugins);
-  require_plan(file.plan, file.name);
   set_horizon(options.horizon, file, walk_options.planner);
   if (!file.plan.world) throw Error(file.name, 0, "the plan has no world", "a PARAMS_WORLD line");
   check_not_input(options.output, files_of(file));
   const Judging judging = judging_of(file, options.world);
   if (options.replan) check_replan(file, judging, options.perception);
-  if (is_on_legs(file.plan)) walk_options.cycle_iterations = kIterationsOnLegs;
   const Stopwatch watch;
   std::optional<RefinePerception> eyes;
   std::shared_ptr<const WorldSnapshot> seen;

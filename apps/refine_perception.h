@@ -75,6 +75,10 @@ class RefinePerception {
   /// Sets what is asked on the way: fallbacks, verify, and pace.
   void equip(WalkOptions& options);
   WorldAt world_at();
+  /// See CameraWalk::world_from().
+  std::shared_ptr<const WorldSnapshot> world_from(double time_s, const Eigen::VectorXd& q) {
+    return walk_->world_from(time_s, q);
+  }
 
   /// Fields of the command's result.
   void tell(Json& result) const;

@@ -6,10 +6,14 @@
 #include <locograph/apps/simulate_command.h>
 #include <locograph/apps/statistics.h>
 #ifdef LOCOGRAPH_WITH_MUJOCO
+#include <locograph/apps/refine_perception.h>
 #include <locograph/apps/simulation_record.h>
 #include <locograph/common/atomic_file.h>
+#include <locograph/common/stop_signals.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/execution/simulation.h>
+#include <locograph/planners/online/walk_ahead.h>
+#include <locograph/planners/plan/seen_world.h>
 #include <locograph/planners/task/task.h>
 #endif
 
@@ -28,7 +32,7 @@ struct CommandOptions {
   WorldOptions world;
   double friction = 1.0, mass_error = 0.0, contact_error_m = 0.0, initial_error_rad = 0.005;
   unsigned seed = 0;
-  bool estimate = false, json = false;
+  bool estimate = false, refine = false, cameras = false, json = false;
 };
 
 #ifdef LOCOGRAPH_WITH_MUJOCO
@@ -64,6 +68,59 @@ SimulationOptions simulation_options(const CommandOptions& command) {
   options.validate();
   return options;
 }
+
+/// The plan is refined while it is carried out.
+class Refining {
+ public:
+  /// file: walked along, its graph is that of the refined plan. All must outlive it.
+  Refining(PlanFile& file, const Judging& judging, const CommandOptions& command) {
+    if (!file.plan.world) throw Error(file.name, 0, "the plan has no world", "a PARAMS_WORLD line");
+    WalkOptions options = walk_options_for(file.plan);
+    options.termination.stop = &stop_flag();
+    if (command.cameras) {
+      choice_.cameras = true;
+      choice_.seed = command.seed;
+      eyes_.emplace(file, judging, choice_);
+      eyes_->equip(options);
+    } else {
+      seen_ = seen_world(file.graph, file.plan, judging.world->world());
+      options.verify = step_check(judging);
+    }
+    walk_.emplace(
+        file.graph, [this](int) { return std::exchange(seen_, nullptr); }, options);
+  }
+
+  std::optional<Motion> revise(const SimulationMoment& now) {
+    if (eyes_) {
+      auto newest = eyes_->world_from(now.clock_s, now.configuration);
+      if (newest != shown_) seen_ = shown_ = std::move(newest);
+    }
+    return walk_->at(now.plan_time_s);
+  }
+
+  WalkReport report() const { return walk_->report(); }
+
+  Json json() const {
+    const WalkReport walked = report();
+    std::vector<double> times;
+    for (const CycleReport& cycle : walked.cycles) times.push_back(cycle.statistics.total_s);
+    Json json = {{"success", walked.success()},
+                 {"reason", walked.reason},
+                 {"cycles", walked.cycles.size()},
+                 {"configurations", walked.configurations},
+                 {"goal_distance_m", walked.goal_distance_m},
+                 {"goal_angle_rad", walked.goal_angle_rad},
+                 {"cycle_time", statistics_json(std::move(times))}};
+    if (eyes_) eyes_->tell(json);
+    return json;
+  }
+
+ private:
+  PerceptionChoice choice_;
+  std::optional<RefinePerception> eyes_;
+  std::shared_ptr<const WorldSnapshot> seen_, shown_;  ///< not shown yet, and the last one that was
+  std::optional<WalkAhead> walk_;
+};
 
 Json result_json(const SimulationResult& result, bool estimated) {
   Json json = {
@@ -127,7 +184,8 @@ void write_record(const CommandOptions& command, PlanFile& file, const Judging& 
 }
 
 ExitCode simulate_plan(const CommandOptions& command) {
-  const SimulationOptions options = simulation_options(command);
+  if (command.cameras && !command.refine) throw Error("--cameras without --refine", "both");
+  SimulationOptions options = simulation_options(command);
   const std::vector<std::filesystem::path> inputs = {command.input, command.world.map,
                                                      command.world.obstacles};
   check_outputs(command, inputs);
@@ -142,11 +200,20 @@ ExitCode simulate_plan(const CommandOptions& command) {
   const std::vector<EndEffector> effectors = effectors_of(
       motion, judging.task ? judging.task->end_effectors() : std::vector<EndEffector>());
   progress.emplace("carrying out " + command.input);
+  std::optional<Refining> refining;
+  const FinishOnSignal finish;
+  if (command.refine) {
+    about_file(file.name, [&] { refining.emplace(file, judging, command); });
+    options.revise = [&](const SimulationMoment& now) { return refining->revise(now); };
+  }
   SimulationResult result = about_file(file.name, [&] {
     return simulate(*judging.robot, effectors, judging.world->world(), motion, options);
   });
+  if (refining) file.plan = plan_of(file.graph);
   // The engine knows where the plan ends, not where it should have led.
-  if (const std::string why = missed_goals(motion, judging); !why.empty()) {
+  std::string why = missed_goals(motion_of(file.graph, file.plan), judging);
+  if (refining && !refining->report().success()) why = refining->report().reason;
+  if (!why.empty()) {
     result.reached_goal = result.carried_out = false;
     if (result.reason.empty()) result.reason = why;
   }
@@ -154,6 +221,7 @@ ExitCode simulate_plan(const CommandOptions& command) {
   write_record(command, file, judging, effectors, result);
   progress.reset();
   Json json = result_json(result, command.estimate);
+  if (refining) json["refine"] = refining->json();
   if (!command.output.empty()) json["output"] = command.output;
   if (!command.csv.empty()) json["csv"] = command.csv;
   print_result(json, command.json);
@@ -197,6 +265,10 @@ Command add_simulate(OptionParser& app) {
       .show_default();
   parser.add_flag("--estimate", o.estimate,
                   "The controller knows its sensors only: encoders, attitude and rates, forces");
+  parser.add_flag("--refine", o.refine,
+                  "Refine the plan on the way, as refine does, a second ahead of the robot");
+  parser.add_flag("--cameras", o.cameras,
+                  "With --refine: knowing of the world what the robot's cameras show of it");
   parser.add_option("--seed", o.seed, "Of all that is drawn at random").show_default();
   parser.add_flag("--json", o.json, "Print one JSON object");
   return {parser, [options] { return simulate_plan(*options); }};

@@ -46,6 +46,7 @@ void PlayerOptions::validate() const {
 MotionPlayer::MotionPlayer(const Robot& robot, std::span<const EndEffector> effectors,
                            const World& world, Motion motion, const PlayerOptions& options)
     : robot_(robot),
+      effectors_(effectors.begin(), effectors.end()),
       motion_(std::move(motion)),
       options_(options),
       touch_N_(options.touch * robot.total_mass() * standard_gravity().norm()),
@@ -53,6 +54,29 @@ MotionPlayer::MotionPlayer(const Robot& robot, std::span<const EndEffector> effe
       touches_(effectors.size()),
       commands_(effectors.size()) {
   options.validate();
+  for (const EndEffector& effector : effectors) names_.push_back(name_of(effector));
+  take(world);
+  time_s_ = motion_.time_s.front();
+  reference_ = curve_.at_vertex(0);
+  reference_.velocity.setZero();
+  reference_.acceleration.setZero();
+  set_commands();
+}
+
+void MotionPlayer::follow(const World& world, Motion motion) {
+  const auto next = static_cast<std::size_t>(vertex_) + 1;
+  if (motion.configurations.size() < std::min(next + 1, motion_.configurations.size())) {
+    throw Error("a motion of " + std::to_string(motion.configurations.size()) +
+                    " configurations, which ends before where the robot is",
+                std::to_string(next + 1) + " at least");
+  }
+  motion_ = std::move(motion);
+  curve_ = MotionCurve(robot_, motion_);
+  take(world);
+}
+
+/// What is needed of the motion.
+void MotionPlayer::take(const World& world) {
   const std::size_t count = motion_.configurations.size();
   if (motion_.stances_only) throw Error("a plan of stances has no times to carry it out in");
   if (count == 0 || motion_.time_s.size() != count || motion_.stance_from.size() != count) {
@@ -69,21 +93,15 @@ MotionPlayer::MotionPlayer(const Robot& robot, std::span<const EndEffector> effe
       throw Error("configuration " + std::to_string(i) + " is not after the one before");
     }
   }
-  for (const EndEffector& effector : effectors) {
-    names_.push_back(name_of(effector));
-  }
+  steps_.clear();
   for (std::size_t i = 0; i + 1 < count; ++i) steps_.push_back(curve_.step(static_cast<int>(i)));
-  find_what_holds(world, effectors);
-  find_intervals(effectors);
-  time_s_ = motion_.time_s.front();
-  reference_ = curve_.at_vertex(0);
-  reference_.velocity.setZero();
-  reference_.acceleration.setZero();
-  set_commands();
+  ends_at_rest_ = curve_.slope(static_cast<int>(count) - 1).cwiseAbs().maxCoeff() <= kAtRest;
+  find_what_holds(world);
+  find_intervals();
 }
 
 /// As a stance is where it is first held.
-void MotionPlayer::find_what_holds(const World& world, std::span<const EndEffector> effectors) {
+void MotionPlayer::find_what_holds(const World& world) {
   held_.resize(motion_.stances.size());
   RobotState state(robot_);
   std::vector<Eigen::Isometry3d> poses;
@@ -95,7 +113,7 @@ void MotionPlayer::find_what_holds(const World& world, std::span<const EndEffect
     for (std::size_t link = 0; link < robot_.links().size(); ++link) {
       poses.push_back(state.world_from_link(static_cast<int>(link)));
     }
-    const JudgedStance judged(robot_, world, motion_.stances[stance], effectors);
+    const JudgedStance judged(robot_, world, motion_.stances[stance], effectors_);
     for (std::size_t c = 0; c < judged.contacts.size(); ++c) {
       const JudgedBearing bearing = bearing_at(judged.contacts[c], world, poses);
       Contact contact = motion_.stances[stance].contacts[c];
@@ -105,7 +123,8 @@ void MotionPlayer::find_what_holds(const World& world, std::span<const EndEffect
   }
 }
 
-void MotionPlayer::find_intervals(std::span<const EndEffector> effectors) {
+void MotionPlayer::find_intervals() {
+  intervals_.clear();
   const int last = static_cast<int>(motion_.configurations.size()) - 1;
   const auto stance_from = [&](int vertex) {
     return motion_.stance_from[static_cast<std::size_t>(vertex)];
@@ -116,13 +135,13 @@ void MotionPlayer::find_intervals(std::span<const EndEffector> effectors) {
     Interval& interval = intervals_.emplace_back();
     interval.first = i;
     interval.last = last;
-    interval.contact.assign(effectors.size(), -1);
-    interval.closes.assign(effectors.size(), 0);
-    interval.opens.assign(effectors.size(), 0);
+    interval.contact.assign(effectors_.size(), -1);
+    interval.closes.assign(effectors_.size(), 0);
+    interval.opens.assign(effectors_.size(), 0);
     const Stance& stance = motion_.stances[static_cast<std::size_t>(stance_from(i))];
     for (std::size_t c = 0; c < stance.contacts.size(); ++c) {
-      const std::size_t effector = effector_of(effectors, stance.contacts[c]);
-      if (effector == effectors.size()) {
+      const std::size_t effector = effector_of(effectors_, stance.contacts[c]);
+      if (effector == effectors_.size()) {
         throw Error("contact of '" + stance.contacts[c].name() + "', which is no end effector");
       }
       interval.contact[effector] = static_cast<int>(c);
@@ -131,7 +150,7 @@ void MotionPlayer::find_intervals(std::span<const EndEffector> effectors) {
   for (std::size_t k = 0; k < intervals_.size(); ++k) {
     Interval& interval = intervals_[k];
     find_still_times(interval);
-    for (std::size_t e = 0; e < effectors.size(); ++e) {
+    for (std::size_t e = 0; e < effectors_.size(); ++e) {
       const HeldContact* held = contact_of(k, e);
       if (!held) continue;
       const HeldContact* before = k > 0 ? contact_of(k - 1, e) : held;
@@ -229,7 +248,10 @@ void MotionPlayer::move_on(bool all_bear) {
     return;
   }
   const bool stops = !all_bear || !halted_.empty();
-  const double wanted = stops ? 0.0 : 1.0;
+  const double left_s = motion_.time_s.back() - time_s_;
+  const double most_rate =
+      ends_at_rest_ ? 1.0 : std::min(1.0, std::sqrt(2.0 * left_s / options_.stopping_s));
+  const double wanted = stops ? 0.0 : most_rate;
   const double most = cycle / options_.stopping_s;
   const double before = rate_;
   if (stops && !all_bear) waited_s_ += cycle;

@@ -18,7 +18,8 @@
 /// What contacts can bear is what of them lies on something in the world, with its friction.
 ///
 /// A contact that is not found, or slips too far, is given up: it follows the reference, and the
-/// motion halts for good. advance() does not allocate. Keeps a pointer to the robot, which must
+/// motion halts for good. A motion that does not end at rest is slowed down before it ends.
+/// advance() does not allocate. Keeps a pointer to the robot, which must
 /// outlive it; the motion is copied.
 
 #include <locograph/check/motion.h>
@@ -63,6 +64,11 @@ class MotionPlayer {
   MotionPlayer(const MotionPlayer&) = delete;
   MotionPlayer& operator=(const MotionPlayer&) = delete;
 
+  /// Goes on along another motion, which is the same as before up to the configuration after
+  /// plan_time_s(): configurations, times, and stances. Throws Error as the constructor does, and
+  /// for a motion that ends before that.
+  void follow(const World& world, Motion motion);
+
   /// One cycle on.
   void advance(std::span<const TouchMeasurement> measured);
 
@@ -99,20 +105,22 @@ class MotionPlayer {
     double absent_s = 0.0;
   };
 
-  void find_intervals(std::span<const EndEffector> effectors);
+  void take(const World& world);
+  void find_intervals();
   void find_still_times(Interval& interval) const;
   bool measure(std::span<const TouchMeasurement> measured);
   void move_on(bool all_bear);
   void set_reference();
   void set_commands();
-  void find_what_holds(const World& world, std::span<const EndEffector> effectors);
+  void find_what_holds(const World& world);
   const HeldContact* contact_of(std::size_t interval, std::size_t effector) const;
   double closing_share(const Interval& interval, std::size_t effector) const;
   double opening_share(const Interval& interval) const;
   void set_wrench(std::size_t effector);
 
   const Robot& robot_;
-  const Motion motion_;
+  const std::vector<EndEffector> effectors_;
+  Motion motion_;
   const PlayerOptions options_;
   const double touch_N_;
   MotionCurve curve_;
@@ -129,7 +137,7 @@ class MotionPlayer {
   double rate_ = 0.0, change_of_rate_ = 0.0;
   double settled_s_ = 0.0, stood_s_ = 0.0, waited_s_ = 0.0;
   double held_before_s_ = 0.0, held_after_s_ = 0.0;  // of what the interval now adds
-  bool at_end_ = false;
+  bool at_end_ = false, ends_at_rest_ = true;
   std::string halted_;
 };
 

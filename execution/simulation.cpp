@@ -177,6 +177,7 @@ class Run {
                  .friction_factor = options.friction_factor,
                  .link_mass_factors = perturbed_.mass_factors(),
                  .reach = reach_of(robot_, motion)}),
+        believed_(world),
         player_(robot, effectors, world, motion, options.player),
         controller_(make_controller()),
         state_(robot),
@@ -261,6 +262,7 @@ class Run {
     close_and_open_hands();
     measure(v);
     estimate(q, v);
+    revise(estimator_ ? estimator_->configuration() : q);
     player_.advance(touches_);
     const double before = processor_seconds();
     const Eigen::VectorXd& torques = controller_->torques(
@@ -270,11 +272,24 @@ class Run {
     engine_.set_torques(torques);
     push();
     // What moves does not wait for the robot.
-    engine_.set_obstacle_time(player_.motion().time_s.front() +
-                              std::max(0.0, engine_.time_s() - options_.player.settle_s));
+    engine_.set_obstacle_time(clock_s());
     record(q, v, torques);
     engine_.step();
     watch(q, torques);
+  }
+
+  double clock_s() const {
+    return player_.motion().time_s.front() +
+           std::max(0.0, engine_.time_s() - options_.player.settle_s);
+  }
+
+  void revise(const Eigen::VectorXd& configuration) {
+    if (!options_.revise) return;
+    const double before = processor_seconds();
+    std::optional<Motion> motion =
+        options_.revise({clock_s(), player_.plan_time_s(), configuration});
+    result_.revised_s.push_back(processor_seconds() - before);
+    if (motion) player_.follow(believed_, std::move(*motion));
   }
 
   bool is_grasp(std::size_t e) const { return effectors_[e].kind == ContactKind::kGrasp; }
@@ -502,6 +517,7 @@ class Run {
   const SimulationOptions& options_;
   Perturbations perturbed_;
   Engine engine_;
+  const World& believed_;
   MotionPlayer player_;
   std::unique_ptr<TorqueController> controller_;
   std::optional<SimulatedSensors> sensors_;

@@ -25,6 +25,7 @@
 #include <locograph/world/world.h>
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -35,6 +36,14 @@ namespace locograph {
 inline constexpr double kFallen_m = 0.3, kFallen_rad = 0.8;
 inline constexpr double kThere_m = 0.02, kBaseThere_m = 0.05, kBaseThere_rad = 0.1;
 inline constexpr double kMostSlip_m = 0.01;
+
+/// What goes on in a simulation, before a cycle.
+struct SimulationMoment {
+  /// Of the clock by which obstacles move: that of the plan, which the robot may be late by.
+  double clock_s;
+  double plan_time_s;
+  const Eigen::VectorXd& configuration;  ///< where the robot thinks that it is
+};
 
 struct SimulationOptions {
   std::string controller = "whole_body";  ///< one of controller_names()
@@ -51,6 +60,9 @@ struct SimulationOptions {
   /// The controller gets what a StateEstimator makes of sensors with these errors; none: the truth.
   std::optional<SensorErrors> sensors = std::nullopt;
   double record_every_s = 0.0;  ///< 0: nothing is recorded
+  /// How the motion goes on, asked before each cycle: as MotionPlayer::follow() wants it; nullopt:
+  /// as before. May be empty.
+  std::function<std::optional<Motion>(const SimulationMoment&)> revise = {};
 
   /// Throws Error naming the number that makes no sense.
   void validate() const;
@@ -85,6 +97,7 @@ struct SimulationResult {
   std::vector<double> controller_s;  ///< processor time of each cycle
   double processor_s = 0.0;          ///< of all of it
   std::vector<SimulationSample> samples;
+  std::vector<double> revised_s;  ///< processor time of SimulationOptions::revise, each time
 };
 
 /// effectors: those of the robot's task; where the motion has contacts of others, it is refused.

@@ -56,6 +56,27 @@ std::shared_ptr<const WorldSnapshot> CameraWalk::world_at(int executed) {
   return perception_.newest();
 }
 
+std::shared_ptr<const WorldSnapshot> CameraWalk::world_from(double time_s,
+                                                            const Eigen::VectorXd& q) {
+  if (std::isnan(is_at_s_)) {
+    stand();
+    is_at_s_ = vertex(0).time_s;
+    is_at_ = vertex(0).state;
+  }
+  if (time_s < is_at_s_ + kConfigurations_s) return perception_.newest();
+  perception_.configuration(time_s, q);
+  show_until(time_s, [&](double at_s, Eigen::VectorXd& where) {
+    const Robot& robot = perception_.robot();
+    Eigen::VectorXd moves(robot.tangent_size());
+    robot.difference(is_at_.data(), q.data(), moves.data());
+    moves *= (at_s - is_at_s_) / (time_s - is_at_s_);
+    robot.integrate(is_at_.data(), moves.data(), where.data());
+  });
+  is_at_s_ = time_s;
+  is_at_ = q;
+  return perception_.newest();
+}
+
 void CameraWalk::stand() {
   const double start_s = vertex(0).time_s, first_s = images_.next_stamp_s();
   const Eigen::VectorXd q = vertex(0).state;

@@ -18,6 +18,7 @@
 #include <locograph/world/perception/perception.h>
 
 #include <atomic>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <string>
@@ -46,6 +47,9 @@ class CameraWalk {
   /// For walk_plan(): shows all images until the robot is at this configuration. To be called for
   /// one after the other, from the first. Throws Error for images that cannot be read.
   std::shared_ptr<const WorldSnapshot> world_at(int executed);
+  /// The same for a robot that is carried out in simulated time: it is there at that time of the
+  /// plan's clock, which ascends from call to call.
+  std::shared_ptr<const WorldSnapshot> world_from(double time_s, const Eigen::VectorXd& q);
   /// For WalkOptions::verify: of the motion everything in the world that was known beforehand, and
   /// of its last step that it keeps away from what is seen now. (Where the robot was earlier,
   /// things may be now.)
@@ -76,6 +80,8 @@ class CameraWalk {
   CameraWalkOptions options_;
   std::function<CheckReport(const Motion&)> check_known_;
   RobotState state_;
+  double is_at_s_ = std::nan("");  ///< of world_from(); not yet
+  Eigen::VectorXd is_at_;
   std::vector<double> perception_s_;
   double images_s_ = 0.0;
   int refused_ = 0;

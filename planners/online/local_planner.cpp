@@ -29,6 +29,7 @@ LocalPlanner::LocalPlanner(Graph& graph, const LocalPlannerOptions& options)
       proposals_(options.proposals, plan_, options.proposal_pause),
       fallbacks_(options.fallbacks, plan_, 0) {
   options.validate();
+  answer_.executed = -1;
   // Memory, the lists of edges and the order of elimination now rather than in the first cycle.
   if (plan_.size() < 2) return;
   Window first = window_;  // a copy: nothing has entered the planner's own
@@ -44,17 +45,19 @@ void LocalPlanner::show(std::shared_ptr<const WorldSnapshot> world) {
   shown_ = std::move(world);
 }
 
-void LocalPlanner::take_shown() {
+/// Whether there was something new.
+bool LocalPlanner::take_shown() {
   std::shared_ptr<const WorldSnapshot> world;
   {
     const std::lock_guard lock(showing_);
     world = std::move(shown_);
     shown_ = nullptr;
   }
-  if (!world) return;
+  if (!world) return false;
   plan_.show(std::move(world));
   proposals_.world_changed();
   fallbacks_.world_changed();
+  return true;
 }
 
 CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
@@ -66,6 +69,15 @@ CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
   CycleReport report;
   report.executed = executed;
   const Stopwatch watch;
+  new_world_ = take_shown();
+  if (settled_ && !new_world_ && answer_.executed == executed) {
+    report = answer_;
+    report.detour = false;
+    report.statistics = {};
+    report.statistics.constraints = answer_.statistics.constraints;
+    report.statistics.total_s = watch.seconds();
+    return report;
+  }
   begin(report);
   const bool cut_short = improve(report, termination);
   keep_unfinished(cut_short);
@@ -78,12 +90,20 @@ CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
   }
   report.statistics.total_s = watch.seconds();
   report.deadline_missed = termination.deadline.passed();
+  keep_answer(report, cut_short);
   return report;
+}
+
+void LocalPlanner::keep_answer(const CycleReport& report, bool cut_short) {
+  const WindowQuality& quality = incumbent_.best().quality;
+  const bool again = answer_.executed == report.executed && !new_world_;
+  settled_ = again && !cut_short && !quality.feasible() && !quality.better_than(quality_);
+  quality_ = quality;
+  answer_ = report;
 }
 
 void LocalPlanner::begin(CycleReport& report) {
   const Stopwatch watch;
-  take_shown();
   incumbent_.clear();
   window_.move_to(report.executed);
   warm_start_.enter(window_);

@@ -20,6 +20,10 @@
 /// ends at most one iteration after that. Constraints that cannot be met are reported, with
 /// place and size; no window that violates one is reported as feasible.
 ///
+/// A cycle that got nothing better out of an infeasible window than the one before it, at the same
+/// configuration and in the same world, is the last that tries: until one of them changes, cycles
+/// give its answer again.
+///
 /// Time and memory of a cycle depend on H, not on the length of the plan.
 
 #include <locograph/planners/online/proposal_schedule.h>
@@ -71,7 +75,7 @@ class LocalPlanner {
   const Problem& compiled_window() const { return solver_.problem(); }  ///< of the last cycle
 
  private:
-  void take_shown();
+  bool take_shown();
   void begin(CycleReport& report);
   bool improve(CycleReport& report, const Termination& termination);
   bool load_unfinished();
@@ -84,6 +88,7 @@ class LocalPlanner {
   void keep_unfinished(bool cut_short);
   void hand_out_best();
   void describe_best(CycleReport& report) const;
+  void keep_answer(const CycleReport& report, bool cut_short);
 
   LocalPlannerOptions options_;
   OnlinePlan plan_;
@@ -94,6 +99,10 @@ class LocalPlanner {
   Incumbent beside_;  ///< what a fallback has led to
   ProposalSchedule proposals_, fallbacks_;
   std::vector<Eigen::VectorXd> candidate_;  ///< a proposal's
+  CycleReport answer_;                      ///< of the last cycle
+  WindowQuality quality_;                   ///< what it handed out
+  bool new_world_ = true;                   ///< since the cycle before
+  bool settled_ = false;                    ///< nothing better is found at the same configuration
   std::mutex showing_;
   std::shared_ptr<const WorldSnapshot> shown_;  ///< since the last cycle began; null: none
 };

@@ -2,9 +2,9 @@
 #include <locograph/check/motion_curve.h>
 #include <locograph/common/check_option.h>
 #include <locograph/common/ranges.h>
+#include <locograph/planners/online/braking.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/online/window_cause.h>
-#include <locograph/planners/plan/carried_wrenches.h>
 #include <locograph/planners/plan/plan_edges.h>
 #include <locograph/planners/plan/slope_limits.h>
 
@@ -27,10 +27,6 @@ std::string describe(const CheckReport& check) {
 
 /// Steps before the executed one are judged with it, at most so many.
 constexpr int kMostVerifiedSteps = 12;
-/// Motions that come to rest within one to so many steps are tried: on wheels, and on legs, whose
-/// steps are short.
-constexpr int kMostBrakingSteps = 12;
-constexpr int kFewestBrakingStepsOfLegs = 4, kMostBrakingStepsOfLegs = 64;
 
 /// How many times as fast as another one a slope is, along it; up to twice, as on any ramp.
 double ratio(const Eigen::VectorXd& slope, const Eigen::VectorXd& along) {
@@ -46,7 +42,8 @@ class Walk {
         options_(options),
         planner_(graph, options.planner),
         model_(*planner_.plan().robot->robot),
-        planned_(motion_of(graph, planner_.plan())) {
+        planned_(motion_of(graph, planner_.plan())),
+        braking_(graph, planner_.online_plan(), options.verify) {
     const MotionCurve curve(model_, planned_);
     for (int i = 0; i < planner_.plan_size(); ++i) {
       if (!rolls(i)) {
@@ -67,20 +64,33 @@ class Walk {
     report_.configurations = planner_.plan_size();
   }
 
-  /// From a configuration at which the robot is, or is at rest.
-  WalkReport run(int first, const WorldAt& world_at) {
-    verified_to_ = first;
-    if (walk(first, world_at)) arrive();
-    return std::move(report_);
+  bool over() const { return over_; }
+  int executed() const { return executed_; }
+  const Plan& plan() const { return planner_.plan(); }
+  double time_s(int i) const { return planner_.online_plan().time_s(i); }
+
+  /// The robot is at this configuration or, before the first step, at rest there.
+  void start_at(int configuration) {
+    executed_ = verified_to_ = configuration;
+    over_ = false;
+    find_end();
   }
 
+  void step(const WorldAt& world_at, int carried_out) {
+    carried_out_ = carried_out;
+    over_ = ends_at(executed_) || !step_from(executed_, world_at);
+    if (over_) return;
+    ++executed_;
+    find_end();
+  }
+
+  WalkReport& report() { return report_; }
+
  private:
-  /// Whether every step could be taken.
-  bool walk(int first, const WorldAt& world_at) {
-    for (int executed = first; executed + 1 < planner_.plan_size(); ++executed) {
-      if (ends_at(executed) || !step(executed, world_at)) return false;
-    }
-    return true;
+  void find_end() {
+    if (executed_ + 1 < planner_.plan_size()) return;
+    over_ = true;
+    arrive();
   }
 
   /// Whether the termination ends the walk, which then is where the robot is.
@@ -90,7 +100,8 @@ class Walk {
     return end.has_value();
   }
 
-  bool step(int executed, const WorldAt& world_at) {
+  /// Whether the robot could take it.
+  bool step_from(int executed, const WorldAt& world_at) {
     const Stopwatch watch;
     if (auto world = world_at ? world_at(executed) : nullptr) {
       planner_.show(std::move(world));
@@ -102,7 +113,7 @@ class Walk {
       go_at(executed, options_.pace(executed));
       if (ends_too_late(executed)) return false;
     }
-    const Passing before = passing(executed);
+    const Braking::Passing before = braking_.passing(executed);
     for (int cycle = cycles_of(executed); cycle > 1; --cycle) run_cycle(executed);
     const CycleReport cycle = run_cycle(executed);
     std::string refused;
@@ -113,13 +124,13 @@ class Walk {
       if (options_.verify) refused = verify(executed);
     }
     if (!refused.empty()) {
-      restore(executed, before);  // it bears the step that is not made
+      braking_.restore(executed, before);  // it bears the step that is not made
       stop(executed, executed, refused);
       return false;
     }
     if (rolls(executed) || cycle.success()) return true;
     if (vertex(cycle.violated_at).time_s - vertex(executed).time_s > kDecide_s) return true;
-    if (rests(executed)) restore(executed, before);
+    if (braking_.rests(executed)) braking_.restore(executed, before);
     stop(executed, executed + cycle.feasible_steps, cycle.reason);
     return false;
   }
@@ -218,125 +229,6 @@ class Walk {
     keep_within_limits(model_, here.state, std::max(before_s, after_s), here.slopes);
   }
 
-  /// Lets the robot come to rest at a configuration, over some steps: on the same way, slower and
-  /// slower. On legs its speed goes with the share x of the way that it has gone as
-  /// (1 - x²)^(2/3), so that forces do not jump.
-  void brake(int last, int steps, bool wheels) {
-    double time_s = vertex(last - steps).time_s, before_s = time_s, faster = 1.0;
-    for (int i = last - steps + 1; i <= last; ++i) {
-      const double left = static_cast<double>(last - i) / steps, x = 1.0 - left;
-      const double slower = wheels ? std::sqrt(left) : std::pow(1.0 - x * x, 2.0 / 3.0);
-      const double duration_s = vertex(i).time_s - before_s;
-      before_s = vertex(i).time_s;
-      time_s += duration_s * 2.0 / (faster + slower);
-      vertex(i).time_s = time_s;
-      vertex(i).slopes *= slower;
-      faster = slower;
-    }
-    if (wheels) return;
-    balance_wrenches(plan_of_part(0, last), graph_, {last - steps, last - 1});
-    stay(last);
-  }
-
-  /// For balance_wrenches().
-  Plan plan_of_part(int first, int last) const {
-    const Plan& whole = planner_.plan();
-    const auto part = [&](const auto& all) {
-      return std::decay_t<decltype(all)>(all.begin() + first, all.begin() + last + 1);
-    };
-    Plan plan;
-    plan.robot = whole.robot;
-    plan.states_wrenches = whole.states_wrenches;
-    plan.slots = part(whole.slots);
-    plan.stance_from = part(whole.stance_from);
-    plan.index.wrenches = part(whole.index.wrenches);
-    return plan;
-  }
-
-  /// What braking changes.
-  struct Passing {
-    double time_s;
-    Eigen::VectorXd slopes;
-    std::vector<Eigen::VectorXd> wrenches;
-  };
-
-  Passing passing(int i) {
-    Passing now{vertex(i).time_s, vertex(i).slopes, {}};
-    for (const int slot : wrenches_at(i)) {
-      now.wrenches.emplace_back(
-          Eigen::Map<const Eigen::VectorXd>(graph_.state(slot), graph_.state_size(slot)));
-    }
-    return now;
-  }
-
-  void restore(int i, const Passing& before) {
-    vertex(i).time_s = before.time_s;
-    vertex(i).slopes = before.slopes;
-    for (std::size_t k = 0; k < before.wrenches.size(); ++k) {
-      std::ranges::copy(before.wrenches[k], graph_.state(wrenches_at(i)[k]));
-    }
-  }
-
-  const std::vector<int>& wrenches_at(int i) const {
-    return planner_.plan().index.wrenches[static_cast<std::size_t>(i)];
-  }
-
-  int last_rest_before(int i) {
-    do --i;
-    while (i > 0 && !rests(i));
-    return i;
-  }
-
-  bool rests(int i) { return vertex(i).slopes.size() > 0 && vertex(i).slopes.isZero(); }
-
-  /// Where the robot comes to rest, as it does then: on legs as soon as it can after `executed`, up
-  /// to `furthest`; else at the last configuration, up to `executed`, at which it can.
-  int come_to_rest(int executed, int furthest) {
-    for (int steps = kFewestBrakingStepsOfLegs; executed + steps <= furthest; steps += steps / 2) {
-      if (rests(executed)) return stay(executed);
-      if (last_rest_before(executed + steps) > executed) break;
-      if (comes_to_rest(executed + steps, steps, false)) return executed + steps;
-    }
-    for (int last = executed; last > 0; --last) {
-      if (rests(last)) return stay(last);
-      if (!rolls(last - 1)) {
-        const int most = std::min(kMostBrakingStepsOfLegs, last - last_rest_before(last));
-        for (int steps = kFewestBrakingStepsOfLegs; steps <= most; steps *= 2) {
-          if (comes_to_rest(last, steps, false)) return last;
-        }
-      } else {
-        for (int steps = 1; steps <= std::min(last, kMostBrakingSteps); ++steps) {
-          if (comes_to_rest(last, steps, true)) return last;
-        }
-      }
-    }
-    return 0;
-  }
-
-  /// What bears a configuration at which the robot rests does not move it.
-  int stay(int at) {
-    balance_wrenches(plan_of_part(at, at), graph_, {0, 0});
-    return at;
-  }
-
-  /// Whether the judge lets the robot brake so; else nothing changes.
-  bool comes_to_rest(int last, int steps, bool wheels) {
-    std::vector<Passing> moving;
-    for (int i = last - steps; i <= last; ++i) moving.push_back(passing(i));
-    brake(last, steps, wheels);
-    // Where braking begins forces may jump.
-    const int first = wheels ? last - steps : std::max(0, last - steps - 2);
-    if (vertex(last).time_s <= ranges::kTime_s &&
-        (!options_.verify ||
-         options_.verify(motion_of(graph_, planner_.plan(), first, last)).feasible)) {
-      return true;
-    }
-    for (int i = 0; i <= steps; ++i) {
-      restore(last - steps + i, moving[static_cast<std::size_t>(i)]);
-    }
-    return false;
-  }
-
   void measure_goal(int at) {
     const int slot = planner_.plan().slots[static_cast<std::size_t>(at)];
     const Eigen::Map<const Eigen::VectorXd> is(graph_.state(slot), graph_.state_size(slot));
@@ -374,7 +266,9 @@ class Walk {
 
   /// The rest of the plan is removed, and the robot comes to rest: where it is, or earlier.
   void end_at(int arrived, int furthest, const PlannerAnswer& why) {
-    const int executed = come_to_rest(arrived, furthest);
+    const std::optional<int> rest = braking_.come_to_rest(arrived, furthest, carried_out_);
+    const int executed = rest.value_or(arrived);
+    report_.at_rest = rest.has_value();
     report_.stopped_at = executed;
     measure_goal(executed);
     report_.status = why.status;
@@ -411,9 +305,13 @@ class Walk {
   LocalPlanner planner_;
   const Robot& model_;
   const Motion planned_;
+  Braking braking_;
   std::vector<double> faster_;  // than careful, of slopes of the plan
   double pace_ = 1.0;           // how many times as long as planned steps take
-  int verified_to_ = 0;         // steps up to this configuration hold for the judge
+  int executed_ = 0;
+  int carried_out_ = -1;  // what may not be changed any more
+  bool over_ = false;
+  int verified_to_ = 0;  // steps up to this configuration hold for the judge
   WalkReport report_;
 };
 
@@ -427,7 +325,7 @@ void put_before(const WalkReport& before, WalkReport& report) {
   join(before.verify_s, report.verify_s);
   report.feasible_cycles += before.feasible_cycles;
   report.deadline_misses += before.deadline_misses;
-  report.resumed = before.resumed + 1;
+  report.resumed = before.resumed;
 }
 
 }  // namespace
@@ -443,31 +341,94 @@ void WalkOptions::validate() const {
   termination.validate();
 }
 
-WalkReport walk_plan(Graph& graph, const WorldAt& world_at, const WalkOptions& options) {
-  options.validate();
-  const Stopwatch watch;
-  std::shared_ptr<const WorldSnapshot> newest;
-  bool goes_on = false;
-  const WorldAt shown = [&](int executed) {
-    std::shared_ptr<const WorldSnapshot> world = world_at ? world_at(executed) : nullptr;
-    if (world) newest = world;
-    if (std::exchange(goes_on, false)) world = newest;
-    return world;
-  };
-  WalkReport report = Walk(graph, options).run(0, shown);
-  while (options.resume && report.stopped_at && report.resumed < options.most_resumed &&
-         !options.termination.stopped()) {
+WalkOptions walk_options_for(const Plan& plan) {
+  WalkOptions options;
+  options.rate_hz = 50.0;
+  const bool drives = std::ranges::all_of(
+      plan.stance_from, [](const auto& stance) { return stance && rolls_on_wheels(*stance); });
+  if (drives) return options;
+  options.planner.horizon_s = 2.0;
+  options.cycle_iterations = 1;
+  return options;
+}
+
+struct PlanWalk::Own {
+  Graph& graph;
+  WorldAt world_at;
+  WalkOptions options;
+  Stopwatch watch = {};
+  std::optional<Walk> walk = {};
+  WalkReport before = {};  ///< until it was planned on
+  std::shared_ptr<const WorldSnapshot> newest = {};
+  bool goes_on = false;  ///< planned on, and nothing shown since
+
+  std::shared_ptr<const WorldSnapshot> world(int executed) {
+    std::shared_ptr<const WorldSnapshot> shown = world_at ? world_at(executed) : nullptr;
+    if (shown) newest = shown;
+    if (std::exchange(goes_on, false)) shown = newest;
+    return shown;
+  }
+
+  /// From where it has stopped; whether that could be planned.
+  bool plan_on() {
+    const WalkReport& stopped = walk->report();
+    if (!options.resume || !stopped.stopped_at || !stopped.at_rest ||
+        before.resumed >= options.most_resumed || options.termination.stopped()) {
+      return false;
+    }
     std::optional<Graph> resumed = options.resume(graph);
-    if (!resumed) break;
+    if (!resumed) return false;
+    const int at = *stopped.stopped_at;
+    put_before(before, walk->report());
+    before = std::move(walk->report());
+    ++before.resumed;
+    walk.reset();
     graph = std::move(*resumed);
     goes_on = true;
-    WalkReport more = Walk(graph, options).run(*report.stopped_at, shown);
-    put_before(report, more);
-    report = std::move(more);
+    walk.emplace(graph, options);
+    walk->start_at(at);
+    return true;
   }
+};
+
+PlanWalk::PlanWalk(Graph& graph, WorldAt world_at, const WalkOptions& options) {
+  options.validate();
+  own_.reset(new Own{graph, std::move(world_at), options});
+  own_->walk.emplace(graph, own_->options);
+  own_->walk->start_at(0);
+}
+
+PlanWalk::~PlanWalk() = default;
+
+int PlanWalk::executed() const { return own_->walk->executed(); }
+
+bool PlanWalk::step(int carried_out) {
+  if (!own_->walk->over()) {
+    own_->walk->step([this](int executed) { return own_->world(executed); }, carried_out);
+  }
+  return !own_->walk->over() || own_->plan_on();
+}
+
+Motion PlanWalk::motion() const {
+  const Graph& graph = own_->graph;
+  return motion_of(graph, own_->walk->over() ? plan_of(graph) : own_->walk->plan());
+}
+
+double PlanWalk::time_s(int configuration) const { return own_->walk->time_s(configuration); }
+
+WalkReport PlanWalk::report() const {
+  WalkReport report = own_->walk->report();
+  put_before(own_->before, report);
   report.statistics.iterations = static_cast<int>(report.cycles.size());
-  report.statistics.total_s = watch.seconds();
+  report.statistics.total_s = own_->watch.seconds();
   return report;
+}
+
+WalkReport walk_plan(Graph& graph, const WorldAt& world_at, const WalkOptions& options) {
+  PlanWalk walk(graph, world_at, options);
+  while (walk.step()) {
+  }
+  return walk.report();
 }
 
 }  // namespace locograph

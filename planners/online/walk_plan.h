@@ -56,6 +56,10 @@ struct WalkOptions {
   void validate() const;
 };
 
+/// What suits a plan: 50 cycles for each second, on wheels of 20 configurations, else of 2 s and
+/// one iteration each, as plans on legs are sampled finely for their judge.
+WalkOptions walk_options_for(const Plan& plan);
+
 struct WalkReport : PlannerAnswer {
   std::vector<CycleReport> cycles;
   std::vector<double> map_update_s;  ///< time that showing the world took, for each cycle
@@ -64,6 +68,7 @@ struct WalkReport : PlannerAnswer {
   int feasible_cycles = 0;
   int deadline_misses = 0;
   std::optional<int> stopped_at;  ///< before the end of the plan
+  bool at_rest = true;            ///< at the end; else no way to brake was found, see PlanWalk
   int resumed = 0;                ///< how often the plan was planned on
   int configurations = 0;         ///< left in the plan
   double short_of_goal_m = 0.0;   ///< how far the last configuration is behind where it was planned
@@ -79,5 +84,29 @@ inline constexpr double kDecide_s = 0.8;
 using WorldAt = std::function<std::shared_ptr<const WorldSnapshot>(int executed)>;
 
 WalkReport walk_plan(Graph& graph, const WorldAt& world_at, const WalkOptions& options);
+
+/// The same, a step at a time, while something carries the plan out. See walk_ahead.h.
+class PlanWalk {
+ public:
+  /// The graph must outlive it. Throws Error as LocalPlanner does, and for options out of range.
+  PlanWalk(Graph& graph, WorldAt world_at, const WalkOptions& options);
+  ~PlanWalk();
+
+  /// The steps up to this configuration are decided. One that has just been planned on may be less
+  /// far than before.
+  int executed() const;
+  /// Decides on the next step. The plan up to the configuration `carried_out` stays as it is; a
+  /// robot that cannot come to rest after it does not, and the report says so. False: the walk is
+  /// over.
+  bool step(int carried_out = -1);
+  /// The plan as it is now, and the time in it of one of its configurations.
+  Motion motion() const;
+  double time_s(int configuration) const;
+  WalkReport report() const;
+
+ private:
+  struct Own;
+  std::unique_ptr<Own> own_;
+};
 
 }  // namespace locograph

@@ -137,6 +137,41 @@ TEST_F(SimulateTest, EstimatesByItsSensorsWhereItIs) {
   EXPECT_LT(outcome.json()["max_estimate_error_rad"], 0.01);
 }
 
+TEST_F(SimulateTest, RefinesOnTheWay) {
+  runner->write("box.xml", R"(<obstacles version="1">
+  <box name="box" center="2 0 0.25" size="0.5 0.5 0.5"/>
+</obstacles>)");
+  const Outcome into = runner->run("simulate drive.g2o --obstacles box.xml --json");
+  EXPECT_EQ(into.json()["carried_out"], false);
+  EXPECT_NE(into.json()["other_link"], "");
+  const Outcome past =
+      runner->run("simulate drive.g2o --obstacles box.xml --refine -o past.g2o --json");
+  EXPECT_EQ(past.exit_code, 0) << past.err;
+  const nlohmann::json json = past.json();
+  EXPECT_EQ(json["carried_out"], true) << json["reason"];
+  EXPECT_EQ(json["refine"]["success"], true) << json["refine"]["reason"];
+  EXPECT_GT(json["refine"]["cycles"], 1000);
+  EXPECT_EQ(runner->run("info past.g2o --json").json()["kind"], "record");
+}
+
+TEST_F(SimulateTest, StopsBeforeAWall) {
+  runner->write("wall.xml", R"(<obstacles version="1">
+  <box name="wall" center="3 0 0.5" size="0.3 6 1"/>
+</obstacles>)");
+  const nlohmann::json json =
+      runner->run("simulate drive.g2o --obstacles wall.xml --refine --json").json();
+  EXPECT_EQ(json["upright"], true);
+  EXPECT_EQ(json["reached_goal"], false);
+  EXPECT_EQ(json["other_link"], "") << "it does not touch it";
+  EXPECT_TRUE(has_part(json["reason"], "wall")) << json["reason"];
+}
+
+TEST_F(SimulateTest, CamerasSeeOnlyForRefining) {
+  const Outcome outcome = runner->run("simulate drive.g2o --cameras");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_TRUE(has_part(outcome.err, "--cameras without --refine")) << outcome.err;
+}
+
 TEST_F(SimulateTest, TheEndOfAnIncompletePlanIsNotItsGoal) {
   std::string text = runner->read("drive.g2o");
   const std::string mark = "PARAMS_PLAN 1 3";

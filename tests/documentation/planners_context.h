@@ -30,9 +30,11 @@
 #include <locograph/planners/offline/stance/started_task.h>
 #include <locograph/planners/offline/stance/unheld_goal.h>
 #include <locograph/planners/offline/timing/path_timing.h>
+#include <locograph/planners/online/braking.h>
 #include <locograph/planners/online/camera_walk.h>
 #include <locograph/planners/online/resumed_plan.h>
 #include <locograph/planners/online/sideways_detour.h>
+#include <locograph/planners/online/walk_ahead.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
@@ -562,6 +564,21 @@ struct Context {
   }
 };
 }  // namespace online_resumed_plan_h
+namespace online_braking_h {
+struct Context : DriveContext {
+  const OnlinePlan online_plan{graph};
+  const std::function<CheckReport(const Motion&)> verify = {};
+  const int executed = 0;
+};
+}  // namespace online_braking_h
+namespace online_walk_ahead_h {
+struct Context : DriveContext {
+  const WorldAt world_seen_at = [](int) { return nullptr; };
+  const WalkOptions options;
+  Motion followed;
+  void follow(const Motion& motion) { followed = motion; }
+};
+}  // namespace online_walk_ahead_h
 namespace online_walk_plan_h {
 /// Nothing new is seen.
 struct Context : DriveContext {

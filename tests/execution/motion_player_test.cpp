@@ -1,5 +1,6 @@
 // Plan time, loads, and contacts that are early, late or lost.
 #include <gtest/gtest.h>
+#include <locograph/common/error.h>
 #include <locograph/execution/motion_player.h>
 
 #include "execution/standing_coman.h"
@@ -105,6 +106,61 @@ TEST_F(Step, AContactThatSlipsIsGivenUp) {
   player.advance(measured);
   EXPECT_EQ(player.halted(), "left_foot slips");
   EXPECT_EQ(player.contacts()[0].held, nullptr);
+}
+
+TEST_F(Step, GoesOnAlongAnotherMotion) {
+  MotionPlayer player(coman.robot, coman.effectors, coman.world, step(), options);
+  play(player, 0.7);
+  const HeldContact* left = player.contacts()[0].held;
+  const Eigen::VectorXd before = player.reference().configuration;
+  Motion higher = step();
+  higher.configurations[3][coman.robot.base_configuration_size()] += 0.05;
+  player.follow(coman.world, higher);
+  player.advance(measured);
+  EXPECT_LT((player.reference().configuration - before).norm(), 1e-3) << "no jump";
+  EXPECT_EQ(player.contacts()[0].held, left) << "the same contact";
+  play(player, 1.4999);
+  EXPECT_NEAR((player.reference().configuration - higher.configurations[3]).norm(), 0.0, 1e-3);
+}
+
+TEST_F(Step, StopsWhereAnotherMotionEnds) {
+  MotionPlayer player(coman.robot, coman.effectors, coman.world, step(), options);
+  play(player, 0.7);
+  Motion shorter = step();
+  const auto cut = [&shorter](std::size_t size) {
+    shorter.time_s.resize(size);
+    shorter.configurations.resize(size);
+    shorter.stance_from.resize(size);
+  };
+  cut(3);
+  player.follow(coman.world, shorter);
+  while (!player.done()) player.advance(measured);
+  EXPECT_TRUE(player.at_end());
+  EXPECT_EQ(player.plan_time_s(), 1.0);
+  MotionPlayer late(coman.robot, coman.effectors, coman.world, step(), options);
+  play(late, 0.7);
+  cut(2);
+  EXPECT_THROW(late.follow(coman.world, shorter), Error) << "it is beyond that";
+}
+
+TEST_F(Step, SlowsDownBeforeAnEndAtWhichTheMotionDoesNotRest) {
+  Motion moving = step();
+  moving.stance_from = {1, 1, 1, 1, 1};
+  moving.slopes.resize(5);
+  moving.slopes[4] = Eigen::VectorXd::Zero(coman.robot.tangent_size());
+  moving.slopes[4][coman.robot.base_tangent_size()] = 0.3;
+  MotionPlayer player(coman.robot, coman.effectors, coman.world, moving, options);
+  double fastest = 0.0;
+  while (!player.done()) {
+    const double before = player.reference().velocity.norm();
+    player.advance(measured);
+    if (player.plan_time_s() > 1.6) {
+      fastest = std::max(fastest, std::abs(player.reference().velocity.norm() - before));
+    }
+  }
+  EXPECT_TRUE(player.at_end());
+  EXPECT_EQ(player.reference().velocity.norm(), 0.0);
+  EXPECT_LT(fastest, 0.02) << "it does not stop at once";
 }
 
 TEST_F(Step, WhereAPlanHasNoTimeToLoadItIsGivenSome) {
