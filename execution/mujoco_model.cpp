@@ -22,10 +22,40 @@ constexpr double kPlateHalf_m = 0.001;  // of surfaces, which the judge knows no
 constexpr double kBarePoint_m = 0.005;  // radius of a point without one
 constexpr double kEndless_m = 1000.0;   // half the length of a surface without an end
 constexpr double kOtherFriction = 0.5;  // where neither world nor end effectors state any
-constexpr double kBlock_m = 0.25;       // of a map, in one body
+constexpr double kBlock_m = 0.5;        // of a map, in one body
 // Of contacts and equalities: near what integrating in steps of 1 ms allows.
 constexpr const char* kStiff = " solref=\"0.004 1\" solimp=\"0.95 0.99 0.001 0.5 2\"";
 constexpr double kLeastInertia = 1e-14;  // kg m^2; MuJoCo wants more than 1e-15
+
+/// Of voxels: those from low to high, high excluded.
+struct VoxelBox {
+  std::array<int, 3> low, high;
+};
+
+/// The same voxels in fewer boxes: two that share a whole face become one.
+void merge(std::vector<VoxelBox>& boxes) {
+  for (std::size_t before = 0; before != boxes.size();) {
+    before = boxes.size();
+    for (std::size_t along = 0; along < 3; ++along) {
+      const std::size_t a = (along + 1) % 3, b = (along + 2) % 3;
+      const auto section = [a, b](const VoxelBox& box) {
+        return std::array{box.low[a], box.high[a], box.low[b], box.high[b]};
+      };
+      std::ranges::sort(
+          boxes, {}, [&](const VoxelBox& box) { return std::pair(section(box), box.low[along]); });
+      std::size_t last = 0;
+      for (std::size_t i = 1; i < boxes.size(); ++i) {
+        if (section(boxes[i]) == section(boxes[last]) &&
+            boxes[i].low[along] == boxes[last].high[along]) {
+          boxes[last].high[along] = boxes[i].high[along];
+        } else {
+          boxes[++last] = boxes[i];
+        }
+      }
+      if (!boxes.empty()) boxes.resize(last + 1);
+    }
+  }
+}
 
 class ModelWriter {
  public:
@@ -186,26 +216,36 @@ class ModelWriter {
     write_map();
   }
 
-  // Cells that are near each other are one body: MuJoCo sorts bodies by where they are.
+  // Cells that are near each other are one body: MuJoCo sorts bodies by where they are. Those side
+  // by side are one box.
   void write_map() {
     if (!world_.map) return;
     const octomap::OcTree& map = *world_.map;
-    std::map<std::array<int, 3>, std::vector<std::pair<Eigen::Vector3d, double>>> blocks;
+    const double voxel_m = map.getResolution();
+    std::map<std::array<int, 3>, std::vector<VoxelBox>> blocks;
     for (auto leaf = map.begin_leafs(); leaf != map.end_leafs(); ++leaf) {
       if (!map.isNodeOccupied(*leaf)) continue;
       const Eigen::Vector3d centre(leaf.getX(), leaf.getY(), leaf.getZ());
-      const double half_m = 0.5 * leaf.getSize();
-      const Eigen::Vector3d halves = Eigen::Vector3d::Constant(half_m);
+      const Eigen::Vector3d halves = Eigen::Vector3d::Constant(0.5 * leaf.getSize());
       if (!options_.reach.intersects({centre - halves, centre + halves})) continue;
-      const auto block = [&](int i) { return static_cast<int>(std::floor(centre[i] / kBlock_m)); };
-      blocks[{block(0), block(1), block(2)}].emplace_back(centre, half_m);
+      std::array<int, 3> block{};
+      VoxelBox box{};
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto axis = static_cast<Eigen::Index>(i);
+        block[i] = static_cast<int>(std::floor(centre[axis] / kBlock_m));
+        box.low[i] = static_cast<int>(std::lround((centre - halves)[axis] / voxel_m));
+        box.high[i] = static_cast<int>(std::lround((centre + halves)[axis] / voxel_m));
+      }
+      blocks[block].push_back(box);
     }
     int count = 0;
-    for (const auto& [at, cells] : blocks) {
+    for (auto& [at, boxes] : blocks) {
+      merge(boxes);
       text_ << "<body name=\"map_" << count++ << "\">\n";
-      for (const auto& [centre, half_m] : cells) {
-        text_ << "<geom type=\"box\" size=\"" << row(Eigen::Vector3d::Constant(half_m))
-              << "\" pos=\"" << row(centre) << '"';
+      for (const VoxelBox& box : boxes) {
+        const Eigen::Vector3i low(box.low.data()), high(box.high.data());
+        text_ << "<geom type=\"box\" size=\"" << row(0.5 * voxel_m * (high - low).cast<double>())
+              << "\" pos=\"" << row(0.5 * voxel_m * (low + high).cast<double>()) << '"';
         end_world_geom(0.0);
       }
       text_ << "</body>\n";

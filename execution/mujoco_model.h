@@ -19,7 +19,8 @@
 ///               off until they are switched on. They are to be 2 kGraspHalf_m apart along the bar,
 ///               about which the hand turns freely; one, where the grasp bears no moments
 ///   obstacle_O  obstacle O; where it moves or is not always there also a body that is to be moved
-///   map_M       cells of the map that reach into options.reach, in blocks
+///   map_M       cells of the map that reach into options.reach, in blocks, those side
+///               by side as one box
 ///
 /// The robot touches the world, not itself. A body with end effectors touches with these only; the
 /// others touch with all their collision shapes, of meshes with their convex hulls, flat ones

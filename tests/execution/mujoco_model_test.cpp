@@ -3,6 +3,7 @@
 #include <locograph/execution/engine.h>
 
 #include <memory>
+#include <sstream>
 
 #include "robots/robot_test_support.h"
 
@@ -62,6 +63,30 @@ TEST_F(MujocoModel, HoldsCellsOfAMapThatAreWithinReach) {
   EXPECT_EQ(cells({.reach = {-one, one}}), 1);
   EXPECT_EQ(cells({.reach = {-0.4 * one, 0.4 * one}}), 0);
   EXPECT_NO_THROW(Engine(robot, {}, {.map = map}));
+}
+
+TEST_F(MujocoModel, CellsOfAMapThatAreSideBySideAreOneBox) {
+  const Robot robot = robot_of(small_robot_urdf());
+  const auto map = std::make_shared<octomap::OcTree>(0.1);
+  // Three by two, one on top, and one that only shares an edge.
+  for (const float x : {1.05F, 1.15F, 1.25F}) {
+    for (const float y : {1.05F, 1.15F}) map->updateNode(octomap::point3d(x, y, 0.05F), true);
+  }
+  map->updateNode(octomap::point3d(1.05F, 1.05F, 0.15F), true);
+  map->updateNode(octomap::point3d(1.35F, 1.25F, 0.05F), true);
+  const std::string text = mujoco_model(robot, {}, {.map = map});
+  double volume = 0.0;
+  int boxes = 0;
+  const std::string mark = "<geom type=\"box\" size=\"";
+  for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at + 1)) {
+    std::istringstream numbers(text.substr(at + mark.size()));
+    double x = 0.0, y = 0.0, z = 0.0;
+    numbers >> x >> y >> z;
+    volume += 8.0 * x * y * z;
+    ++boxes;
+  }
+  EXPECT_EQ(boxes, 3);
+  EXPECT_NEAR(volume, 8e-3, 1e-9);
 }
 
 TEST_F(MujocoModel, HoldsTheWorldOnce) {
