@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "common/sanitized.h"
 #include "planners/online/drive_past_box.h"
 
 namespace locograph {
@@ -21,6 +22,10 @@ class CarriedOut : public testing::Test {
   Motion motion = planned;
   double now_s = 0.0;
   int changes = 0;
+
+  void SetUp() override {
+    if (test::kSanitized) GTEST_SKIP() << "takes long there";
+  }
 
   WalkReport carry_out(const std::vector<Obstacle>& obstacles, double seen_at_s) {
     const auto world = seeing(obstacles);
