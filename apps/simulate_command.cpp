@@ -137,6 +137,7 @@ Json result_json(const SimulationResult& result, bool estimated) {
       {"max_contact_slip_m", result.max_contact_slip_m},
       {"slipping", result.slipping},
       {"other_link", result.other_link},
+      {"touched_link", result.touched_link},
       {"other_touch_N", result.other_touch_N},
       {"max_torque_ratio", result.max_torque_ratio},
       {"max_estimate_error_m", nullptr},

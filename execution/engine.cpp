@@ -296,7 +296,14 @@ class Engine::Implementation {
       Eigen::Vector3d force = world_from_contact * Eigen::Map<const Eigen::Vector3d>(wrench);
       Eigen::Vector3d moment = world_from_contact * Eigen::Map<const Eigen::Vector3d>(wrench + 3);
       int geom = contact.geom2;
-      if (model->geom_contype[geom] == 0) {
+      if (is_robots(contact.geom1) && is_robots(geom)) {
+        if (wrench[0] > other.pressing_N) {
+          other = {wrench[0], link_of_body(model->geom_bodyid[contact.geom1]),
+                   link_of_body(model->geom_bodyid[geom])};
+        }
+        continue;
+      }
+      if (!is_robots(geom)) {
         geom = contact.geom1;
         force = -force;
         moment = -moment;
@@ -309,9 +316,13 @@ class Engine::Implementation {
         moments[e] +=
             moment + (Eigen::Map<const Eigen::Vector3d>(contact.pos) - point(e)).cross(force);
       } else if (wrench[0] > other.pressing_N) {
-        other = {wrench[0], link_of_body(model->geom_bodyid[geom])};
+        other = {wrench[0], link_of_body(model->geom_bodyid[geom]), -1};
       }
     }
+  }
+
+  bool is_robots(int geom) const {
+    return std::ranges::find(body, model->geom_bodyid[geom]) != body.end();
   }
 
   /// The three rows of a held point are its force on the hand, along the axes of the world.

@@ -70,11 +70,12 @@ class Engine {
   /// The same of the whole robot.
   Eigen::Vector3d total_contact_force() const;
 
-  /// The largest pressing force [N] on a part of the robot that is no end effector, and one of the
-  /// links of that part; 0: nothing else touches.
+  /// The largest pressing force [N] on a part of the robot that is no end effector, or between two
+  /// parts of it, and one of the links of that part; 0: nothing else touches.
   struct OtherTouch {
     double pressing_N = 0.0;
     int link = -1;
+    int touched = -1;  ///< a link of the other part of the robot; -1: the world
   };
   OtherTouch other_touch() const;
   /// How deep the robot is in anything [m].

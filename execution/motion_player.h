@@ -65,8 +65,8 @@ class MotionPlayer {
   MotionPlayer& operator=(const MotionPlayer&) = delete;
 
   /// Goes on along another motion, which is the same as before up to the configuration after
-  /// plan_time_s(): configurations, times, and stances. Throws Error as the constructor does, and
-  /// for a motion that ends before that.
+  /// plan_time_s(): configurations, slopes, times and stances. Throws Error as the constructor
+  /// does, and for a motion that ends before that.
   void follow(const World& world, Motion motion);
 
   /// One cycle on.

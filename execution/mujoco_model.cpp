@@ -78,7 +78,9 @@ class ModelWriter {
     text_ << "<worldbody>\n";
     write_world();
     write_body(0);
-    text_ << "</worldbody>\n<actuator>\n";
+    text_ << "</worldbody>\n<contact>\n";
+    write_self_contacts();
+    text_ << "</contact>\n<actuator>\n";
     write_motors();
     text_ << "</actuator>\n<equality>\n";
     write_grasps();
@@ -308,7 +310,6 @@ class ModelWriter {
       const int link = robot_.link_index(effector.link);
       if (body_of(link) == body) write_effector(i, effector, tree_.body_from_link(link));
     }
-    if (has_effector(body)) return;
     for (std::size_t link = 0; link < robot_.links().size(); ++link) {
       if (tree_.body_of_link[link] != body) continue;
       for (const CollisionShape& shape : robot_.links()[link].collision) write_shape(shape);
@@ -357,7 +358,6 @@ class ModelWriter {
   void write_meshes() {
     text_ << "<asset>\n";
     for (std::size_t link = 0; link < robot_.links().size(); ++link) {
-      if (has_effector(tree_.body_of_link[link])) continue;
       for (const CollisionShape& shape : robot_.links()[link].collision) {
         if (shape.type != ShapeType::kMesh || !shape.mesh_found) continue;
         text_ << "<mesh name=\"" << mesh_name(shape) << "\" vertex=\"";
@@ -397,15 +397,21 @@ class ModelWriter {
     return corners;
   }
 
-  std::string mesh_name(const CollisionShape& shape) const {
+  /// Of its link and its number there.
+  std::string numbers_of(const CollisionShape& shape) const {
     const std::vector<CollisionShape>& all =
         robot_.links()[static_cast<std::size_t>(shape.link)].collision;
-    return "mesh_" + std::to_string(shape.link) + '_' + std::to_string(&shape - all.data());
+    return std::to_string(shape.link) + '_' + std::to_string(&shape - all.data());
+  }
+  std::string mesh_name(const CollisionShape& shape) const { return "mesh_" + numbers_of(shape); }
+
+  static bool is_there(const CollisionShape& shape) {
+    return shape.type != ShapeType::kMesh || shape.mesh_found;
   }
 
   void write_shape(const CollisionShape& shape) {
-    if (shape.type == ShapeType::kMesh && !shape.mesh_found) return;
-    text_ << "<geom";
+    if (!is_there(shape)) return;
+    text_ << "<geom name=\"shape_" << numbers_of(shape) << '"';
     switch (shape.type) {
       case ShapeType::kSphere:
         text_ << " type=\"sphere\" size=\"" << shape.radius << '"';
@@ -423,7 +429,32 @@ class ModelWriter {
         break;
     }
     write_pose(tree_.body_from_link(shape.link) * shape.link_from_shape);
-    end_robot_geom();
+    if (has_effector(body_of(shape.link))) {
+      text_ << " contype=\"0\" conaffinity=\"0\"/>\n";
+    } else {
+      end_robot_geom();
+    }
+  }
+
+  void write_self_contacts() {
+    const auto shapes_of = [this](int link) -> const std::vector<CollisionShape>& {
+      return robot_.links()[static_cast<std::size_t>(link)].collision;
+    };
+    const auto parent = [this](int body) {
+      return tree_.bodies[static_cast<std::size_t>(body)].parent;
+    };
+    for (const auto& [first, second] : robot_.self_collision_pairs()) {
+      const int one = body_of(first), other = body_of(second);
+      if (parent(one) == other || parent(other) == one) continue;
+      for (const CollisionShape& a : shapes_of(first)) {
+        for (const CollisionShape& b : shapes_of(second)) {
+          if (!is_there(a) || !is_there(b)) continue;
+          text_ << "<pair geom1=\"shape_" << numbers_of(a) << "\" geom2=\"shape_" << numbers_of(b)
+                << "\" condim=\"3\" friction=\"" << kOtherFriction << ' ' << kOtherFriction
+                << " 0.005 0.0001 0.0001\"" << kStiff << "/>\n";
+        }
+      }
+    }
   }
 
   void write_motors() {

@@ -22,12 +22,16 @@
 ///   map_M       cells of the map that reach into options.reach, in blocks, those side
 ///               by side as one box
 ///
-/// The robot touches the world, not itself. A body with end effectors touches with these only; the
-/// others touch with all their collision shapes, of meshes with their convex hulls, flat ones
-/// 2 mm thick; meshes that were not found are left out. Friction is that of the world, MuJoCo takes
-/// the larger one of two: of surfaces and bars their own, of a box the least of its faces, and
-/// where none is stated the least of the end effectors. A surface without any end is a plane,
-/// another one a box of 2 mm below it. A mimic joint is an equality with the joint that it follows.
+///   shape_L_K   collision shape K of link L
+///
+/// A body with end effectors touches the world with these only; the others touch it with all their
+/// collision shapes, of meshes with their convex hulls, flat ones 2 mm thick; meshes that were not
+/// found are left out. The robot touches itself with the shapes of Robot::self_collision_pairs(),
+/// but for those of two bodies with a joint between them.
+/// Friction is that of the world, MuJoCo takes the larger one of two: of surfaces and bars their
+/// own, of a box the least of its faces, and where none is stated the least of the end effectors. A
+/// surface without any end is a plane, another one a box of 2 mm below it. A mimic joint is an
+/// equality with the joint that it follows.
 ///
 /// Errors: those of options, of body_inertias(), require_solid_bodies() and of
 /// require_sound_effector(); links of bodies without mass or inertia; kinds of contact that are not

@@ -216,10 +216,12 @@ class Run {
     result_.carried_out = result_.reached_goal && result_.max_contact_slip_m <= kMostSlip_m &&
                           result_.other_link.empty();
     if (result_.reached_goal && !result_.carried_out) {
-      result_.reason = result_.other_link.empty()
-                           ? "contact of " + result_.slipping + " slips by " +
-                                 millimetres(result_.max_contact_slip_m)
-                           : "link " + result_.other_link + " touches";
+      result_.reason =
+          result_.other_link.empty()
+              ? "contact of " + result_.slipping + " slips by " +
+                    millimetres(result_.max_contact_slip_m)
+              : "link " + result_.other_link + " touches" +
+                    (result_.touched_link.empty() ? "" : " link " + result_.touched_link);
     }
     result_.processor_s = processor_seconds() - began;
     return std::move(result_);
@@ -431,7 +433,10 @@ class Run {
     }
     const Engine::OtherTouch other = engine_.other_touch();
     if (other.pressing_N > kTouched_N) {
-      tell_touch(other.pressing_N, robot_.links()[static_cast<std::size_t>(other.link)].name);
+      const auto name = [&](int link) {
+        return robot_.links()[static_cast<std::size_t>(link)].name;
+      };
+      tell_touch(other.pressing_N, name(other.link), other.touched < 0 ? "" : name(other.touched));
     }
     watch_free_effectors();
     if (engine_.diverged()) {
@@ -447,11 +452,13 @@ class Run {
     }
   }
 
-  void tell_touch(double pressing_N, const std::string& link) {
+  /// touched: a link; empty: the world.
+  void tell_touch(double pressing_N, const std::string& link, const std::string& touched) {
     if (pressing_N <= result_.other_touch_N) return;
     result_.other_touch_N = pressing_N;
     result_.other_touch_at_s = player_.plan_time_s();
     result_.other_link = link;
+    result_.touched_link = touched;
   }
 
   bool is_near_contact(std::size_t e) const {
@@ -471,7 +478,7 @@ class Run {
       const double force_N = engine_.contact_force(static_cast<int>(e)).norm();
       own.touches_s = force_N > kTouched_N ? own.touches_s + options_.player.cycle_s : 0.0;
       if (own.touches_s > kBrief_s && !is_near_contact(e)) {
-        tell_touch(force_N, effectors_[e].link);
+        tell_touch(force_N, effectors_[e].link, "");
       }
     }
   }

@@ -90,7 +90,8 @@ struct SimulationResult {
   double time_s = 0.0, plan_time_s = 0.0, waited_s = 0.0;
   double max_joint_error_rad = 0.0, max_base_error_m = 0.0, max_base_error_rad = 0.0;
   double max_contact_slip_m = 0.0, max_torque_ratio = 0.0, other_touch_N = 0.0;
-  std::string slipping = {}, other_link = {};                       ///< what did
+  std::string slipping = {}, other_link = {};  ///< what did
+  std::string touched_link = {};               ///< by other_link; empty: something in the world
   double max_estimate_error_m = 0.0, max_estimate_error_rad = 0.0;  ///< of the base
   double slip_at_s = -1.0, other_touch_at_s = -1.0;                 ///< of the plan; -1: never
   double pushed_at_s = -1.0;                                        ///< -1: it was not

@@ -191,7 +191,8 @@ TEST_P(EngineWithMimicJoints, HasOurDynamicsAndKeepsThemTogether) {
 INSTANTIATE_TEST_SUITE_P(FixedOrFloating, EngineWithMimicJoints, testing::Bool());
 
 TEST(Engine, ObstaclesMoveAndComeAndGo) {
-  const Robot robot = Robot::load(model("go2/go2.urdf"), {}, {.floating_base = true});
+  const Robot robot =
+      Robot::load(model("go2/go2.urdf"), model("go2/go2.srdf"), {.floating_base = true});
   Obstacle cart;
   cart.size = Eigen::Vector3d::Constant(0.2);
   cart.world_from_obstacle.translation().x() = 3.0;
@@ -213,6 +214,35 @@ TEST(Engine, ObstaclesMoveAndComeAndGo) {
   EXPECT_EQ(penetration_m(2.4), 0.0);
   EXPECT_EQ(penetration_m(3.0), 0.0);
   EXPECT_GT(penetration_m(4.5), 0.05);
+}
+
+TEST(Engine, ARobotTouchesItself) {
+  const Robot robot =
+      Robot::load(model("go2/go2.urdf"), model("go2/go2.srdf"), {.floating_base = true});
+  Engine engine(robot, {}, {});
+  Eigen::VectorXd q = robot.neutral_configuration();
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(robot.tangent_size());
+  engine.set_state(q, still);
+  EXPECT_EQ(engine.penetration_m(), 0.0);
+  // Both front feet to the middle.
+  const auto turn = [&](const char* joint, double by_rad) {
+    for (int i = 0; i < robot.active_joint_count(); ++i) {
+      if (robot.active_joint(i).name == joint) q[robot.base_configuration_size() + i] += by_rad;
+    }
+  };
+  turn("FL_hip_joint", -0.6);
+  turn("FR_hip_joint", 0.6);
+  engine.set_state(q, still);
+  EXPECT_GT(engine.penetration_m(), 0.0);
+  engine.step();
+  const Engine::OtherTouch touch = engine.other_touch();
+  EXPECT_GT(touch.pressing_N, 1.0);
+  ASSERT_GE(touch.touched, 0);
+  const std::string& one = robot.links()[static_cast<std::size_t>(touch.link)].name;
+  const std::string& other = robot.links()[static_cast<std::size_t>(touch.touched)].name;
+  EXPECT_TRUE(one.starts_with("F") && other.starts_with("F")) << one << " and " << other;
+  EXPECT_NE(one.substr(0, 2), other.substr(0, 2));
+  EXPECT_EQ(engine.total_contact_force().norm(), 0.0) << "of the world";
 }
 
 TEST(Engine, RefusesVectorsOfAnotherSize) {

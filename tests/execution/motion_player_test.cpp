@@ -109,11 +109,14 @@ TEST_F(Step, AContactThatSlipsIsGivenUp) {
 }
 
 TEST_F(Step, GoesOnAlongAnotherMotion) {
-  MotionPlayer player(coman.robot, coman.effectors, coman.world, step(), options);
+  const std::vector<Eigen::VectorXd> stops(5, Eigen::VectorXd::Zero(coman.robot.tangent_size()));
+  Motion first = step();
+  first.slopes = stops;
+  MotionPlayer player(coman.robot, coman.effectors, coman.world, first, options);
   play(player, 0.7);
   const HeldContact* left = player.contacts()[0].held;
   const Eigen::VectorXd before = player.reference().configuration;
-  Motion higher = step();
+  Motion higher = first;
   higher.configurations[3][coman.robot.base_configuration_size()] += 0.05;
   player.follow(coman.world, higher);
   player.advance(measured);
