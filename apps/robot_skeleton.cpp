@@ -259,6 +259,7 @@ Json write_skeleton(const std::string& name_or_file, const std::filesystem::path
   const std::vector<EndEffector> effectors = proposed_effectors(robot);
   LinkPairOptions near = sampling;
   near.near_m = kNever_m;
+  near.stop_when_decided = true;
   const LinkPairs sampled = sample_link_pairs(robot, near);
   const Eigen::VectorXd bent =
       effectors.empty() ? robot.neutral_configuration() : bent_legs(robot, effectors);

@@ -3,6 +3,7 @@
 #include <locograph/common/uniform.h>
 #include <locograph/robots/kinematic_tree.h>
 #include <locograph/robots/robot_state.h>
+#include <locograph/world/gjk.h>
 #include <locograph/world/link_pairs.h>
 #include <locograph/world/link_solid.h>
 
@@ -10,6 +11,7 @@
 #include <limits>
 #include <mutex>
 #include <numbers>
+#include <numeric>
 #include <random>
 #include <set>
 
@@ -17,6 +19,8 @@ namespace locograph {
 namespace {
 
 constexpr int kSamplesPerChunk = 50;
+constexpr int kDecisions = 40;    // LinkPairOptions::stop_when_decided, on the way
+constexpr double kNear_m = 1e-5;  // of distances between hulls
 
 struct PlacedSolid {
   ConvexShape shape;
@@ -84,6 +88,24 @@ class Solids {
     }
   }
 
+  /// As shape_distance(), but not how deep hulls are in each other.
+  static double distance(const ConvexShape& a, const Eigen::Isometry3d& world_from_a,
+                         const ConvexShape& b, const Eigen::Isometry3d& world_from_b) {
+    const auto is_hull = [](const ConvexShape& s) { return s.type() == ConvexShape::Type::kHull; };
+    if (!is_hull(a) && !is_hull(b))
+      return shape_distance(a, world_from_a, b, world_from_b).distance;
+    const auto support = [](const ConvexShape& shape, const Eigen::Isometry3d& pose) {
+      return [&shape, &pose](const Eigen::Vector3d& n) -> Eigen::Vector3d {
+        return pose * shape.support(pose.linear().transpose() * n);
+      };
+    };
+    Eigen::Vector3d between = world_from_a * a.center() - world_from_b * b.center();
+    if (between.norm() < 1e-9) between = Eigen::Vector3d::UnitX();
+    const GjkResult gjk =
+        gjk_distance(support(a, world_from_a), support(b, world_from_b), between, kNear_m);
+    return gjk.distance > 0.0 ? gjk.distance : -1.0;
+  }
+
   /// How far apart two links are, at most `most`; below 0 where they overlap.
   double gap(const RobotState& state, int first, int second, double most) const {
     double least = most;
@@ -94,8 +116,8 @@ class Solids {
         const Eigen::Isometry3d world_from_b = state.world_from_link(second) * b.link_from_shape;
         const double reach = a.shape.bounding_radius() + b.shape.bounding_radius() + most;
         if ((world_from_b * b.shape.center() - centre).squaredNorm() >= reach * reach) continue;
-        least =
-            std::min(least, shape_distance(a.shape, world_from_a, b.shape, world_from_b).distance);
+        if (capsule_distance(a.shape, world_from_a, b.shape, world_from_b) >= least) continue;
+        least = std::min(least, distance(a.shape, world_from_a, b.shape, world_from_b));
         if (least < 0.0) return least;
       }
     }
@@ -114,32 +136,44 @@ LinkPairs sample_link_pairs(const Robot& robot, const LinkPairOptions& options) 
   }
   const Solids solids(robot);
   LinkPairs found{options.samples, movable_pairs(robot)};
+  std::vector<std::size_t> counted(found.pairs.size());
+  std::iota(counted.begin(), counted.end(), std::size_t{0});
   std::mutex mutex;
   ThreadPool threads(options.threads);
   const int chunks = (options.samples + kSamplesPerChunk - 1) / kSamplesPerChunk;
-  threads.run(chunks, [&](int chunk) {
-    std::seed_seq seed{static_cast<std::uint32_t>(options.seed),
-                       static_cast<std::uint32_t>(options.seed >> 32),
-                       static_cast<std::uint32_t>(chunk)};
-    std::mt19937_64 random(seed);
-    RobotState state(robot);
-    std::vector<int> meets(found.pairs.size(), 0), near(found.pairs.size(), 0);
-    const int last = std::min(options.samples, (chunk + 1) * kSamplesPerChunk);
-    for (int sample = chunk * kSamplesPerChunk; sample < last; ++sample) {
-      state.update(random_posture(robot, random).data());
-      for (std::size_t p = 0; p < meets.size(); ++p) {
-        const LinkPair& pair = found.pairs[p];
-        const double gap_m = solids.gap(state, pair.first, pair.second, options.near_m);
-        meets[p] += gap_m < 0.0 ? 1 : 0;
-        near[p] += gap_m < options.near_m ? 1 : 0;
+  const int at_once = options.stop_when_decided ? std::max(1, chunks / kDecisions) : chunks;
+  for (int begin = 0; begin < chunks; begin += at_once) {
+    threads.run(std::min(at_once, chunks - begin), [&](int part) {
+      const int chunk = begin + part;
+      std::seed_seq seed{static_cast<std::uint32_t>(options.seed),
+                         static_cast<std::uint32_t>(options.seed >> 32),
+                         static_cast<std::uint32_t>(chunk)};
+      std::mt19937_64 random(seed);
+      RobotState state(robot);
+      std::vector<int> meets(counted.size(), 0), near(counted.size(), 0);
+      const int last = std::min(options.samples, (chunk + 1) * kSamplesPerChunk);
+      for (int sample = chunk * kSamplesPerChunk; sample < last; ++sample) {
+        state.update(random_posture(robot, random).data());
+        for (std::size_t p = 0; p < counted.size(); ++p) {
+          const LinkPair& pair = found.pairs[counted[p]];
+          const double gap_m = solids.gap(state, pair.first, pair.second, options.near_m);
+          meets[p] += gap_m < 0.0 ? 1 : 0;
+          near[p] += gap_m < options.near_m ? 1 : 0;
+        }
       }
-    }
-    const std::lock_guard<std::mutex> lock(mutex);
-    for (std::size_t p = 0; p < meets.size(); ++p) {
-      found.pairs[p].meets += meets[p];
-      found.pairs[p].near += near[p];
-    }
-  });
+      const std::lock_guard<std::mutex> lock(mutex);
+      for (std::size_t p = 0; p < counted.size(); ++p) {
+        found.pairs[counted[p]].meets += meets[p];
+        found.pairs[counted[p]].near += near[p];
+      }
+    });
+    if (!options.stop_when_decided) continue;
+    const int drawn = std::min(options.samples, (begin + at_once) * kSamplesPerChunk);
+    std::erase_if(counted, [&](std::size_t p) {
+      const LinkPair& pair = found.pairs[p];
+      return std::max(pair.meets, pair.near) > 0 && drawn - pair.meets > 0.1 * options.samples;
+    });
+  }
   return found;
 }
 

@@ -39,6 +39,9 @@ struct LinkPairOptions {
   std::uint64_t seed = 0;
   int threads = 1;
   double near_m = 0.0;
+  /// Pairs are not counted any further once they have come near and have not met in a tenth of all
+  /// samples: they neither always meet nor never come near.
+  bool stop_when_decided = false;
 };
 
 struct LinkPairs {
