@@ -5,6 +5,7 @@
 #include <locograph/plugins/configuration/self_collision_shapes.h>
 #include <locograph/plugins/configuration/sphere_overshoot.h>
 #include <locograph/robots/approximation.h>
+#include <locograph/world/link_pairs.h>
 
 #include <cmath>
 #include <string>
@@ -52,7 +53,10 @@ Json describe_robot(const std::filesystem::path& path) {
   const std::filesystem::path srdf = srdf_beside(path);
   RobotOptions options;
   options.lenient_srdf = true;
-  const Robot robot = Robot::load(path, srdf, options);
+  Robot robot = Robot::load(path, srdf, options);
+  if (srdf.empty() && robot.missing_meshes().empty()) {
+    robot.leave_out_pairs(always_overlapping_links(robot));
+  }
 
   int elements = 0, shapes = 0;
   for (const Link& link : robot.links()) {
@@ -80,6 +84,7 @@ Json describe_robot(const std::filesystem::path& path) {
     json["names_unknown_to_the_urdf"] = robot.warnings();
   }
   json["self_collision_pairs"] = robot.self_collision_pairs().size();
+  json["left_out_pairs"] = robot.left_out_pairs().size();
   json["cameras"] = Json::array();
   for (const DepthCamera& camera : cameras_of(robot)) {
     json["cameras"].push_back(

@@ -172,6 +172,15 @@ class Check {
       add(listed_names(shapeless) + ": that " +
           (shapeless.size() > 1 ? "they touch nothing" : "it touches nothing") +
           " (no collision shape)");
+    if (const auto& pairs = context_.robot.left_out_pairs(); !pairs.empty()) {
+      std::vector<std::string> names;
+      for (const auto& [first, second] : pairs) {
+        const auto& links = context_.robot.links();
+        names.push_back(links[static_cast<std::size_t>(first)].name + " and " +
+                        links[static_cast<std::size_t>(second)].name);
+      }
+      add(listed_names(names) + ": that they may overlap (they always do, and there is no SRDF)");
+    }
     return trusted;
   }
 

@@ -50,7 +50,8 @@
 ///                          share of what is allowed (ratio)
 ///
 /// Distances, the four from obstacle_distance on, are required: of a robot without any collision
-/// shape they are not judged. Links that have something to see and no shape are told as trusted.
+/// shape they are not judged. Links that have something to see and no shape are told as trusted,
+/// as are Robot::left_out_pairs().
 /// A vertex with a number that is not finite, of the wrong size, or with a quaternion near zero is
 /// reported; nothing else is checked there and next to it. Configuration i is held against the
 /// stances of the step before it and of the step after it. Between vertices the curve is judged

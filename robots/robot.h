@@ -178,6 +178,10 @@ class Robot {
   /// Link pairs, first < second, that both have collision shapes, are not disabled in the SRDF and
   /// are not connected through fixed joints only.
   const std::vector<std::pair<int, int>>& self_collision_pairs() const { return pairs_; }
+  /// Takes pairs out of them that nobody has disabled, as of links that always meet in a robot
+  /// without an SRDF; those that are none of them change nothing.
+  void leave_out_pairs(const std::vector<std::pair<int, int>>& pairs);
+  const std::vector<std::pair<int, int>>& left_out_pairs() const { return left_out_; }
 
   /// Axes (indices into axes()) between root and link, root first.
   std::span<const int> support(int link) const;
@@ -212,7 +216,7 @@ class Robot {
   std::vector<std::vector<int>> axes_of_active_;
   std::vector<JointGroup> groups_;
   std::vector<GroupState> states_;
-  std::vector<std::pair<int, int>> pairs_;
+  std::vector<std::pair<int, int>> pairs_, left_out_;
   std::vector<std::string> warnings_, urdf_warnings_;
   double total_mass_ = 0.0;
   std::shared_ptr<const KinematicTree> tree_;

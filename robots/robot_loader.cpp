@@ -105,6 +105,14 @@ std::vector<std::pair<int, int>> collision_pairs(const UrdfModel& urdf, const Sr
 
 }  // namespace
 
+void Robot::leave_out_pairs(const std::vector<std::pair<int, int>>& pairs) {
+  std::erase_if(pairs_, [&](const std::pair<int, int>& pair) {
+    const bool left_out = std::ranges::find(pairs, pair) != pairs.end();
+    if (left_out) left_out_.push_back(pair);
+    return left_out;
+  });
+}
+
 Robot Robot::load(const std::filesystem::path& urdf_file, const std::filesystem::path& srdf_file,
                   const RobotOptions& options) {
   UrdfModel urdf = read_urdf(urdf_file);

@@ -136,6 +136,12 @@ LinkPairs sample_link_pairs(const Robot& robot, const LinkPairOptions& options) 
   }
   const Solids solids(robot);
   LinkPairs found{options.samples, movable_pairs(robot)};
+  if (!options.only.empty()) {
+    std::erase_if(found.pairs, [&](const LinkPair& pair) {
+      return std::ranges::find(options.only, std::pair(pair.first, pair.second)) ==
+             options.only.end();
+    });
+  }
   std::vector<std::size_t> counted(found.pairs.size());
   std::iota(counted.begin(), counted.end(), std::size_t{0});
   std::mutex mutex;
@@ -189,6 +195,17 @@ std::vector<std::pair<int, int>> overlapping_links(const Robot& robot,
       overlapping.emplace_back(first, second);
   }
   return overlapping;
+}
+
+std::vector<std::pair<int, int>> always_overlapping_links(const Robot& robot) {
+  LinkPairOptions options{.samples = 1000, .stop_when_decided = true};
+  options.only = overlapping_links(robot, robot.neutral_configuration());
+  std::vector<std::pair<int, int>> always;
+  if (options.only.empty()) return always;
+  for (const LinkPair& pair : sample_link_pairs(robot, options).pairs) {
+    if (pair.always_meets(options.samples)) always.emplace_back(pair.first, pair.second);
+  }
+  return always;
 }
 
 }  // namespace locograph

@@ -42,6 +42,8 @@ struct LinkPairOptions {
   /// Pairs are not counted any further once they have come near and have not met in a tenth of all
   /// samples: they neither always meet nor never come near.
   bool stop_when_decided = false;
+  /// Those to be counted; empty: all.
+  std::vector<std::pair<int, int>> only = {};
 };
 
 struct LinkPairs {
@@ -55,6 +57,10 @@ struct LinkPairs {
 std::vector<std::pair<int, int>> overlapping_links(const Robot& robot,
                                                    const Eigen::VectorXd& configuration,
                                                    double within_m = 0.0);
+
+/// Those of Robot::self_collision_pairs() that overlap in the neutral configuration and in more
+/// than nine of ten of a thousand postures: shapes that overlap by construction.
+std::vector<std::pair<int, int>> always_overlapping_links(const Robot& robot);
 
 LinkPairs sample_link_pairs(const Robot& robot, const LinkPairOptions& options);
 

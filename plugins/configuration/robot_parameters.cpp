@@ -3,6 +3,7 @@
 #include <locograph/plugins/configuration/robot_parameters.h>
 #include <locograph/plugins/configuration/sphere_overshoot.h>
 #include <locograph/robots/shipped_robot.h>
+#include <locograph/world/link_pairs.h>
 
 #include <algorithm>
 
@@ -20,7 +21,11 @@ RobotParameter::RobotParameter(std::filesystem::path urdf_file, std::filesystem:
 }
 
 void RobotParameter::load() {
-  robot = std::make_shared<const Robot>(Robot::load(urdf, srdf, options));
+  Robot loaded = Robot::load(urdf, srdf, options);
+  if (srdf.empty() && loaded.missing_meshes().empty()) {
+    loaded.leave_out_pairs(always_overlapping_links(loaded));
+  }
+  robot = std::make_shared<const Robot>(std::move(loaded));
   spheres = covering_spheres(*robot, kSphereOvershoot_m);
   std::stable_sort(
       spheres.begin(), spheres.end(),

@@ -51,6 +51,17 @@ void follow(Motion& motion, const Robot& robot) {
   }
 }
 
+TEST(Honest, LinksThatMayOverlapAreTold) {
+  Robot robot = *standing().robot;
+  robot.leave_out_pairs({robot.self_collision_pairs().front()});
+  const CheckReport report =
+      Judge(std::make_shared<const Robot>(std::move(robot)), standing().world())
+          .check(standing().home, standing().feet, {});
+  ASSERT_FALSE(report.trusted.empty());
+  EXPECT_NE(report.trusted.back().find("that they may overlap"), std::string::npos)
+      << report.trusted.back();
+}
+
 TEST(Honest, StandingAndDrivingAreAccepted) {
   CheckOptions options;
   options.known = standing().known;

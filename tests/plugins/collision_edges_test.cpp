@@ -218,6 +218,24 @@ class TwoCapsules : public testing::Test {
   }
 };
 
+TEST_F(TwoCapsules, ThatAlwaysOverlapAreLeftOutWithoutAnSrdf) {
+  std::string urdf = kTwoCapsules;
+  const std::string limits = R"(lower="-2" upper="2")";
+  urdf.replace(urdf.find(limits), limits.size(), R"(lower="-0.01" upper="0.01")");
+  const std::string apart = R"(<origin xyz="0 0 0.2"/>)";
+  urdf.replace(urdf.find(apart), apart.size(), R"(<origin xyz="0 0 0.05"/>)");
+  const auto load = [&](const std::filesystem::path& srdf) {
+    return RobotParameter(folder.write("near.urdf", urdf), srdf, {.floating_base = false});
+  };
+  const RobotParameter without = load({});
+  EXPECT_TRUE(without.robot->self_collision_pairs().empty());
+  EXPECT_EQ(without.robot->left_out_pairs().size(), 1u);
+  EXPECT_TRUE(without.self_collision.pairs.empty());
+  const RobotParameter with = load(folder.write("near.srdf", "<robot name='slider'/>"));
+  EXPECT_EQ(with.robot->self_collision_pairs().size(), 1u) << "an SRDF has the word";
+  EXPECT_TRUE(with.robot->left_out_pairs().empty());
+}
+
 TEST_F(TwoCapsules, AtAKnownDistanceLackThatMuch) {
   ASSERT_EQ(robot.robot->self_collision.pairs.size(), 1u);
   ASSERT_EQ(robot.robot->self_collision.capsules.size(), 2u);

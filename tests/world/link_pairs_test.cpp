@@ -103,6 +103,29 @@ TEST_F(SwingingBall, ComesNearMoreOftenThanItMeets) {
   EXPECT_EQ(pair(found, "base", "swing").near, 0) << "0.3 m away, always";
 }
 
+TEST_F(SwingingBall, StopsCountingWhatIsDecided) {
+  LinkPairOptions options{.samples = kPostures, .seed = 3, .near_m = 0.1};
+  const LinkPairs all = sample_link_pairs(*robot, options);
+  options.stop_when_decided = true;
+  const LinkPairs some = sample_link_pairs(*robot, options);
+  ASSERT_EQ(some.pairs.size(), all.pairs.size());
+  for (std::size_t i = 0; i < all.pairs.size(); ++i) {
+    EXPECT_EQ(some.pairs[i].always_meets(kPostures), all.pairs[i].always_meets(kPostures)) << i;
+    EXPECT_EQ(some.pairs[i].near == 0, all.pairs[i].near == 0) << i;
+  }
+  EXPECT_LT(pair(some, "swing", "post").near, pair(all, "swing", "post").near);
+}
+
+TEST_F(SwingingBall, AlwaysOverlapsItsShellAlone) {
+  const std::vector<std::pair<int, int>> always = always_overlapping_links(*robot);
+  ASSERT_EQ(always.size(), 1u);
+  EXPECT_EQ(always[0], std::pair(robot->link_index("swing"), robot->link_index("shell")));
+  const std::size_t before = robot->self_collision_pairs().size();
+  robot->leave_out_pairs(always);
+  EXPECT_EQ(robot->self_collision_pairs().size(), before - 1);
+  EXPECT_EQ(robot->left_out_pairs(), always);
+}
+
 TEST(LinkPairs, OfAJointThatBendsThemIntoEachOtherMayNotBeOff) {
   const TemporaryFolder folder;
   const std::string ball =

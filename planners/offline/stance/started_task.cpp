@@ -161,8 +161,11 @@ StartedTask started_task(const Scenario& scenario, const ContactMoves& moves,
       return started;
     }
     if (moved && task.moves.draws < kMostDraws) continue;
+    const bool overlaps = reason.find("self_collision") != std::string::npos;
     throw Error(scenario.source, start_line, "no configuration stands at the start: " + reason,
-                "contacts that can be held");
+                overlaps && robot.srdf_file().empty()
+                    ? "an SRDF that says which links may overlap, as `info --write-srdf` makes one"
+                    : "contacts that can be held");
   }
 }
 
