@@ -55,7 +55,11 @@ Json describe_robot(const std::filesystem::path& path) {
   options.lenient_srdf = true;
   Robot robot = Robot::load(path, srdf, options);
   if (srdf.empty() && robot.missing_meshes().empty()) {
-    robot.leave_out_pairs(always_overlapping_links(robot));
+    try {
+      robot.leave_out_pairs(always_overlapping_links(robot));
+    } catch (const Error&) {
+      // A mesh that cannot be read: told with the approximation.
+    }
   }
 
   int elements = 0, shapes = 0;

@@ -202,8 +202,9 @@ ExitCode simulate_plan(const CommandOptions& command) {
       motion, judging.task ? judging.task->end_effectors() : std::vector<EndEffector>());
   progress.emplace("carrying out " + command.input);
   std::optional<Refining> refining;
-  const FinishOnSignal finish;
+  std::optional<FinishOnSignal> finish;  // the walk ends where the robot can stop
   if (command.refine) {
+    finish.emplace();
     about_file(file.name, [&] { refining.emplace(file, judging, command); });
     options.revise = [&](const SimulationMoment& now) { return refining->revise(now); };
   }

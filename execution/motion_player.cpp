@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace locograph {
 namespace {
@@ -18,6 +19,13 @@ constexpr double kCounts = 0.3;      // share of a contact that must not get los
 
 bool is_same(const Contact& a, const Contact& b) {
   return a.name() == b.name() && (a.position - b.position).norm() <= kSamePlace_m;
+}
+
+/// What is known of a stance that it still is.
+bool is_held(const std::vector<HeldContact>& held, const Stance& stance) {
+  return std::ranges::equal(
+      held, stance.contacts,
+      [](const HeldContact& one, const Contact& other) { return is_same(one.contact(), other); });
 }
 
 double smooth(double s) {
@@ -103,11 +111,15 @@ void MotionPlayer::take(const World& world) {
 /// As a stance is where it is first held.
 void MotionPlayer::find_what_holds(const World& world) {
   held_.resize(motion_.stances.size());
+  std::vector<char> done(held_.size(), 0);
   RobotState state(robot_);
   std::vector<Eigen::Isometry3d> poses;
   for (std::size_t i = 0; i < motion_.configurations.size(); ++i) {
     const auto stance = static_cast<std::size_t>(motion_.stance_from[i]);
-    if (!held_[stance].empty()) continue;
+    if (std::exchange(done[stance], char{1}) || is_held(held_[stance], motion_.stances[stance])) {
+      continue;
+    }
+    held_[stance].clear();
     state.update(motion_.configurations[i].data());
     poses.clear();
     for (std::size_t link = 0; link < robot_.links().size(); ++link) {

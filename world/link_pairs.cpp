@@ -198,7 +198,7 @@ std::vector<std::pair<int, int>> overlapping_links(const Robot& robot,
 }
 
 std::vector<std::pair<int, int>> always_overlapping_links(const Robot& robot) {
-  LinkPairOptions options{.samples = 1000, .stop_when_decided = true};
+  LinkPairOptions options{.samples = 300, .stop_when_decided = true};
   options.only = overlapping_links(robot, robot.neutral_configuration());
   std::vector<std::pair<int, int>> always;
   if (options.only.empty()) return always;

@@ -59,7 +59,7 @@ std::vector<std::pair<int, int>> overlapping_links(const Robot& robot,
                                                    double within_m = 0.0);
 
 /// Those of Robot::self_collision_pairs() that overlap in the neutral configuration and in more
-/// than nine of ten of a thousand postures: shapes that overlap by construction.
+/// than nine of ten of three hundred postures: shapes that overlap by construction.
 std::vector<std::pair<int, int>> always_overlapping_links(const Robot& robot);
 
 LinkPairs sample_link_pairs(const Robot& robot, const LinkPairOptions& options);

@@ -72,7 +72,7 @@ CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
   new_world_ = take_shown();
   if (settled_ && !new_world_ && answer_.executed == executed) {
     report = answer_;
-    report.detour = false;
+    report.detour = report.deadline_missed = false;
     report.statistics = {};
     report.statistics.constraints = answer_.statistics.constraints;
     report.statistics.total_s = watch.seconds();

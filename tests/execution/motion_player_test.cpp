@@ -126,6 +126,23 @@ TEST_F(Step, GoesOnAlongAnotherMotion) {
   EXPECT_NEAR((player.reference().configuration - higher.configurations[3]).norm(), 0.0, 1e-3);
 }
 
+TEST_F(Step, HoldsWhatAnotherMotionHolds) {
+  Motion first = step();
+  first.stances = {coman.both_feet(), coman.left_foot(), coman.both_feet()};
+  first.stance_from = {0, 1, 1, 2, 2};
+  MotionPlayer player(coman.robot, coman.effectors, coman.world, first, options);
+  play(player, 0.7);
+  const HeldContact* left = player.contacts()[0].held;
+  Motion other = first;
+  other.stances[2].contacts[1].position.x() += 0.01;
+  player.follow(coman.world, other);
+  player.advance(measured);
+  EXPECT_EQ(player.contacts()[0].held, left);
+  play(player, 1.51);
+  ASSERT_NE(player.contacts()[1].held, nullptr);
+  EXPECT_EQ(player.contacts()[1].held->contact().position, other.stances[2].contacts[1].position);
+}
+
 TEST_F(Step, StopsWhereAnotherMotionEnds) {
   MotionPlayer player(coman.robot, coman.effectors, coman.world, step(), options);
   play(player, 0.7);
