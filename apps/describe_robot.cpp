@@ -54,12 +54,10 @@ Json describe_robot(const std::filesystem::path& path) {
   RobotOptions options;
   options.lenient_srdf = true;
   Robot robot = Robot::load(path, srdf, options);
-  if (srdf.empty() && robot.missing_meshes().empty()) {
-    try {
-      robot.leave_out_pairs(always_overlapping_links(robot));
-    } catch (const Error&) {
-      // A mesh that cannot be read: told with the approximation.
-    }
+  try {
+    leave_out_always_overlapping(robot);
+  } catch (const Error&) {
+    // A mesh that cannot be read: told with the approximation.
   }
 
   int elements = 0, shapes = 0;

@@ -214,7 +214,9 @@ ExitCode simulate_plan(const CommandOptions& command) {
   if (refining) file.plan = plan_of(file.graph);
   // The engine knows where the plan ends, not where it should have led.
   std::string why = missed_goals(motion_of(file.graph, file.plan), judging);
-  if (refining && !refining->report().success()) why = refining->report().reason;
+  if (refining) {
+    if (const WalkReport walked = refining->report(); !walked.success()) why = walked.reason;
+  }
   if (!why.empty()) {
     result.reached_goal = result.carried_out = false;
     if (result.reason.empty()) result.reason = why;

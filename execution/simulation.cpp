@@ -287,10 +287,8 @@ class Run {
 
   void revise(const Eigen::VectorXd& configuration) {
     if (!options_.revise) return;
-    const double before = processor_seconds();
     std::optional<Motion> motion =
         options_.revise({clock_s(), player_.plan_time_s(), configuration});
-    result_.revised_s.push_back(processor_seconds() - before);
     if (motion) player_.follow(believed_, std::move(*motion));
   }
 

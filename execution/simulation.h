@@ -98,7 +98,6 @@ struct SimulationResult {
   std::vector<double> controller_s;  ///< processor time of each cycle
   double processor_s = 0.0;          ///< of all of it
   std::vector<SimulationSample> samples;
-  std::vector<double> revised_s;  ///< processor time of SimulationOptions::revise, each time
 };
 
 /// effectors: those of the robot's task; where the motion has contacts of others, it is refused.

@@ -208,4 +208,9 @@ std::vector<std::pair<int, int>> always_overlapping_links(const Robot& robot) {
   return always;
 }
 
+void leave_out_always_overlapping(Robot& robot) {
+  if (!robot.srdf_file().empty() || !robot.missing_meshes().empty()) return;
+  robot.leave_out_pairs(always_overlapping_links(robot));
+}
+
 }  // namespace locograph

@@ -22,9 +22,7 @@ RobotParameter::RobotParameter(std::filesystem::path urdf_file, std::filesystem:
 
 void RobotParameter::load() {
   Robot loaded = Robot::load(urdf, srdf, options);
-  if (srdf.empty() && loaded.missing_meshes().empty()) {
-    loaded.leave_out_pairs(always_overlapping_links(loaded));
-  }
+  leave_out_always_overlapping(loaded);
   robot = std::make_shared<const Robot>(std::move(loaded));
   spheres = covering_spheres(*robot, kSphereOvershoot_m);
   std::stable_sort(
