@@ -1,10 +1,12 @@
 #include <locograph/apps/describe.h>
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/info_command.h>
+#include <locograph/apps/refusal.h>
 #include <locograph/apps/robot_skeleton.h>
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -52,8 +54,11 @@ Command add_info(OptionParser& app) {
               print_result(describe_link_pairs(options->file, options->sampling), options->json);
               return kDone;
             }
-            print_result(describe_file(options->file, graph_types(options->plugins)),
-                         options->json);
+            Json told = describe_file(options->file, graph_types(options->plugins));
+            const std::optional<Error> refused = refusal_of(told["kind"], options->file);
+            if (refused) told["refused"] = refused->what();
+            print_result(told, options->json);
+            if (refused) throw *refused;
             return kDone;
           }};
 }

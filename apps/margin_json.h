@@ -10,9 +10,13 @@
 namespace locograph {
 
 inline Json margin_json(const ExecutionMargin& margin) {
-  return {{"friction", margin.friction},       {"area", margin.area},
-          {"torque", margin.torque},           {"joint_rad", margin.joint_rad},
-          {"least_force", margin.least_force}, {"dwell_s", margin.dwell_s}};
+  return {{"friction", margin.friction},
+          {"area", margin.area},
+          {"torque", margin.torque},
+          {"joint_rad", margin.joint_rad},
+          {"self_distance_m", margin.self_distance_m},
+          {"least_force", margin.least_force},
+          {"dwell_s", margin.dwell_s}};
 }
 
 /// In one line.
@@ -20,7 +24,8 @@ inline std::string margin_text(const ExecutionMargin& margin) {
   if (margin == ExecutionMargin::none()) return "no execution margin\n";
   return "execution margin: friction " + short_number(margin.friction) + ", areas " +
          short_number(margin.area) + ", torques " + short_number(margin.torque) + ", " +
-         short_number(margin.joint_rad) + " rad to joint limits, each contact pressed by " +
+         short_number(margin.joint_rad) + " rad to joint limits, " +
+         short_number(margin.self_distance_m) + " m between links, each contact pressed by " +
          short_number(margin.least_force) + " of the weight, dwell " +
          short_number(margin.dwell_s) + " s\n";
 }

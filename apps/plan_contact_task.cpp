@@ -41,6 +41,10 @@ struct ContactTaskPlan {
     const auto& robot = started.task.robot;  // null when the time was used up before
     return robot ? robot->robot->links_without_collision() : std::vector<std::string>();
   }
+  std::vector<std::string> unknown_names() const {
+    const auto& robot = started.task.robot;  // as above
+    return robot ? robot->robot->warnings() : std::vector<std::string>();
+  }
 };
 
 StancePlannerOptions stance_options(const PlanOptions& options) {
@@ -111,6 +115,8 @@ ContactTaskPlan plan_of_task(const Scenario& scenario, const PlanOptions& option
   progress.emplace("planning " + options.scenario);
   plan.unheld = unheld_goal(plan.started.task, asked.termination.deadline);
   if (plan.unheld) {
+    if (plan.unheld->goal > 0)
+      print_warning(plan.unheld->text + "; the way up to there is planned");
     const int worth_while = plan.unheld->goal == 0 ? kTowardsUnheld : kTowardsUnheldAfterOthers;
     asked.max_transitions =
         asked.max_transitions > 0 ? std::min(asked.max_transitions, worth_while) : worth_while;
@@ -134,6 +140,17 @@ Json failures_json(const StancePlan& plan) {
   for (const StanceFailure& failure : plan.failures) {
     all.push_back(
         {{"end_effector", failure.end_effector}, {"what", failure.what}, {"count", failure.count}});
+  }
+  return all;
+}
+
+Json off_skin_json(const std::vector<SkinFrame>& off_skin) {
+  Json all = Json::array();
+  for (const SkinFrame& off : off_skin) {
+    all.push_back({{"end_effector", off.end_effector},
+                   {"link", off.link},
+                   {"beyond_m", off.beyond_m},
+                   {"snapped", off.snapped}});
   }
   return all;
 }
@@ -234,6 +251,8 @@ Json answer_json(const PlanOptions& options, const ContactTaskPlan& plan) {
       {"start_moved", {{"base_m", started.moved_base_m}, {"joint_rad", started.moved_joint_rad}}},
       {"failures", failures_json(stances)},
       {"links_without_collision", plan.links_without_collision()},
+      {"names_unknown_to_the_urdf", plan.unknown_names()},
+      {"off_skin", off_skin_json(started.task.off_skin)},
       {"time", time_json(options, plan)},
   };
   if (!options.stances_only) {
@@ -297,6 +316,8 @@ std::string answer_text(const std::string& scenario, const PlanOptions& options,
   }
   text += "in " + short_number(plan.total_s) + " s\n";
   if (!options.stances_only && plan.graph) text += segments_text(json);
+  for (const std::string& unknown : plan.unknown_names()) text += unknown + '\n';
+  for (const SkinFrame& off : started.task.off_skin) text += skin_text(off) + '\n';
   text += margin_text(started.task.margin);
   for (const Json& given : json["execution_margin"]["given"]) {
     if (given["share"] == 1.0) continue;

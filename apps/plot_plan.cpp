@@ -1,6 +1,7 @@
 #include <locograph/apps/output.h>
 #include <locograph/apps/plan_file.h>
 #include <locograph/apps/plot.h>
+#include <locograph/apps/plot_margins.h>
 #include <locograph/apps/plot_series.h>
 #include <locograph/check/motion_curve.h>
 
@@ -93,6 +94,14 @@ void add_base_path(PlotScript& plot, const Motion& motion) {
       "'#3a9a5b' title 'start'");
 }
 
+void add_margins(PlotScript& plot, const std::string& title, const std::string& ylabel,
+                 const std::string& prefix, const std::vector<double>& time_s,
+                 const std::vector<Series>& series) {
+  plot.line("set title '" + title + "'");
+  plot.line("set ylabel '" + ylabel + "'");
+  add_lines(plot, prefix, time_s, series);
+}
+
 }  // namespace
 
 PlotScript plot_plan(const std::filesystem::path& file, const std::vector<std::string>& plugins) {
@@ -106,7 +115,11 @@ PlotScript plot_plan(const std::filesystem::path& file, const std::vector<std::s
   require_increasing_times(plan);
   const bool base = robot.floating_base(), moves = !motion.stances_only;
   const std::vector<Series> bears = force_shares(robot, motion);
-  const int panels = 1 + (moves ? 2 : 0) + (bears.empty() ? 0 : 1) + (base ? 1 : 0);
+  const std::vector<Series> torques = torque_shares(robot, torques_along(robot, motion));
+  const PlanMargins margins = margins_along(motion, judging_of(plan, {}));
+  const auto some = [](const std::vector<Series>& series) { return series.empty() ? 0 : 1; };
+  const int panels = 1 + (moves ? 2 : 0) + some(bears) + some(torques) + some(margins.distances) +
+                     some(margins.balance) + (base ? 1 : 0);
   PlotScript plot(1000, 340 * panels + (base ? 0 : 40));
   plot.line("set multiplot layout " + std::to_string(panels) + ",1 title " +
             PlotScript::label(file.filename().string() + ": " + robot.name() +
@@ -140,10 +153,24 @@ PlotScript plot_plan(const std::filesystem::path& file, const std::vector<std::s
   }
   plot.line("unset arrow 2");
   if (!bears.empty()) {
-    plot.line("set title 'contact forces that the plan states'");
-    plot.line("set ylabel '|force| / weight'");
-    plot.line("set yrange [0:" + short_number(1.1 * highest(bears, 1e-6)) + "]");
-    add_lines(plot, "force", motion.time_s, bears);
+    add_panel(plot, "contact forces that the plan states", "|force| / weight", "force",
+              motion.time_s, bears, 1e-6);
+  }
+  if (!torques.empty()) {
+    limit_line(plot, 1, 1.0);
+    add_panel(plot, "joint torques under these forces (1 at the effort; lower is better)",
+              "|torque| / effort", "torque", motion.time_s, torques, 1.0);
+    plot.line("unset arrow 1");
+  }
+  if (!margins.distances.empty()) {
+    plot.line("set yrange [*<0:55]");
+    add_margins(plot, "distances (to 50 mm; higher is better)", "distance [mm]", "distance",
+                margins.time_s, margins.distances);
+  }
+  if (!margins.balance.empty()) {
+    plot.line("set yrange [*<0:1.05]");
+    add_margins(plot, "static balance: what is left of all limits (higher is better)", "margin",
+                "balance", margins.time_s, margins.balance);
   }
   for (const int tag : changes) plot.line("unset arrow " + std::to_string(tag));
   if (base) add_base_path(plot, motion);

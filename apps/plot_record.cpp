@@ -10,12 +10,6 @@
 namespace locograph {
 namespace {
 
-Series series_of(const std::string& name, std::vector<double> values) {
-  Series series{name, std::move(values)};
-  for (const double value : series.values) series.peak = std::max(series.peak, value);
-  return series;
-}
-
 /// Of each active joint; of wheels and the like none.
 std::vector<Series> joint_errors(const Robot& robot, const TrackingErrors& errors) {
   std::vector<Series> all;
@@ -29,33 +23,9 @@ std::vector<Series> joint_errors(const Robot& robot, const TrackingErrors& error
   return all;
 }
 
-/// |torque| over the effort, of each joint that has one.
-std::vector<Series> torque_shares(const Robot& robot, const Record& record) {
-  std::vector<Series> all;
-  for (int j = 0; j < robot.active_joint_count(); ++j) {
-    const Joint& joint = robot.active_joint(j);
-    if (!std::isfinite(joint.max_effort) || !(joint.max_effort > 0.0)) continue;
-    std::vector<double> values;
-    for (const Eigen::VectorXd& moment : record.torques) {
-      values.push_back(std::abs(moment[j]) / joint.max_effort);
-    }
-    all.push_back(series_of(joint.name, std::move(values)));
-  }
-  return all;
-}
-
 std::vector<double> thousandfold(std::vector<double> values) {
   for (double& value : values) value *= 1e3;
   return values;
-}
-
-void add_panel(PlotScript& plot, const std::string& title, const std::string& ylabel,
-               const std::string& prefix, const std::vector<double>& time_s,
-               const std::vector<Series>& series, double at_least) {
-  plot.line("set title '" + title + "'");
-  plot.line("set ylabel '" + ylabel + "'");
-  plot.line("set yrange [0:" + short_number(1.1 * highest(series, at_least)) + "]");
-  add_lines(plot, prefix, time_s, series);
 }
 
 }  // namespace
@@ -95,7 +65,7 @@ PlotScript plot_record(const PlanFile& file) {
             force_shares(robot, motion), 1e-6);
   limit_line(plot, 1, 1.0);
   add_panel(plot, "joint torques (1 at the effort; lower is better)", "|torque| / effort", "torque",
-            motion.time_s, torque_shares(robot, record), 1.0);
+            motion.time_s, torque_shares(robot, record.torques), 1.0);
   plot.line("unset multiplot");
   return plot;
 }

@@ -51,6 +51,27 @@ std::vector<Series> force_shares(const Robot& robot, const Motion& motion) {
   return all;
 }
 
+Series series_of(const std::string& name, std::vector<double> values) {
+  Series series{name, std::move(values)};
+  for (const double value : series.values) series.peak = std::max(series.peak, value);
+  return series;
+}
+
+std::vector<Series> torque_shares(const Robot& robot, std::span<const Eigen::VectorXd> torques) {
+  std::vector<Series> all;
+  if (torques.empty()) return all;
+  for (int j = 0; j < robot.active_joint_count(); ++j) {
+    const Joint& joint = robot.active_joint(j);
+    if (!std::isfinite(joint.max_effort) || !(joint.max_effort > 0.0)) continue;
+    std::vector<double> values;
+    for (const Eigen::VectorXd& moment : torques) {
+      values.push_back(std::abs(moment[j]) / joint.max_effort);
+    }
+    all.push_back(series_of(joint.name, std::move(values)));
+  }
+  return all;
+}
+
 double highest(const std::vector<Series>& all, double at_least) {
   for (const Series& series : all) at_least = std::max(at_least, series.peak);
   return at_least;
@@ -73,6 +94,15 @@ void limit_line(PlotScript& plot, int tag, double at) {
   plot.line("set arrow " + std::to_string(tag) + " from graph 0, first " + short_number(at) +
             " to graph 1, first " + short_number(at) +
             " nohead linewidth 1.4 dashtype 2 linecolor '#202428'");
+}
+
+void add_panel(PlotScript& plot, const std::string& title, const std::string& ylabel,
+               const std::string& prefix, const std::vector<double>& time_s,
+               const std::vector<Series>& series, double at_least) {
+  plot.line("set title '" + title + "'");
+  plot.line("set ylabel '" + ylabel + "'");
+  plot.line("set yrange [0:" + short_number(1.1 * highest(series, at_least)) + "]");
+  add_lines(plot, prefix, time_s, series);
 }
 
 }  // namespace locograph

@@ -27,6 +27,8 @@ constexpr double kBesideScale = 20.0;
 /// Likewise of borders, which a ball may roll to.
 constexpr double kBorderScale = 10.0;
 constexpr double kOnPlace_m = 1e-4;
+/// Links that are near each other where leave_as_near() looks keep so much of their distance.
+constexpr double kOfNear = 0.8;
 
 /// How far a point is from the border of a surface or a bar, along each of its axes, and that axis.
 struct BorderRooms {
@@ -299,13 +301,38 @@ void TransitionRows::add_torques() {
   for (int i = 0; i < size_; ++i) row[i] = -kTorqueUnit_m * torque_gradient_[i];
 }
 
+void TransitionRows::leave_as_near(const Eigen::VectorXd& q, double margin_m) {
+  most_apart_m_.resize(0);
+  TransitionOptions options;
+  options.self_margin_m = margin_m;
+  set_problem({}, options);
+  evaluate(q);
+  const std::vector<SelfCollisionShapes::Pair>& pairs = robot_->self_collision.pairs;
+  Eigen::VectorXd most = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(pairs.size()),
+                                                   std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    for (const Row& row : rows_) {
+      if (row.kind != TransitionFailure::kSelf || row.value >= 0.0) continue;
+      if (row.first != pairs[i].first || row.second != pairs[i].second) continue;
+      most[static_cast<Eigen::Index>(i)] =
+          std::max(TransitionOptions().self_margin_m, kOfNear * (row.value + margin_m));
+    }
+  }
+  most_apart_m_ = std::move(most);
+}
+
+double TransitionRows::self_margin_m(int pair) const {
+  return most_apart_m_.size() == 0 ? options_.self_margin_m
+                                   : std::min(options_.self_margin_m, most_apart_m_[pair]);
+}
+
 void TransitionRows::add_self() {
   find_near_pairs(state_, pair_weights_, options_.self_margin_m + kBand_m, near_, near_gradients_);
   for (std::size_t i = 0; i < near_.size(); ++i) {
     const SelfCollisionShapes::Pair& pair =
         robot_->self_collision.pairs[static_cast<std::size_t>(near_[i].pair)];
     double* row = add(TransitionFailure::kSelf, pair.first, pair.second,
-                      near_[i].distance_m - options_.self_margin_m);
+                      near_[i].distance_m - self_margin_m(near_[i].pair));
     std::copy_n(near_gradients_.data() + i * static_cast<std::size_t>(size_), size_, row);
   }
   if (!exact_pairs_) return;
@@ -325,7 +352,7 @@ void TransitionRows::add_self() {
     if (!(apart.norm() > 1e-9)) apart = between;
     const Eigen::Vector3d direction = apart.normalized();
     double* row = add(TransitionFailure::kSelf, pair.first, pair.second,
-                      best.distance - options_.self_margin_m);
+                      best.distance - self_margin_m(coarse.pair));
     state_.kinematics.add_point_gradient(a, best.on_first, direction, 1.0, row);
     state_.kinematics.add_point_gradient(b, best.on_second, direction, -1.0, row);
   }

@@ -31,6 +31,8 @@ class TransitionRows {
 
   TransitionRows(std::shared_ptr<const RobotParameter> robot, World world);
 
+  /// As TransitionSolver does; a problem is to be set after it.
+  void leave_as_near(const Eigen::VectorXd& q, double margin_m);
   void set_problem(const TransitionProblem& problem, const TransitionOptions& options);
   /// q: a configuration whose quaternion has norm 1.
   void evaluate(const Eigen::VectorXd& q);
@@ -84,6 +86,7 @@ class TransitionRows {
   void add_balance();
   void add_torques();
   void add_self();
+  double self_margin_m(int pair) const;
   void add_places();
   void add_obstacles();
 
@@ -92,6 +95,7 @@ class TransitionRows {
   WorldDistance in_the_way_;
   bool anything_in_the_way_ = false;
   Eigen::VectorXd pair_weights_;
+  Eigen::VectorXd most_apart_m_;  ///< that pairs are kept; empty: whatever is asked for
   std::vector<CoarsePair> coarse_;
   int size_;  ///< of the tangent
   ConfigurationState state_;

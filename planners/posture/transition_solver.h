@@ -58,6 +58,9 @@ class TransitionSolver {
   TransitionSolver(const TransitionSolver& other);
   TransitionSolver(TransitionSolver&&) noexcept;
 
+  /// From now on pairs of links that are nearer than margin_m in q are kept that near, less a
+  /// fifth, where more is asked for: some always are, and a start may be.
+  void leave_as_near(const Eigen::VectorXd& q, double margin_m);
   /// Throws Error for contacts that are not sound and for options out of range.
   TransitionResult solve(const TransitionProblem& problem, const TransitionOptions& options = {});
 

@@ -17,7 +17,8 @@ double read_within(const XmlFile& xml, const XmlFile::Element& execution, const 
 }  // namespace
 
 ExecutionMargin read_execution_margin(const XmlFile& xml, const XmlFile::Element& execution) {
-  xml.allow(execution, {"friction", "area", "torque", "joint", "least_force", "dwell"}, {});
+  xml.allow(execution,
+            {"friction", "area", "torque", "joint", "self_distance", "least_force", "dwell"}, {});
   ExecutionMargin margin;
   const auto read_share = [&](const char* name, double& share) {
     share = read_within(xml, execution, name, share, "a share that is used, above 0, at most 1",
@@ -31,6 +32,8 @@ ExecutionMargin read_execution_margin(const XmlFile& xml, const XmlFile::Element
   };
   margin.joint_rad = read_within(xml, execution, "joint", margin.joint_rad, "0 to 1 rad",
                                  up_to(ExecutionMargin::kMostJoint_rad));
+  margin.self_distance_m = read_within(xml, execution, "self_distance", margin.self_distance_m,
+                                       "0 to 0.2 m", up_to(ExecutionMargin::kMostSelfDistance_m));
   margin.least_force = read_within(xml, execution, "least_force", margin.least_force,
                                    "a part of the robot's weight, 0 or more, less than 1",
                                    [](double value) { return value >= 0.0 && value < 1.0; });

@@ -109,6 +109,7 @@ class ScenarioReader {
     } else {
       scenario_.urdf = beside_file(xml_.attribute(*robot, "urdf"));
       if (robot->Attribute("srdf")) scenario_.srdf = beside_file(xml_.attribute(*robot, "srdf"));
+      scenario_.robot.lenient_srdf = true;
     }
     if (robot->Attribute("active")) {
       scenario_.robot.active_joints = {xml_.attribute(*robot, "active")};

@@ -40,11 +40,12 @@ Task task_of(const Scenario& scenario, std::shared_ptr<const RobotParameter> rob
   const bool on_ground = scenario.surfaces.empty() && scenario.scanned.empty();
   if (scenario.drive && on_ground) task.ground_z_m = kGround_m;
   task.check = check_of(scenario);
+  task.off_skin = snap_to_skin(*task.robot->robot, task.check.known);
   task.margin = scenario.margin;
   task.start_state = scenario.start_state;
   task.drive = scenario.drive;
   if (!scenario.contacts) return task;
-  TaskStances stances = task_stances(scenario, task.world->world(), moves);
+  TaskStances stances = task_stances(scenario, task.end_effectors(), task.world->world(), moves);
   task.start = std::move(stances.start);
   task.goals = std::move(stances.goals);
   task.moves = moves;

@@ -8,6 +8,7 @@
 
 #include <locograph/check/check_report.h>
 #include <locograph/planners/scenario/scenario.h>
+#include <locograph/planners/task/skin_frames.h>
 #include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/configuration/robot_parameters.h>
 #include <locograph/world/world_snapshot.h>
@@ -27,9 +28,10 @@ struct Task {
   std::shared_ptr<const WorldSnapshot> world;  ///< with the files of map and obstacles
   /// Of a drive whose scenario names nothing to stand on: the height of the ground.
   std::optional<double> ground_z_m;
-  ExecutionMargin margin;   ///< that planners keep to, and the judge does not ask for
-  CheckOptions check;       ///< what the judge is asked: limits, and what end effectors can bear
-  std::string start_state;  ///< of the robot, see Scenario::start_state
+  ExecutionMargin margin;  ///< that planners keep to, and the judge does not ask for
+  CheckOptions check;      ///< what the judge is asked: limits, and what end effectors can bear
+  std::vector<SkinFrame> off_skin;  ///< end effectors whose frames lie in their shapes
+  std::string start_state;          ///< of the robot, see Scenario::start_state
 
   // A drive has neither start nor goals.
   Stance start;

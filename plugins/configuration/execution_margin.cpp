@@ -8,6 +8,7 @@ ExecutionMargin ExecutionMargin::none() {
           .area = 1.0,
           .torque = 1.0,
           .joint_rad = 0.0,
+          .self_distance_m = 0.0,
           .least_force = 0.0,
           .dwell_s = 0.0};
 }
@@ -18,6 +19,7 @@ ExecutionMargin ExecutionMargin::scaled(double factor) const {
           .area = share(area),
           .torque = share(torque),
           .joint_rad = factor * joint_rad,
+          .self_distance_m = factor * self_distance_m,
           .least_force = factor * least_force,
           .dwell_s = factor * dwell_s};
 }
@@ -28,6 +30,8 @@ void ExecutionMargin::validate() const {
   check_option(share(area), "area", "a share above 0, at most 1");
   check_option(share(torque), "torque", "a share above 0, at most 1");
   check_option(joint_rad >= 0.0 && joint_rad <= kMostJoint_rad, "joint_rad", "0 to 1 rad");
+  check_option(self_distance_m >= 0.0 && self_distance_m <= kMostSelfDistance_m, "self_distance_m",
+               "0 to 0.2 m");
   check_option(least_force >= 0.0 && least_force < 1.0, "least_force",
                "a part of the weight, 0 or more, less than 1");
   check_option(dwell_s >= 0.0 && dwell_s <= kMostDwell_s, "dwell_s", "0 to 60 s");

@@ -2,6 +2,7 @@
 #include <locograph/plugins/configuration/plan_parameters.h>
 
 #include <charconv>
+#include <set>
 
 namespace locograph {
 namespace {
@@ -32,12 +33,16 @@ ExecutionMargin read_margin(FieldReader& in) {
                          &margin.least_force, &margin.dwell_s}) {
     *number = in.number();
   }
+  margin.self_distance_m = 0.0;
+  return margin;
+}
+
+void require_sound(const ExecutionMargin& margin, const FieldReader& in) {
   try {
     margin.validate();
   } catch (const Error& error) {
     in.fail(std::string("an execution margin: ") + error.what(), "");
   }
-  return margin;
 }
 
 }  // namespace
@@ -53,13 +58,10 @@ void PlanParameter::read(FieldReader& in) {
     in.fail("a plan of format version " + std::to_string(version),
             "version " + std::to_string(kOldestPlanFormat) + " or " + std::to_string(kPlanFormat));
   }
+  std::set<std::string> seen;
   while (!in.at_end()) {
     const std::string word = in.word();
-    if ((word == "stances_only" && stances_only) || (word == "incomplete" && incomplete) ||
-        (word == "recorded" && recorded) || (word == "moved_contacts" && moves.most_m > 0.0) ||
-        (word == "execution_margin" && margin != ExecutionMargin::none())) {
-      in.fail("a second '" + word + "'", "it once");
-    }
+    if (!seen.insert(word).second) in.fail("a second '" + word + "'", "it once");
     if (word == "stances_only") {
       stances_only = true;
     } else if (word == "incomplete") {
@@ -70,11 +72,15 @@ void PlanParameter::read(FieldReader& in) {
       moves = read_moves(in);
     } else if (word == "execution_margin") {
       margin = read_margin(in);
+      require_sound(margin, in);
+    } else if (word == "self_distance" && seen.contains("execution_margin")) {
+      margin.self_distance_m = in.number();
+      require_sound(margin, in);
     } else {
       in.fail(
           "'" + word + "'",
-          "'stances_only', 'incomplete', 'recorded', 'moved_contacts', 'execution_margin' or the "
-          "end of the line");
+          "'stances_only', 'incomplete', 'recorded', 'moved_contacts', 'execution_margin', after "
+          "that 'self_distance', or the end of the line");
     }
   }
   if (recorded && stances_only) in.fail("a record of stances only", "of a motion");
@@ -97,6 +103,9 @@ void PlanParameter::write(FieldWriter& out) const {
                               margin.least_force, margin.dwell_s}) {
     out.number(number);
   }
+  if (margin.self_distance_m == 0.0) return;
+  out.word("self_distance");
+  out.number(margin.self_distance_m);
 }
 
 void ScenarioParameter::read(FieldReader& in) {

@@ -376,7 +376,7 @@ TEST(PlanCommands, RefinePrintsOneJsonObjectWithEveryField) {
 
 /// A ball that hangs where COMAN+ moves its right leg two seconds later.
 const char kBall[] =
-    "<obstacles version='1'>\n<sphere name='ball' center='0.872 -0.266 0.5' radius='0.135' "
+    "<obstacles version='1'>\n<sphere name='ball' center='1.0 -0.3 0.45' radius='0.135' "
     "appears='7.8'/>\n</obstacles>\n";
 
 TEST(PlanCommands, RefinePlansOnWhereARobotOnLegsHadToStop) {

@@ -84,6 +84,9 @@ TEST(Plot, ConstraintsOfACheckAndAPlanAgainstItsLimits) {
   EXPECT_TRUE(contains(lines, "joint jerk"));
   EXPECT_TRUE(contains(lines, "base path"));
   EXPECT_FALSE(contains(lines, "contact forces")) << "a drive states none";
+  EXPECT_FALSE(contains(lines, "joint torques"));
+  EXPECT_TRUE(contains(lines, "of links to each other"));
+  EXPECT_TRUE(contains(lines, "static balance"));
 }
 
 TEST(Plot, APlanOfStancesHasNoVelocities) {
@@ -95,6 +98,8 @@ TEST(Plot, APlanOfStancesHasNoVelocities) {
   EXPECT_TRUE(contains(svg, "base path"));
   EXPECT_TRUE(contains(svg, "contact forces that the plan states"));
   EXPECT_TRUE(contains(svg, "right_hand"));
+  EXPECT_TRUE(contains(svg, "joint torques"));
+  EXPECT_TRUE(contains(svg, "static balance"));
   EXPECT_FALSE(contains(svg, "joint velocities"));
   EXPECT_FALSE(contains(svg, "joint jerk"));
 }

@@ -156,6 +156,24 @@ TEST_F(LoadedMotionTest, JointsKeepTheirMargin) {
   }
 }
 
+/// Pairs that are nearer than that at the start are left so, less a fifth.
+TEST_F(LoadedMotionTest, LinksKeepTheirDistanceFromEachOther) {
+  const Judge judge(task.robot->robot, task.world);
+  RobotState state(robot);
+  const auto distance_m = [&](const Eigen::VectorXd& q) {
+    state.update(q.data());
+    return judge.self_distance_m(state);
+  };
+  const double kept =
+      std::min(task.margin.self_distance_m, 0.8 * distance_m(task.start_configuration));
+  ASSERT_GT(kept, 4e-3) << "less is kept without a margin";
+  for (const Eigen::VectorXd& q : motion.configurations) EXPECT_GE(distance_m(q), 0.5 * kept);
+  for (const SegmentRecord& segment : plan().segments) {
+    const auto last = static_cast<std::size_t>(segment.last);
+    EXPECT_GE(distance_m(motion.configurations[last]), kept - 1e-3) << last;
+  }
+}
+
 TEST_F(LoadedMotionTest, TellsWhatStartAndGoalHaveOfTheMargin) {
   const std::vector<GivenMargin> given = given_margins(task, plan().stances);
   ASSERT_EQ(given.size(), 2U);

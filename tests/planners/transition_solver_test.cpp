@@ -175,6 +175,37 @@ TEST_F(TransitionRowsTest, RowsSayWhatIsViolatedAndByHowMuch) {
   EXPECT_LT(worst, -4.0);
 }
 
+TEST_F(TransitionRowsTest, PairsThatAreNearAreLeftAsNear) {
+  constexpr double kAsked_m = 0.1;
+  TransitionOptions options;
+  options.self_margin_m = kAsked_m;
+  const auto self_values = [&](const Eigen::VectorXd& q) {
+    rows.set_problem(problem_of(feet, &region, task.start_configuration, task), options);
+    std::map<std::pair<int, int>, double> values;
+    for (const auto& [key, value] : values_at(q)) {
+      if (std::get<0>(key) == TransitionFailure::kSelf) {
+        values[{std::get<1>(key), std::get<2>(key)}] = value;
+      }
+    }
+    return values;
+  };
+  const auto before = self_values(task.start_configuration);
+  rows.leave_as_near(task.start_configuration, kAsked_m);
+  const auto after = self_values(task.start_configuration);
+  ASSERT_EQ(before.size(), after.size());
+  int near = 0;
+  for (const auto& [pair, value] : before) {
+    if (value >= 0.0) {
+      EXPECT_EQ(after.at(pair), value) << "others are kept apart as asked";
+      continue;
+    }
+    ++near;
+    const double distance_m = value + kAsked_m;
+    EXPECT_NEAR(after.at(pair), std::min(0.2 * distance_m, distance_m - 4e-3), 1e-12);
+  }
+  EXPECT_GT(near, 0);
+}
+
 /// A foot is lifted off all fours.
 class TransitionSolverTest : public testing::Test {
  protected:

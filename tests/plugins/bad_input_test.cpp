@@ -94,6 +94,9 @@ const BadLine kBadLines[] = {
     {"PlanWithTwoMargins",
      "PARAMS_PLAN 9 3 execution_margin 1 1 1 0 0 1 execution_margin 1 1 1 0 0 1",
      "a second 'execution_margin'"},
+    {"PlanWithANegativeSelfDistance",
+     "PARAMS_PLAN 9 3 execution_margin 1 1 1 0 0 0 self_distance -0.1", "self_distance_m"},
+    {"PlanWithASelfDistanceAlone", "PARAMS_PLAN 9 3 self_distance 0.01", "after that"},
     {"PlanWithTheOtherWordTwice", "PARAMS_PLAN 9 2 incomplete stances_only incomplete",
      "a second 'incomplete'"},
     // Wheels

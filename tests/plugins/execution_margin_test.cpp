@@ -14,6 +14,7 @@ TEST(ExecutionMargin, ScalesFromNoneToItself) {
   EXPECT_DOUBLE_EQ(half.torque, 0.95);
   EXPECT_DOUBLE_EQ(half.least_force, 0.015);
   EXPECT_DOUBLE_EQ(half.dwell_s, 0.25);
+  EXPECT_DOUBLE_EQ(half.self_distance_m, 0.005);
 }
 
 TEST(ExecutionMargin, NamesTheNumberThatIsOutOfRange) {
@@ -23,6 +24,7 @@ TEST(ExecutionMargin, NamesTheNumberThatIsOutOfRange) {
   EXPECT_THROW(ExecutionMargin{.area = 0.0}.validate(), Error);
   EXPECT_THROW(ExecutionMargin{.torque = -0.9}.validate(), Error);
   EXPECT_THROW(ExecutionMargin{.joint_rad = -1e-3}.validate(), Error);
+  EXPECT_THROW(ExecutionMargin{.self_distance_m = 0.3}.validate(), Error);
   EXPECT_THROW(ExecutionMargin{.least_force = 1.0}.validate(), Error);
   EXPECT_THROW(ExecutionMargin{.dwell_s = 61.0}.validate(), Error);
 }

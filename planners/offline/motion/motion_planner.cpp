@@ -370,6 +370,7 @@ class MotionSearch {
     segment.from = tried.from;
     segment.to = tried.to;
     segment.joint_margin_rad = tried.margin.joint_rad;
+    segment.self_margin_m = tried.margin.self_distance_m;
     segment.torque_share = tried.margin.torque;
     plan_.statistics.path_s -= tried.motion.statistics.path_s;
     plan_.statistics.timing_s -= tried.motion.statistics.timing_s;

@@ -101,6 +101,9 @@ SegmentMover::SegmentMover(const Task& task, const MotionOptions& options)
   const std::vector<std::string>& names =
       options.segment_planners.empty() ? segment_planner_names() : options.segment_planners;
   for (const std::string& name : names) planners_.push_back(make_segment_planner(name));
+  if (task.margin.self_distance_m > 0.0) {
+    space_.leave_as_near(task.start_configuration, task.margin.self_distance_m);
+  }
 }
 
 SegmentMotion SegmentMover::move(const Segment& segment, std::span<const BearingContact> bearing,

@@ -16,7 +16,7 @@ constexpr double kLongestProjection = 0.3;
 /// Between configurations that were found with all of their margins, so much of them is asked for.
 constexpr double kShareOfMargins = 0.5;
 constexpr double kRowsTolerance = 1e-4;  // m, rad
-constexpr double kJointRoom_rad = 1e-3;
+constexpr double kJointRoom_rad = 1e-3, kSelfRoom_m = 1e-3;
 /// Half-way configurations that are brought back may be so much further away than straight ones.
 constexpr double kMostBent = 0.75;
 /// What is further away than this is as good as anywhere; how far links move for each radian,
@@ -36,6 +36,7 @@ TransitionOptions margins_between(const Segment& segment) {
         &options.border_margin_m, &options.balance_margin_m, &options.torque_margin}) {
     *margin *= kShareOfMargins;
   }
+  options.self_margin_m = std::max(options.self_margin_m, segment.self_margin_m - kSelfRoom_m);
   return options;
 }
 
@@ -81,6 +82,11 @@ SegmentSpace::SegmentSpace(std::shared_ptr<const RobotParameter> robot, World wo
       solver_(robot, world),
       rows_(robot, std::move(world)),
       lift_off_m_(lift_off_m) {}
+
+void SegmentSpace::leave_as_near(const Eigen::VectorXd& q, double margin_m) {
+  rows_.leave_as_near(q, margin_m);
+  solver_.leave_as_near(q, margin_m);
+}
 
 void SegmentSpace::set_segment(const Segment& segment) {
   segment_ = &segment;
@@ -294,6 +300,7 @@ bool SegmentSpace::solve(const Eigen::VectorXd& start, std::span<const Contact> 
   TransitionOptions options;
   options.max_iterations = 25;
   options.joint_margin_rad = std::max(options.joint_margin_rad, segment_->joint_margin_rad);
+  options.self_margin_m = std::max(options.self_margin_m, segment_->self_margin_m);
   TransitionResult result = solver_.solve(problem, options);
   q = std::move(result.configuration);
   if (result.success()) return true;

@@ -36,6 +36,7 @@ struct Segment {
   std::vector<Contact> reached;   ///< of the stance after, closed at `to`, not held
   Eigen::VectorXd from, to;       ///< feasible for `held`; without `from` balls are at their places
   double joint_margin_rad = 0.0;  ///< to joint limits, where more than by default
+  double self_margin_m = 0.0;     ///< of links from each other, likewise
   double torque_share = 1.0;      ///< of efforts, that timing uses
 };
 
@@ -45,6 +46,8 @@ class SegmentSpace {
   /// as TransitionSolver does.
   SegmentSpace(std::shared_ptr<const RobotParameter> robot, World world, double lift_off_m = 0.035);
 
+  /// As TransitionSolver does.
+  void leave_as_near(const Eigen::VectorXd& q, double margin_m);
   /// The segment must outlive its use. Throws Error for contacts that are not sound.
   void set_segment(const Segment& segment);
   const Segment& segment() const { return *segment_; }

@@ -405,6 +405,7 @@ TransitionTask StanceSpace::task_of(const Footing& from, const Footing& to,
   task.opens = !adds;
   if (before != nullptr && has_balls(from)) task.before = *before;
   task.options.joint_margin_rad = std::max(options.joint_margin_rad, task_.margin.joint_rad);
+  task.options.self_margin_m = std::max(options.self_margin_m, task_.margin.self_distance_m);
   return task;
 }
 

@@ -144,13 +144,16 @@ StartedTask started_task(const Scenario& scenario, const ContactMoves& moves,
   task.moves = moves;
   task.moves.draws = 1;
   if (moved) {
-    task.goals = task_stances(scenario, task.world->world(), moves).goals;
+    task.goals = task_stances(scenario, task.end_effectors(), task.world->world(), moves).goals;
     require_sound_goals(scenario, task);
   }
   const Judge judge(task.robot->robot, task.world);
   for (;; ++task.moves.draws) {
     Eigen::VectorXd given;
-    if (moved) task.start = task_stances(scenario, task.world->world(), task.moves).start;
+    if (moved) {
+      task.start =
+          task_stances(scenario, task.end_effectors(), task.world->world(), task.moves).start;
+    }
     blame_line(scenario, start_line, [&] {
       require_sound_stance(robot, task.start);
       given = given_configuration(scenario, robot, task.start);

@@ -46,6 +46,9 @@ TaskSolver::TaskSolver(const Task& task, BalanceRegions& regions)
       solver_(task.robot, task.world->world()),
       state_(*task.robot->robot),
       preferred_(task.start_configuration) {
+  if (task.margin.self_distance_m > 0.0 && preferred_.size() > 0) {
+    solver_.leave_as_near(preferred_, task.margin.self_distance_m);
+  }
   // A posture that tends to a limit would always be pulled out of the margin.
   const double margin = task.margin.joint_rad;
   const Robot& robot = state_.robot();

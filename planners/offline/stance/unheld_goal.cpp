@@ -1,10 +1,13 @@
 #include <locograph/planners/offline/stance/stance_space.h>
 #include <locograph/planners/offline/stance/unheld_goal.h>
 #include <locograph/planners/posture/posture_solver.h>
+#include <locograph/planners/scenario/contact_place.h>
 #include <locograph/robots/robot_state.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 namespace locograph {
 namespace {
@@ -13,6 +16,7 @@ namespace {
 constexpr int kGoalAttempts = 5, kMovedGoalAttempts = 2;
 constexpr int kHalvings = 6;
 constexpr double kMillimetre = 1e-3;
+constexpr std::size_t kMostSurfaces = 4;  // that a contact is moved to
 
 class GoalPostures {
  public:
@@ -47,19 +51,17 @@ class GoalPostures {
       without.contacts.erase(without.contacts.begin() + static_cast<std::ptrdiff_t>(c));
       if (without.contacts.empty() || !holds(without, kMovedGoalAttempts)) continue;
       const Contact& contact = goal.contacts[c];
-      const Eigen::Vector3d normal = contact.normal.normalized();
       const int link = task_.robot->robot->link_index(contact.effector.link);
-      const Eigen::Vector3d way =
-          state_.world_from_link(link) * contact.effector.point - contact.position;
-      for (const Eigen::Vector3d& along : {(way - way.dot(normal) * normal).eval(), way}) {
-        const auto move = least_move(goal, c, along);
-        if (!move) continue;
-        if (unheld.contact.empty() || move->norm() < unheld.move_m.norm()) {
-          unheld.contact = contact.name();
-          unheld.move_m = *move;
-        }
-        break;
-      }
+      const auto move = move_of(
+          goal, c, state_.world_from_link(link) * contact.effector.point - contact.position);
+      if (!move) continue;
+      const bool touches_sooner = move->touches && !unheld.touches;
+      const bool is_shorter =
+          move->touches == unheld.touches && move->by_m.norm() < unheld.move_m.norm();
+      if (!unheld.contact.empty() && !touches_sooner && !is_shorter) continue;
+      unheld.contact = contact.name();
+      unheld.move_m = move->by_m;
+      unheld.touches = move->touches;
     }
   }
 
@@ -70,26 +72,68 @@ class GoalPostures {
     return bare;
   }
 
-  std::optional<Eigen::Vector3d> least_move(const Stance& goal, std::size_t contact,
-                                            const Eigen::Vector3d& along) {
-    const auto holds_moved = [&](const Eigen::Vector3d& by) {
-      Stance moved = goal;
-      moved.contacts[contact].position += by;
-      return holds(moved, kMovedGoalAttempts);
-    };
+  struct Move {
+    Eigen::Vector3d by_m;
+    bool touches;  ///< something, where it leads to
+  };
+
+  static Contact moved(Contact contact, const Eigen::Vector3d& by) {
+    contact.position += by;
+    return contact;
+  }
+
+  bool holds_moved(const Stance& goal, std::size_t contact, const Eigen::Vector3d& by) {
+    Stance other = goal;
+    other.contacts[contact].position += by;
+    return holds(other, kMovedGoalAttempts);
+  }
+
+  /// way: to where the end effector is while the other contacts are held. Along its plane, else to
+  /// another surface, else through the air.
+  std::optional<Move> move_of(const Stance& goal, std::size_t contact, const Eigen::Vector3d& way) {
+    const Eigen::Vector3d normal = goal.contacts[contact].normal.normalized();
+    const auto in_plane = least_move(goal, contact, way - way.dot(normal) * normal);
+    if (in_plane && in_plane->touches) return in_plane;
+    if (const auto elsewhere = move_to_surface(goal, contact, way)) return elsewhere;
+    return in_plane ? in_plane : least_move(goal, contact, way);
+  }
+
+  /// To the places that are nearest to the end of the way, of surfaces that look alike.
+  std::optional<Move> move_to_surface(const Stance& goal, std::size_t contact,
+                                      const Eigen::Vector3d& way) {
+    const Contact& given = goal.contacts[contact];
+    const Eigen::Vector3d end = given.position + way;
+    std::vector<Eigen::Vector3d> moves;
+    for (const Surface& surface : task_.world->world().surfaces) {
+      const Eigen::Isometry3d& pose = surface.world_from_surface;
+      const Eigen::Vector3d by =
+          pose * nearest_point(surface, pose.inverse() * end) - given.position;
+      if (by.norm() > kMillimetre && lies_on(surface, moved(given, by))) moves.push_back(by);
+    }
+    std::ranges::sort(moves, {}, [&](const Eigen::Vector3d& by) { return (by - way).norm(); });
+    if (moves.size() > kMostSurfaces) moves.resize(kMostSurfaces);
+    for (const Eigen::Vector3d& by : moves) {
+      if (!deadline_.passed() && holds_moved(goal, contact, by)) return Move{by, true};
+    }
+    return {};
+  }
+
+  std::optional<Move> least_move(const Stance& goal, std::size_t contact,
+                                 const Eigen::Vector3d& along) {
     // To millimetres, away from where it is: what is told is what was tried.
     const auto rounded = [&](double share) {
       Eigen::Vector3d by = share * along / kMillimetre;
       for (double& value : by) value = std::copysign(std::ceil(std::abs(value) - 1e-6), value);
       return (kMillimetre * by).eval();
     };
-    if (along.norm() < kMillimetre || !holds_moved(rounded(1.0))) return {};
+    if (along.norm() < kMillimetre || !holds_moved(goal, contact, rounded(1.0))) return {};
     double not_enough = 0.0, enough = 1.0;
     for (int k = 0; k < kHalvings && !deadline_.passed(); ++k) {
       const double middle = 0.5 * (not_enough + enough);
-      (holds_moved(rounded(middle)) ? enough : not_enough) = middle;
+      (holds_moved(goal, contact, rounded(middle)) ? enough : not_enough) = middle;
     }
-    return rounded(enough);
+    const Eigen::Vector3d by = rounded(enough);
+    return Move{by, lies_on_something(task_.world->world(), moved(goal.contacts[contact], by))};
   }
 
   const Task task_;
@@ -107,9 +151,10 @@ std::string text_of(const UnheldGoal& unheld, std::size_t goals, const std::stri
   text += " (" + reason + ")";
   if (unheld.contact.empty()) return text + ", nor one with one of its contacts elsewhere";
   char by[120];
-  std::snprintf(by, sizeof by, " moved by (%.3f %.3f %.3f) m, %.3f m in all, one is",
+  std::snprintf(by, sizeof by, " moved by (%.4g %.4g %.4g) m, %.3g m in all, one is",
                 unheld.move_m.x(), unheld.move_m.y(), unheld.move_m.z(), unheld.move_m.norm());
-  return text + "; with " + unheld.contact + by;
+  text += "; with " + unheld.contact + by;
+  return unheld.touches ? text : text + ", where there is nothing to touch as yet";
 }
 
 }  // namespace

@@ -21,10 +21,12 @@ namespace locograph {
 struct UnheldGoal {
   int goal = 0;      ///< of Task::goals
   std::string text;  ///< which goal, why, and what to move
-  /// A contact which, moved by so much [m, world], leaves a goal that a posture was found for;
-  /// in its plane if that does, the least that was found of all contacts. Empty: none.
+  /// A contact which, moved by so much [m, world], leaves a goal that a posture was found for: in
+  /// its plane if that does, else to another surface, else to where there is nothing as yet; the
+  /// least that was found of all contacts. Empty: none.
   std::string contact;
   Eigen::Vector3d move_m = Eigen::Vector3d::Zero();
+  bool touches = false;  ///< it lies on something there
 };
 
 /// Of the first goal that is not held; nothing: all are, or the deadline passed first.

@@ -126,8 +126,10 @@ TEST(Scenario, ADriveWithSurfacesStandsOnThoseOnly) {
 
 TEST(Scenario, AnExecutionMarginSaysWhatIsNotTheDefault) {
   EXPECT_EQ(scenario_of(drive_in("<environment/>")).margin, ExecutionMargin());
-  const Scenario scenario = scenario_of(
-      drive_in("<environment/><execution friction=\"0.8\" least_force=\"0\" dwell=\"0.25\"/>"));
+  const Scenario scenario =
+      scenario_of(drive_in("<environment/><execution friction=\"0.8\" self_distance=\"0.02\" "
+                           "least_force=\"0\" dwell=\"0.25\"/>"));
+  EXPECT_EQ(scenario.margin.self_distance_m, 0.02);
   EXPECT_EQ(scenario.margin.friction, 0.8);
   EXPECT_EQ(scenario.margin.least_force, 0.0);
   EXPECT_EQ(scenario.margin.dwell_s, 0.25);
@@ -192,6 +194,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "torque"},
         Mistake{"NegativeJointMargin", "<environment/>", "<execution joint=\"-0.02\"/>", 6,
                 "joint"},
+        Mistake{"NegativeSelfDistance", "<environment/>", "<execution self_distance=\"-0.01\"/>", 6,
+                "self_distance"},
         Mistake{"LeastForceOfTheWholeWeight", "<environment/>", "<execution least_force=\"1\"/>", 6,
                 "least_force"},
         Mistake{"DwellWithoutEnd", "<environment/>", "<execution dwell=\"1e9\"/>", 6,
