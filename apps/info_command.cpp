@@ -1,12 +1,12 @@
 #include <locograph/apps/describe.h>
 #include <locograph/apps/graph_types.h>
 #include <locograph/apps/info_command.h>
+#include <locograph/apps/margin_json.h>
 #include <locograph/apps/refusal.h>
 #include <locograph/apps/robot_skeleton.h>
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -55,10 +55,11 @@ Command add_info(OptionParser& app) {
               return kDone;
             }
             Json told = describe_file(options->file, graph_types(options->plugins));
-            const std::optional<Error> refused = refusal_of(told["kind"], options->file);
-            if (refused) told["refused"] = refused->what();
+            const Loading loading = load_as_others_do(told["kind"], options->file);
+            if (!loading.off_skin.empty()) told["off_skin"] = off_skin_json(loading.off_skin);
+            if (loading.refused) told["refused"] = loading.refused->what();
             print_result(told, options->json);
-            if (refused) throw *refused;
+            if (loading.refused) throw *loading.refused;
             return kDone;
           }};
 }

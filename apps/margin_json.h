@@ -1,11 +1,15 @@
 #pragma once
-/// What plans leave unused, as commands tell it.
+/// What plans leave unused and where end effectors are off their skin, as commands tell it.
 ///
 ///     json["execution_margin"] = margin_json(scenario.margin);
 ///     text += margin_text(scenario.margin);
 
 #include <locograph/apps/output.h>
+#include <locograph/planners/task/skin_frames.h>
 #include <locograph/plugins/configuration/execution_margin.h>
+
+#include <string>
+#include <vector>
 
 namespace locograph {
 
@@ -17,6 +21,17 @@ inline Json margin_json(const ExecutionMargin& margin) {
           {"self_distance_m", margin.self_distance_m},
           {"least_force", margin.least_force},
           {"dwell_s", margin.dwell_s}};
+}
+
+inline Json off_skin_json(const std::vector<SkinFrame>& off_skin) {
+  Json all = Json::array();
+  for (const SkinFrame& off : off_skin) {
+    all.push_back({{"end_effector", off.end_effector},
+                   {"link", off.link},
+                   {"beyond_m", off.beyond_m},
+                   {"snapped", off.snapped}});
+  }
+  return all;
 }
 
 /// In one line.

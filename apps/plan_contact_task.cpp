@@ -94,6 +94,9 @@ void plan_whole_motion(const PlanOptions& options, const StancePlannerOptions& a
 /// that there is: where it is the only one, and where others come before it.
 constexpr int kTowardsUnheld = 500, kTowardsUnheldAfterOthers = 5000;
 
+constexpr const char* kHeldButNotFound =
+    "a way was not found, which proves nothing: postures that hold the goals are";
+
 /// finish: from when on there is something to keep when it is asked to stop.
 ContactTaskPlan plan_of_task(const Scenario& scenario, const PlanOptions& options,
                              std::optional<FinishOnSignal>& finish) {
@@ -114,6 +117,7 @@ ContactTaskPlan plan_of_task(const Scenario& scenario, const PlanOptions& option
   asked.termination.stop = &stop_flag();
   progress.emplace("planning " + options.scenario);
   plan.unheld = unheld_goal(plan.started.task, asked.termination.deadline);
+  const bool goals_hold = !plan.unheld && !asked.termination.deadline.passed();
   if (plan.unheld) {
     if (plan.unheld->goal > 0)
       print_warning(plan.unheld->text + "; the way up to there is planned");
@@ -126,9 +130,9 @@ ContactTaskPlan plan_of_task(const Scenario& scenario, const PlanOptions& option
   } else {
     plan_whole_motion(options, asked, plan);
   }
-  if (plan.unheld) {
+  if (!plan.motion.success() && (plan.unheld || goals_hold)) {
     for (std::string* reason : {&plan.motion.reason, &plan.motion.stances.reason}) {
-      *reason += "; " + plan.unheld->text;
+      *reason += "; " + (plan.unheld ? plan.unheld->text : kHeldButNotFound);
     }
   }
   plan.total_s = total.seconds();
@@ -140,17 +144,6 @@ Json failures_json(const StancePlan& plan) {
   for (const StanceFailure& failure : plan.failures) {
     all.push_back(
         {{"end_effector", failure.end_effector}, {"what", failure.what}, {"count", failure.count}});
-  }
-  return all;
-}
-
-Json off_skin_json(const std::vector<SkinFrame>& off_skin) {
-  Json all = Json::array();
-  for (const SkinFrame& off : off_skin) {
-    all.push_back({{"end_effector", off.end_effector},
-                   {"link", off.link},
-                   {"beyond_m", off.beyond_m},
-                   {"snapped", off.snapped}});
   }
   return all;
 }
@@ -317,7 +310,9 @@ std::string answer_text(const std::string& scenario, const PlanOptions& options,
   text += "in " + short_number(plan.total_s) + " s\n";
   if (!options.stances_only && plan.graph) text += segments_text(json);
   for (const std::string& unknown : plan.unknown_names()) text += unknown + '\n';
-  for (const SkinFrame& off : started.task.off_skin) text += skin_text(off) + '\n';
+  for (const SkinFrame& off : started.task.off_skin) {
+    if (off.matters()) text += skin_text(off) + '\n';
+  }
   text += margin_text(started.task.margin);
   for (const Json& given : json["execution_margin"]["given"]) {
     if (given["share"] == 1.0) continue;

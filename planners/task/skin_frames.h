@@ -1,5 +1,6 @@
 #pragma once
-/// End effectors whose frames lie in their shapes: what they touch is taken where their skin is.
+/// End effectors whose frames are not on their skin: where a frame lies a little inside of the
+/// shapes it belongs to, the end effector touches with these.
 ///
 ///     std::vector<EndEffector> effectors = scenario.end_effectors;
 ///     for (const SkinFrame& off : snap_to_skin(robot, effectors)) std::cerr << skin_text(off);
@@ -16,17 +17,20 @@
 namespace locograph {
 
 /// Up to here frames are moved.
-inline constexpr double kMostSnap_m = 2e-3;
+inline constexpr double kMostSnap_m = 2e-3, kTold_m = 1e-4;
 
 struct SkinFrame {
   std::string end_effector, link;
-  double beyond_m = 0.0;  ///< that its shapes reach beyond its frame
+  double beyond_m = 0.0;  ///< that its shapes reach beyond its frame; negative: it lies outside
   bool snapped = false;
+
+  /// Shapes reach beyond it, or it is further outside than would be made up for.
+  bool matters() const { return beyond_m > 0.0 || beyond_m < -kMostSnap_m; }
 };
 
 /// Moves the points of end effectors beyond which shapes reach by up to kMostSnap_m onto their
-/// skin, along their normals, and tells these and those where it is more. Only surfaces are looked
-/// at. Throws Error as beyond_frame_m() does.
+/// skin, along their normals, and tells these, those where it is more, and those that lie outside
+/// by kTold_m or more. Only surfaces are looked at. Throws Error as beyond_frame_m() does.
 std::vector<SkinFrame> snap_to_skin(const Robot& robot, std::vector<EndEffector>& effectors);
 
 /// In one sentence.

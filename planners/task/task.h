@@ -30,7 +30,7 @@ struct Task {
   std::optional<double> ground_z_m;
   ExecutionMargin margin;  ///< that planners keep to, and the judge does not ask for
   CheckOptions check;      ///< what the judge is asked: limits, and what end effectors can bear
-  std::vector<SkinFrame> off_skin;  ///< end effectors whose frames lie in their shapes
+  std::vector<SkinFrame> off_skin;  ///< end effectors whose frames are not on it
   std::string start_state;          ///< of the robot, see Scenario::start_state
 
   // A drive has neither start nor goals.

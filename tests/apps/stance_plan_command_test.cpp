@@ -116,6 +116,16 @@ TEST(StancePlanCommand, WhatMovesIsInTheWayWhereverItGetsTo) {
   EXPECT_GT((*distance)["time"], 100.0);
 }
 
+TEST(StancePlanCommand, AGoalThatHoldsAndIsNotFoundIsNoProof) {
+  const CommandRunner runner;
+  const Outcome outcome =
+      runner.run("plan standing_up --stances-only --seed 3 --max-transitions 3 -o plan.g2o --json");
+  ASSERT_EQ(outcome.exit_code, 1) << outcome.out << outcome.err;
+  const std::string reason = outcome.json()["reason"];
+  EXPECT_NE(reason.find("a way was not found, which proves nothing"), std::string::npos) << reason;
+  EXPECT_FALSE(outcome.json().contains("move"));
+}
+
 TEST(StancePlanCommand, WritesTheTreeThatTheSearchTried) {
   const CommandRunner runner;
   const std::string call = "plan standing_up --stances-only --seed 3 ";

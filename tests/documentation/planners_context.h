@@ -791,6 +791,9 @@ struct Context : StepContext {
   ContactTask task = *scenario.contacts;
 };
 }  // namespace scenario_snap_to_places_h
+namespace task_skin_frames_h {
+using Context = StepContext;
+}
 namespace task_task_h {
 struct Context : StepContext {
   const Motion motion = stances_motion(step_stances());

@@ -19,6 +19,7 @@
 #include <locograph/world/perception/perception.h>
 #include <locograph/world/perception/window_transform.h>
 #include <locograph/world/point_cloud.h>
+#include <locograph/world/proposed_effectors.h>
 #include <locograph/world/surfaces_of.h>
 #include <locograph/world/world_snapshot.h>
 #include <locograph/world/world_solids.h>
@@ -62,6 +63,11 @@ struct Context : in_world::Context {
   const int sole = link;
 };
 }  // namespace collision_world_h
+namespace effector_skin_h {
+struct Context : in_world::Context {
+  const EndEffector sole = proposed_effectors(robot).front();
+};
+}  // namespace effector_skin_h
 namespace leftover_map_h {
 struct Context : in_world::Context {
   World world = in_world::Context::world;

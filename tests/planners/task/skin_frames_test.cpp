@@ -59,9 +59,14 @@ TEST(SkinFrames, MoreThanTwoMillimetresAreToldAndLeft) {
   EXPECT_EQ(effectors[0].point, Eigen::Vector3d::Zero());
 }
 
-TEST(SkinFrames, AFrameOutsideIsLeft) {
+TEST(SkinFrames, AFrameOutsideIsToldAndLeft) {
   std::vector<EndEffector> effectors = {sole()};
-  EXPECT_TRUE(snap_to_skin(footed(-5e-4), effectors).empty());
+  const std::vector<SkinFrame> off = snap_to_skin(footed(-5e-4), effectors);
+  ASSERT_EQ(off.size(), 1u);
+  EXPECT_FALSE(off[0].snapped);
+  EXPECT_FALSE(off[0].matters());
+  EXPECT_NE(skin_text(off[0]).find("its frame lies 0.5 mm outside"), std::string::npos);
+  EXPECT_EQ(effectors[0].point, Eigen::Vector3d::Zero());
   EXPECT_NEAR(beyond_frame_m(footed(-5e-4), sole()).value(), -5e-4, 1e-9);
 }
 
