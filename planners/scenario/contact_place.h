@@ -8,6 +8,7 @@
 #include <locograph/world/world.h>
 
 #include <Eigen/Core>
+#include <string>
 
 namespace locograph {
 
@@ -17,6 +18,10 @@ bool lies_on(const Surface& surface, const Contact& contact);
 bool lies_on(const Bar& bar, const Contact& contact);
 /// On any of a world's surfaces and bars.
 bool lies_on_something(const World& world, const Contact& contact);
+
+/// What is nearest to a contact's place, how far away, and by how much its normal is turned from
+/// the contact's, if it is: "the nearest, floor, is 0.12 m away".
+std::string nearest_place(const World& world, const Contact& contact);
 
 /// Of the surface, in its frame, to a point in its frame.
 Eigen::Vector3d nearest_point(const Surface& surface, const Eigen::Vector3d& local);

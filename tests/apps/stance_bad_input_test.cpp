@@ -78,8 +78,8 @@ std::vector<BadTask> bad_tasks() {
       {"AnUnknownEndEffectorAtTheGoal", with_goal_of_unknown_hand(), "\"left_hnd\"",
        "unknown end effector 'left_hnd'" + known},
       {"AGoalOnNothing", standing_up_with(goal_on_all_fours("1.7 0.1 0.3")), "<goal>",
-       "the contact of left_hand touches nothing, expected one on a surface or a bar of the "
-       "environment"},
+       "the contact of left_hand touches nothing (the nearest, floor, is 0.3 m away), expected one "
+       "on a surface or a bar of the environment"},
       {"AnUnknownLink", standing_up("link=\"LBall\"", "link=\"LBal\""), "\"LBal\"",
        urdf + "no link 'LBal', expected one like 'LBall', 'RBall', 'Head'"},
       {"ACameraOnAnUnknownLink",

@@ -56,7 +56,8 @@ void require_sound_goals(const Scenario& scenario, const Task& task) {
       require_sound_stance(*task.robot->robot, task.goals[g]);
       for (const Contact& contact : task.goals[g].contacts) {
         if (lies_on_something(task.world->world(), contact)) continue;
-        throw Error("the contact of " + contact.name() + " touches nothing",
+        throw Error("the contact of " + contact.name() + " touches nothing (" +
+                        nearest_place(task.world->world(), contact) + ")",
                     "one on a surface or a bar of the environment");
       }
     });
