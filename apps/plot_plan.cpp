@@ -94,6 +94,16 @@ void add_base_path(PlotScript& plot, const Motion& motion) {
       "'#3a9a5b' title 'start'");
 }
 
+/// None, and a warning, where nobody can say what is in the way: its scenario is gone.
+PlanMargins margins_if_judged(const PlanFile& plan, const Motion& motion) {
+  try {
+    return margins_along(motion, judging_of(plan, {}));
+  } catch (const Error& error) {
+    print_warning(std::string("without distances and balance: ") + error.what());
+    return {};
+  }
+}
+
 void add_margins(PlotScript& plot, const std::string& title, const std::string& ylabel,
                  const std::string& prefix, const std::vector<double>& time_s,
                  const std::vector<Series>& series) {
@@ -116,7 +126,7 @@ PlotScript plot_plan(const std::filesystem::path& file, const std::vector<std::s
   const bool base = robot.floating_base(), moves = !motion.stances_only;
   const std::vector<Series> bears = force_shares(robot, motion);
   const std::vector<Series> torques = torque_shares(robot, torques_along(robot, motion));
-  const PlanMargins margins = margins_along(motion, judging_of(plan, {}));
+  const PlanMargins margins = margins_if_judged(plan, motion);
   const auto some = [](const std::vector<Series>& series) { return series.empty() ? 0 : 1; };
   const int panels = 1 + (moves ? 2 : 0) + some(bears) + some(torques) + some(margins.distances) +
                      some(margins.balance) + (base ? 1 : 0);

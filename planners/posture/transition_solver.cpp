@@ -257,12 +257,11 @@ TransitionSolver::TransitionSolver(std::shared_ptr<const RobotParameter> robot, 
 TransitionSolver::~TransitionSolver() = default;
 TransitionSolver::TransitionSolver(const TransitionSolver& other)
     : parts_(std::make_unique<Parts>(other.parts_->rows)) {}
+TransitionSolver::TransitionSolver(TransitionSolver&&) noexcept = default;
 
 void TransitionSolver::leave_as_near(const Eigen::VectorXd& q, double margin_m) {
   parts_->rows.leave_as_near(q, margin_m);
 }
-
-TransitionSolver::TransitionSolver(TransitionSolver&&) noexcept = default;
 
 TransitionResult TransitionSolver::solve(const TransitionProblem& problem,
                                          const TransitionOptions& options) {

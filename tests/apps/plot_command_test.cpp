@@ -104,6 +104,22 @@ TEST(Plot, APlanOfStancesHasNoVelocities) {
   EXPECT_FALSE(contains(svg, "joint jerk"));
 }
 
+TEST(Plot, APlanWhoseScenarioIsGoneIsDrawnWithoutMargins) {
+  LOCOGRAPH_NEEDS_GNUPLOT();
+  const CommandRunner runner;
+  ASSERT_EQ(runner.run("plan standing_up --stances-only -o s.g2o").exit_code, 0);
+  std::string plan = runner.read("s.g2o");
+  const std::string name = "PARAMS_SCENARIO 3 standing_up";
+  ASSERT_NE(plan.find(name), std::string::npos);
+  plan.replace(plan.find(name), name.size(), "PARAMS_SCENARIO 3 ./gone.xml");
+  runner.write("s.g2o", plan);
+  const Outcome outcome = runner.run("plot s.g2o -o out.svg");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_TRUE(contains(outcome.err, "without distances and balance: s.g2o:")) << outcome.err;
+  EXPECT_TRUE(contains(runner.read("out.svg"), "joint torques"));
+  EXPECT_FALSE(contains(runner.read("out.svg"), "static balance"));
+}
+
 TEST(Plot, TableOfACampaign) {
   LOCOGRAPH_NEEDS_GNUPLOT();
   const CommandRunner runner;
