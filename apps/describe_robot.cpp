@@ -5,7 +5,7 @@
 #include <locograph/plugins/configuration/self_collision_shapes.h>
 #include <locograph/plugins/configuration/sphere_overshoot.h>
 #include <locograph/robots/approximation.h>
-#include <locograph/world/link_pairs.h>
+#include <locograph/world/left_out_pairs.h>
 
 #include <cmath>
 #include <string>
@@ -55,7 +55,7 @@ Json describe_robot(const std::filesystem::path& path) {
   options.lenient_srdf = true;
   Robot robot = Robot::load(path, srdf, options);
   try {
-    leave_out_always_overlapping(robot);
+    leave_out_overlapping(robot);
   } catch (const Error&) {
     // A mesh that cannot be read: told with the approximation.
   }

@@ -3,6 +3,8 @@
 #include <locograph/common/atomic_file.h>
 #include <locograph/planners/posture/standing_start.h>
 #include <locograph/robots/kinematic_tree.h>
+#include <locograph/world/bent_legs.h>
+#include <locograph/world/left_out_pairs.h>
 #include <locograph/world/proposed_effectors.h>
 #include <tinyxml2.h>
 
@@ -16,9 +18,7 @@ namespace locograph {
 namespace {
 
 constexpr double kFriction = 0.7, kStep_m = 0.15;
-constexpr int kNearJoints = 3;
 constexpr double kNever_m = 0.1;  // what samples miss comes near far more often than it meets
-constexpr double kNear_m = 6e-3;  // planners keep links 4 mm apart
 
 /// Without the joints that cannot hold anything, as fingers without a limit of effort: they stay
 /// where they are.
@@ -41,17 +41,9 @@ struct PairOff {
   const char* reason;
 };
 
-/// Joints that move between two links.
-int joints_between(const Robot& robot, int first, int second) {
-  const auto a = robot.support(first), b = robot.support(second);
-  std::size_t common = 0;
-  while (common < a.size() && common < b.size() && a[common] == b[common]) ++common;
-  return static_cast<int>(a.size() + b.size() - 2 * common);
-}
-
 std::vector<PairOff> pairs_off(const Robot& robot, const LinkPairs& sampled,
                                const Eigen::VectorXd& standing) {
-  const auto overlapping = overlapping_links(robot, standing, kNear_m);
+  const auto overlapping = overlapping_as_it_stands(robot, standing);
   const std::set<std::pair<int, int>> overlap(overlapping.begin(), overlapping.end());
   std::vector<PairOff> off;
   for (const LinkPair& pair : sampled.pairs) {
@@ -60,8 +52,7 @@ std::vector<PairOff> pairs_off(const Robot& robot, const LinkPairs& sampled,
       reason = "Always";
     } else if (pair.near == 0) {
       reason = "Never";
-    } else if (overlap.contains({pair.first, pair.second}) &&
-               joints_between(robot, pair.first, pair.second) <= kNearJoints) {
+    } else if (overlap.contains({pair.first, pair.second})) {
       reason = "Default";
     }
     if (reason != nullptr) off.push_back({pair.first, pair.second, reason});

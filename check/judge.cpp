@@ -179,7 +179,8 @@ class Check {
         names.push_back(links[static_cast<std::size_t>(first)].name + " and " +
                         links[static_cast<std::size_t>(second)].name);
       }
-      add(listed_names(names) + ": that they may overlap (they always do, and there is no SRDF)");
+      add(listed_names(names) +
+          ": that they may overlap (they do as the robot is built, and there is no SRDF)");
     }
     return trusted;
   }

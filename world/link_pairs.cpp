@@ -197,20 +197,4 @@ std::vector<std::pair<int, int>> overlapping_links(const Robot& robot,
   return overlapping;
 }
 
-std::vector<std::pair<int, int>> always_overlapping_links(const Robot& robot) {
-  LinkPairOptions options{.samples = 300, .stop_when_decided = true};
-  options.only = overlapping_links(robot, robot.neutral_configuration());
-  std::vector<std::pair<int, int>> always;
-  if (options.only.empty()) return always;
-  for (const LinkPair& pair : sample_link_pairs(robot, options).pairs) {
-    if (pair.always_meets(options.samples)) always.emplace_back(pair.first, pair.second);
-  }
-  return always;
-}
-
-void leave_out_always_overlapping(Robot& robot) {
-  if (!robot.srdf_file().empty() || !robot.missing_meshes().empty()) return;
-  robot.leave_out_pairs(always_overlapping_links(robot));
-}
-
 }  // namespace locograph

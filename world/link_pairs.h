@@ -58,13 +58,6 @@ std::vector<std::pair<int, int>> overlapping_links(const Robot& robot,
                                                    const Eigen::VectorXd& configuration,
                                                    double within_m = 0.0);
 
-/// Those of Robot::self_collision_pairs() that overlap in the neutral configuration and in more
-/// than nine of ten of three hundred postures: shapes that overlap by construction.
-std::vector<std::pair<int, int>> always_overlapping_links(const Robot& robot);
-
-/// Takes them out of the pairs of a robot without an SRDF whose meshes are all there.
-void leave_out_always_overlapping(Robot& robot);
-
 LinkPairs sample_link_pairs(const Robot& robot, const LinkPairOptions& options);
 
 }  // namespace locograph

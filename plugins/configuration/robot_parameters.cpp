@@ -3,7 +3,7 @@
 #include <locograph/plugins/configuration/robot_parameters.h>
 #include <locograph/plugins/configuration/sphere_overshoot.h>
 #include <locograph/robots/shipped_robot.h>
-#include <locograph/world/link_pairs.h>
+#include <locograph/world/left_out_pairs.h>
 
 #include <algorithm>
 
@@ -22,7 +22,7 @@ RobotParameter::RobotParameter(std::filesystem::path urdf_file, std::filesystem:
 
 void RobotParameter::load() {
   Robot loaded = Robot::load(urdf, srdf, options);
-  leave_out_always_overlapping(loaded);
+  leave_out_overlapping(loaded);
   robot = std::make_shared<const Robot>(std::move(loaded));
   spheres = covering_spheres(*robot, kSphereOvershoot_m);
   std::stable_sort(

@@ -82,6 +82,17 @@ struct Context : in_world::Context {
   const std::shared_ptr<const DistanceSource> source = map.field();
 };
 }  // namespace distance_source_h
+namespace bent_legs_h {
+struct Context {
+  const Robot& robot = *coman_plus();
+};
+}  // namespace bent_legs_h
+namespace left_out_pairs_h {
+struct Context {
+  Robot robot = small_arm();
+  static void taken_on_trust(int, int) {}
+};
+}  // namespace left_out_pairs_h
 namespace link_pairs_h {
 struct Context : in_world::Context {
   const Robot robot = small_arm();

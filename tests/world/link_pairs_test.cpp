@@ -1,5 +1,6 @@
 // Which pairs of links meet in random postures.
 #include <gtest/gtest.h>
+#include <locograph/world/left_out_pairs.h>
 #include <locograph/world/link_pairs.h>
 
 #include <cmath>
