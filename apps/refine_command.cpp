@@ -59,6 +59,29 @@ Json phases_json(const WalkReport& report) {
   };
 }
 
+/// The cycles that took longer than they may, and what in them took longest.
+Json misses_json(const WalkReport& report) {
+  Json misses = Json::array();
+  for (std::size_t i = 0; i < report.cycles.size(); ++i) {
+    const CycleReport& cycle = report.cycles[i];
+    if (!cycle.deadline_missed) continue;
+    const WindowStatistics& s = cycle.statistics;
+    const std::pair<const char*, double> phases[] = {{"compile", s.compile_s},
+                                                     {"linearise", s.linearise_s},
+                                                     {"solve", s.solve_s},
+                                                     {"evaluate", s.evaluate_s},
+                                                     {"detour", s.proposals_s}};
+    const auto* longest = std::ranges::max_element(
+        phases, [](const auto& a, const auto& b) { return a.second < b.second; });
+    misses.push_back({{"cycle", i},
+                      {"configuration", cycle.executed},
+                      {"time", s.total_s},
+                      {"longest_phase", longest->first},
+                      {"longest_phase_time", longest->second}});
+  }
+  return misses;
+}
+
 Json report_json(const WalkReport& report, const CommandOptions& options, double field_s,
                  double judge_s) {
   int iterations = 0, detours = 0;
@@ -79,6 +102,7 @@ Json report_json(const WalkReport& report, const CommandOptions& options, double
       {"configurations", report.configurations},
       {"feasible_cycles", report.feasible_cycles},
       {"deadline_misses", report.deadline_misses},
+      {"deadline_miss_log", misses_json(report)},
       {"goal_distance_m", report.goal_distance_m},
       {"goal_angle_rad", report.goal_angle_rad},
       {"short_of_goal_m", report.short_of_goal_m},

@@ -6,155 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 namespace locograph {
 namespace {
 
 using ConstrainedReason = ConstrainedResult::Reason;
-
-/// The outer loop's book-keeping, by constraint row.
-class OuterLoop {
- public:
-  OuterLoop(Workspace& workspace, const ConstrainedOptions& options, bool warm)
-      : workspace_(workspace),
-        problem_(workspace.problem()),
-        rows_(workspace.constraint_rows()),
-        options_(options) {
-    const std::size_t count = rows_.size();
-    error_.resize(count);
-    violation_.assign(count, 0.0);
-    last_.assign(count, std::numeric_limits<double>::infinity());
-    weight_.resize(count);
-    tolerance_.resize(count);
-    information_.resize(problem_.constraints().size());
-    joint_.resize(problem_.constraints().size());
-    for (std::size_t i = 0; i < problem_.constraints().size(); ++i) {
-      const CompiledConstraint& c = problem_.constraints()[i];
-      const int index = problem_.edges()[c.pool].edges[c.k];
-      // A limit on hundreds of rows has its weights, not a matrix of their square.
-      if (!pool(c).has_weights()) {
-        information_[i] = pool(c).information(index);
-        joint_[i] = !information_[i].isDiagonal(0.0);
-      }
-      for (int r = 0; r < c.count; ++r) {
-        weight_[c.row + r] = pool(c).weight(index, r);
-        tolerance_[c.row + r] = tolerance(c, r);
-      }
-    }
-    if (warm) return;
-    for (ConstraintRow& row : rows_) {
-      row.shift = 0.0;
-      row.scale = std::sqrt(options.initial_penalty);
-    }
-  }
-
-  /// Reads the errors at the state evaluated last.
-  void measure() {
-    for (const CompiledConstraint& c : problem_.constraints()) {
-      workspace_.error(c.pool, c.k, error_.data() + c.row);
-      const bool hinged = pool(c).one_sided();
-      for (int r = c.row; r < c.row + c.count; ++r) {
-        const double e = error_[r];
-        // How far the row is from satisfying its complementarity condition, N&W eq. 17.66.
-        violation_[r] = weight_[r] == 0.0               ? 0.0
-                        : !rows_[r].one_sided || hinged ? std::abs(e)
-                                                        : std::abs(std::max(e, -rows_[r].shift));
-      }
-    }
-  }
-
-  bool satisfied() const {
-    return std::equal(violation_.begin(), violation_.end(), tolerance_.begin(),
-                      [](double violation, double tolerance) { return violation <= tolerance; });
-  }
-
-  /// Multipliers, then penalties. False when nothing is left to raise.
-  bool update() {
-    bool exhausted = false;
-    for (std::size_t i = 0; i < problem_.constraints().size(); ++i) {
-      const CompiledConstraint& c = problem_.constraints()[i];
-      const bool hinged = pool(c).one_sided();
-      bool any = false;
-      for (int r = c.row; r < c.row + c.count; ++r) {
-        if (!hinged) {
-          rows_[r].shift += error_[r];
-          if (rows_[r].one_sided) rows_[r].shift = std::max(0.0, rows_[r].shift);
-        }
-        any = any || slow(r);
-      }
-      for (int r = c.row; r < c.row + c.count; ++r) {
-        if (joint_[i] ? any : slow(r)) exhausted = !raise(rows_[r]) || exhausted;
-      }
-    }
-    last_ = violation_;
-    return !exhausted;
-  }
-
-  void report(ConstrainedResult& result) const {
-    double most = -1.0;
-    for (std::size_t i = 0; i < problem_.constraints().size(); ++i) {
-      const CompiledConstraint& c = problem_.constraints()[i];
-      ConstraintState state;
-      state.edge = {c.edge};
-      state.multipliers.resize(c.count);
-      const bool weighted = information_[i].size() == 0;
-      Eigen::VectorXd scaled_shift(c.count);
-      for (int r = 0; r < c.count; ++r) {
-        const ConstraintRow& row = rows_[c.row + r];
-        scaled_shift[r] = row.scale * row.shift;
-        const double e = error_[c.row + r];
-        const double violation = weight_[c.row + r] == 0.0 ? 0.0
-                                 : row.one_sided           ? std::max(0.0, e)
-                                                           : std::abs(e);
-        if (violation > state.violation) {
-          state.violation = violation;
-          state.row = r;
-        }
-      }
-      for (int r = 0; r < c.count; ++r) {
-        const double force = weighted ? weight_[c.row + r] * scaled_shift[r]
-                                      : information_[i].row(r).dot(scaled_shift);
-        state.multipliers[r] = 2.0 * rows_[c.row + r].scale * force;
-      }
-      if (state.violation > most) {
-        most = state.violation;
-        result.worst = static_cast<int>(i);
-      }
-      result.constraints.push_back(std::move(state));
-    }
-  }
-
- private:
-  const EdgePool& pool(const CompiledConstraint& c) const {
-    return *problem_.graph().edge_pools()[c.pool];
-  }
-  bool slow(int r) const {
-    return violation_[r] > tolerance_[r] && violation_[r] > options_.decrease * last_[r];
-  }
-  double tolerance(const CompiledConstraint& c, int r) const {
-    if (!options_.own_tolerances) return options_.tolerance;
-    const double of_edge = problem_.graph().edge_record(c.edge).tolerance;
-    if (of_edge > 0.0) return of_edge;
-    const double of_type = pool(c).row_tolerance(problem_.edges()[c.pool], c.k, r);
-    return of_type > 0.0 ? of_type : options_.tolerance;
-  }
-  /// Keeps the multiplier: λ = 2μ Ω shift.
-  bool raise(ConstraintRow& row) const {
-    const double penalty = row.scale * row.scale * options_.growth;
-    if (penalty > options_.max_penalty * (1.0 + 1e-9)) return false;
-    row.scale = std::sqrt(penalty);
-    row.shift /= options_.growth;
-    return true;
-  }
-
-  Workspace& workspace_;
-  const Problem& problem_;
-  std::vector<ConstraintRow>& rows_;
-  const ConstrainedOptions& options_;
-  std::vector<double> error_, violation_, last_, weight_, tolerance_;
-  std::vector<Eigen::MatrixXd> information_;  ///< empty for edges with weights
-  std::vector<bool> joint_;                   ///< Ω is not diagonal
-};
 
 /// The cost of the edges that are no constraints, at the state evaluated last.
 Cost plain_cost(Workspace& workspace) {
@@ -183,6 +40,150 @@ bool gave_up(OptimiserResult::Reason reason) {
 }
 
 }  // namespace
+
+/// The outer loop's book-keeping, by constraint row.
+class ConstrainedOptimiser::Rows {
+ public:
+  explicit Rows(const ConstrainedOptions& options) : options_(options) {}
+
+  /// Keeps its memory.
+  void start(Workspace& workspace, bool warm) {
+    workspace_ = &workspace;
+    problem_ = &workspace.problem();
+    const std::vector<ConstraintRow>& rows = std::as_const(workspace).constraint_rows();
+    const std::size_t count = rows.size();
+    violation_.assign(count, 0.0);
+    last_.assign(count, std::numeric_limits<double>::infinity());
+    weight_.resize(count);
+    tolerance_.resize(count);
+    joint_.assign(problem_->constraints().size(), false);
+    for (std::size_t i = 0; i < problem_->constraints().size(); ++i) {
+      const CompiledConstraint& c = problem_->constraints()[i];
+      const int index = problem_->edges()[c.pool].edges[c.k];
+      // A limit on hundreds of rows has its weights, not a matrix of their square.
+      if (!pool(c).has_weights()) joint_[i] = !pool(c).information(index).isDiagonal(0.0);
+      for (int r = 0; r < c.count; ++r) {
+        weight_[c.row + r] = pool(c).weight(index, r);
+        tolerance_[c.row + r] = tolerance(c, r);
+      }
+    }
+    if (warm) return;
+    for (ConstraintRow& row : workspace.constraint_rows()) {
+      row.shift = 0.0;
+      row.scale = std::sqrt(options_.initial_penalty);
+    }
+  }
+
+  /// Reads the errors at the state evaluated last.
+  void measure() {
+    const std::vector<ConstraintRow>& rows = std::as_const(*workspace_).constraint_rows();
+    for (const CompiledConstraint& c : problem_->constraints()) {
+      const bool hinged = pool(c).one_sided();
+      for (int r = c.row; r < c.row + c.count; ++r) {
+        const double e = error(r);
+        // How far the row is from satisfying its complementarity condition, N&W eq. 17.66.
+        violation_[r] = weight_[r] == 0.0              ? 0.0
+                        : !rows[r].one_sided || hinged ? std::abs(e)
+                                                       : std::abs(std::max(e, -rows[r].shift));
+      }
+    }
+  }
+
+  bool satisfied() const {
+    return std::equal(violation_.begin(), violation_.end(), tolerance_.begin(),
+                      [](double violation, double tolerance) { return violation <= tolerance; });
+  }
+
+  /// Multipliers, then penalties. False when nothing is left to raise.
+  bool update() {
+    std::vector<ConstraintRow>& rows = workspace_->constraint_rows();
+    bool exhausted = false;
+    for (std::size_t i = 0; i < problem_->constraints().size(); ++i) {
+      const CompiledConstraint& c = problem_->constraints()[i];
+      const bool hinged = pool(c).one_sided();
+      bool any = false;
+      for (int r = c.row; r < c.row + c.count; ++r) {
+        if (!hinged) {
+          rows[r].shift += error(r);
+          if (rows[r].one_sided) rows[r].shift = std::max(0.0, rows[r].shift);
+        }
+        any = any || slow(r);
+      }
+      for (int r = c.row; r < c.row + c.count; ++r) {
+        if (joint_[i] ? any : slow(r)) exhausted = !raise(rows[r]) || exhausted;
+      }
+    }
+    last_ = violation_;
+    return !exhausted;
+  }
+
+  void report(ConstrainedResult& result) const {
+    const std::vector<ConstraintRow>& rows = std::as_const(*workspace_).constraint_rows();
+    double most = -1.0;
+    for (std::size_t i = 0; i < problem_->constraints().size(); ++i) {
+      const CompiledConstraint& c = problem_->constraints()[i];
+      ConstraintState state;
+      state.edge = {c.edge};
+      state.multipliers.resize(c.count);
+      const bool weighted = pool(c).has_weights();
+      const int index = problem_->edges()[c.pool].edges[c.k];
+      const Eigen::MatrixXd information = weighted ? Eigen::MatrixXd() : pool(c).information(index);
+      Eigen::VectorXd scaled_shift(c.count);
+      for (int r = 0; r < c.count; ++r) {
+        const ConstraintRow& row = rows[c.row + r];
+        scaled_shift[r] = row.scale * row.shift;
+        const double e = error(c.row + r);
+        const double violation = weight_[c.row + r] == 0.0 ? 0.0
+                                 : row.one_sided           ? std::max(0.0, e)
+                                                           : std::abs(e);
+        if (violation > state.violation) {
+          state.violation = violation;
+          state.row = r;
+        }
+      }
+      for (int r = 0; r < c.count; ++r) {
+        const double force =
+            weighted ? weight_[c.row + r] * scaled_shift[r] : information.row(r).dot(scaled_shift);
+        state.multipliers[r] = 2.0 * rows[c.row + r].scale * force;
+      }
+      if (state.violation > most) {
+        most = state.violation;
+        result.worst = static_cast<int>(i);
+      }
+      result.constraints.push_back(std::move(state));
+    }
+  }
+
+ private:
+  const EdgePool& pool(const CompiledConstraint& c) const {
+    return *problem_->graph().edge_pools()[c.pool];
+  }
+  double error(int row) const { return workspace_->constraint_errors()[row]; }
+  bool slow(int r) const {
+    return violation_[r] > tolerance_[r] && violation_[r] > options_.decrease * last_[r];
+  }
+  double tolerance(const CompiledConstraint& c, int r) const {
+    if (!options_.own_tolerances) return options_.tolerance;
+    const double of_edge = problem_->graph().edge_record(c.edge).tolerance;
+    if (of_edge > 0.0) return of_edge;
+    const double of_type = pool(c).row_tolerance(problem_->edges()[c.pool], c.k, r);
+    return of_type > 0.0 ? of_type : options_.tolerance;
+  }
+  /// Keeps the multiplier: λ = 2μ Ω shift.
+  bool raise(ConstraintRow& row) const {
+    const double penalty = row.scale * row.scale * options_.growth;
+    if (penalty > options_.max_penalty * (1.0 + 1e-9)) return false;
+    row.scale = std::sqrt(penalty);
+    row.shift /= options_.growth;
+    return true;
+  }
+
+  Workspace* workspace_ = nullptr;
+  const Problem* problem_ = nullptr;
+  const ConstrainedOptions& options_;
+  std::vector<double> violation_, last_, weight_, tolerance_;
+  std::vector<bool> joint_;  ///< Ω is not diagonal
+};
 
 void ConstrainedOptions::validate() const {
   inner.validate();
@@ -221,41 +222,74 @@ std::string ConstrainedResult::reason_text(const Graph& graph) const {
   return text.str();
 }
 
+ConstrainedOptimiser::ConstrainedOptimiser(const ConstrainedOptions& options)
+    : options_(options), inner_(options.inner), rows_(std::make_unique<Rows>(options_)) {
+  options.validate();
+}
+
+ConstrainedOptimiser::~ConstrainedOptimiser() = default;
+
+void ConstrainedOptimiser::start(Workspace& workspace, LinearSolver& solver, bool warm,
+                                 bool evaluated) {
+  workspace_ = &workspace;
+  solver_ = &solver;
+  rows_->start(workspace, warm);
+  reason_ = ConstrainedReason::kMaxRounds;
+  rounds_ = finished_iterations_ = 0;
+  raised_ = true;
+  over_ = false;
+  inner_.start(workspace, solver, evaluated);
+}
+
+bool ConstrainedOptimiser::iterate() {
+  if (!over_ && !inner_.iterate()) over_ = !end_round();
+  return !over_;
+}
+
+/// Whether there is another round.
+bool ConstrainedOptimiser::end_round() {
+  ++rounds_;
+  workspace_->return_to_state();
+  rows_->measure();
+  if (gave_up(inner_.result().reason)) {
+    reason_ = ConstrainedReason::kInnerFailed;
+    return false;
+  }
+  if (rows_->satisfied() && inner_.result().reason != OptimiserResult::Reason::kMaxIterations) {
+    rows_->update();
+    reason_ = ConstrainedReason::kConverged;
+  } else if (!raised_) {
+    reason_ = ConstrainedReason::kInfeasible;
+  } else {
+    raised_ = rows_->update();
+    if (rounds_ < options_.max_rounds) {
+      finished_iterations_ += inner_.result().iterations;
+      inner_.start(*workspace_, *solver_, true);
+      return true;
+    }
+  }
+  return false;
+}
+
+ConstrainedResult ConstrainedOptimiser::result() {
+  ConstrainedResult result;
+  result.reason = reason_;
+  result.converged = reason_ == ConstrainedReason::kConverged;
+  result.rounds = rounds_;
+  result.iterations = iterations();
+  result.inner = inner_.result();
+  result.cost = plain_cost(*workspace_);
+  rows_->report(result);
+  return result;
+}
+
 ConstrainedResult optimise_constrained(Workspace& workspace, const ConstrainedOptions& options,
                                        LinearSolver& solver, bool warm) {
-  options.validate();
-  OuterLoop rounds(workspace, options, warm);
-  ConstrainedResult result;
-  Optimiser optimiser(options.inner);
-  bool raised = true;
-  while (result.rounds < options.max_rounds) {
-    optimiser.start(workspace, solver);
-    while (optimiser.iterate()) {
-    }
-    ++result.rounds;
-    result.inner = optimiser.result();
-    result.iterations += result.inner.iterations;
-    workspace.evaluate(workspace.state());
-    rounds.measure();
-    if (gave_up(result.inner.reason)) {
-      result.reason = ConstrainedReason::kInnerFailed;
-      break;
-    }
-    if (rounds.satisfied() && result.inner.reason != OptimiserResult::Reason::kMaxIterations) {
-      rounds.update();
-      result.reason = ConstrainedReason::kConverged;
-      break;
-    }
-    if (!raised) {
-      result.reason = ConstrainedReason::kInfeasible;
-      break;
-    }
-    raised = rounds.update();
+  ConstrainedOptimiser optimiser(options);
+  optimiser.start(workspace, solver, warm);
+  while (optimiser.iterate()) {
   }
-  result.converged = result.reason == ConstrainedReason::kConverged;
-  result.cost = plain_cost(workspace);
-  rounds.report(result);
-  return result;
+  return optimiser.result();
 }
 
 ConstrainedResult optimise_constrained(Graph& graph, const ConstrainedOptions& options,

@@ -17,6 +17,7 @@
 
 #include <locograph/core/optimiser.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -85,5 +86,48 @@ ConstrainedResult optimise_constrained(Graph& graph, const ConstrainedOptions& o
 /// keeps the multipliers and penalties of the last call, for a problem that changed little.
 ConstrainedResult optimise_constrained(Workspace& workspace, const ConstrainedOptions& options,
                                        LinearSolver& solver, bool warm = false);
+
+/// The same an iteration at a time:
+///
+///     ConstrainedOptimiser optimiser(options);
+///     optimiser.start(workspace, solver, true);
+///     while (optimiser.iterate()) {}
+class ConstrainedOptimiser {
+ public:
+  explicit ConstrainedOptimiser(const ConstrainedOptions& options);
+  ~ConstrainedOptimiser();
+
+  /// As optimise_constrained(). evaluated: see Optimiser::start().
+  void start(Workspace& workspace, LinearSolver& solver, bool warm, bool evaluated = false);
+  /// One iteration of the inner algorithm, and the end of a round where it ends with it. False when
+  /// all is over: Workspace::constraint_errors() are then those of its state.
+  bool iterate();
+  /// See Optimiser.
+  void costs_changed() { inner_.costs_changed(); }
+
+  ConstrainedResult::Reason reason() const { return reason_; }
+  int rounds() const { return rounds_; }
+  int iterations() const { return finished_iterations_ + inner_.result().iterations; }
+  const OptimiserResult& inner() const { return inner_.result(); }
+  /// Those of the inner algorithm: its deadline and callback may be changed between iterations.
+  OptimiserOptions& inner_options() { return inner_.options(); }
+  /// Once it is over. Allocates.
+  ConstrainedResult result();
+
+ private:
+  class Rows;
+  bool end_round();
+
+  ConstrainedOptions options_;
+  Optimiser inner_;
+  std::unique_ptr<Rows> rows_;
+  Workspace* workspace_ = nullptr;
+  LinearSolver* solver_ = nullptr;
+  ConstrainedResult::Reason reason_ = ConstrainedResult::Reason::kMaxRounds;
+  int rounds_ = 0;
+  int finished_iterations_ = 0;  ///< of the rounds that are over
+  bool raised_ = true;
+  bool over_ = true;
+};
 
 }  // namespace locograph

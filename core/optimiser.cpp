@@ -98,7 +98,7 @@ std::string OptimiserResult::reason_text() const {
   return "";
 }
 
-void Optimiser::start(Workspace& workspace, LinearSolver& solver) {
+void Optimiser::start(Workspace& workspace, LinearSolver& solver, bool evaluated) {
   workspace_ = &workspace;
   solver_ = &solver;
   // The statistics keep their memory: a moving horizon starts an optimisation every cycle.
@@ -119,7 +119,7 @@ void Optimiser::start(Workspace& workspace, LinearSolver& solver) {
   newton_step_.resize(n);
   negative_gradient_.resize(n);
   workspace.problem().analyse(solver);
-  cost_ = workspace.evaluate(workspace.state());
+  cost_ = evaluated ? workspace.return_to_state() : workspace.evaluate(workspace.state());
   result_.initial = result_.final = best_cost_ = cost_;
   const bool undamped_first =
       options_.follow_diagonal && options_.algorithm == Algorithm::kLevenbergMarquardt;
@@ -167,6 +167,12 @@ bool Optimiser::finish_refused(Reason converged, double promised) {
   if (!(fraction > std::max(options_.gain, kPromise))) return finish(converged);
   result_.promised_decrease = fraction;
   return finish(Reason::kNoProgress);
+}
+
+void Optimiser::costs_changed() {
+  cost_ = result_.final = best_cost_ = workspace_->return_to_state();
+  reference_.start(cost_.robust, options_.nonmonotonic_steps);
+  if (may_rise()) best_state_ = workspace_->state();
 }
 
 bool Optimiser::iterate() {

@@ -130,10 +130,14 @@ class Optimiser {
  public:
   explicit Optimiser(const OptimiserOptions& options) : options_(options) { options.validate(); }
 
-  /// The workspace must hold the initial state (load_state()).
-  void start(Workspace& workspace, LinearSolver& solver);
+  /// The workspace must hold the initial state (load_state()). evaluated: nothing has written into
+  /// its state() since it was evaluated, see Workspace::return_to_state().
+  void start(Workspace& workspace, LinearSolver& solver, bool evaluated = false);
   /// One accepted step; false when it is over.
   bool iterate();
+  /// Between iterations: costs have changed, as with other bindings, but no state. The run goes on
+  /// with the damping and the count of iterations that it has.
+  void costs_changed();
   const OptimiserResult& result() const { return result_; }
   OptimiserOptions& options() { return options_; }
 

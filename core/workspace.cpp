@@ -17,7 +17,7 @@ void Workspace::allocate(const Problem& problem) {
   damping_.assign(n, 0.0);
   constraint_rows_.assign(problem.constraint_rows(), {});
   constraint_errors_.assign(problem.constraint_rows(), 0.0);
-  evaluated_ = nullptr;
+  evaluated_ = derived_from_ = nullptr;
   for (const CompiledConstraint& c : problem.constraints()) {
     for (int r = c.row; r < c.row + c.count; ++r) {
       constraint_rows_[r].one_sided = c.kind == ConstraintKind::kInequality;
@@ -69,15 +69,22 @@ void Workspace::load_state() {
     }
   }
   trial_ = state_;
-  evaluated_ = nullptr;
+  evaluated_ = derived_from_ = nullptr;
 }
 
-void Workspace::store_state() const {
+void Workspace::set_state(const std::vector<double>& state) {
+  if (state == state_) return;
+  if (evaluated_ == state_.data()) evaluated_ = nullptr;
+  if (derived_from_ == state_.data()) derived_from_ = nullptr;
+  state_ = state;
+}
+
+void Workspace::store(const std::vector<double>& state) const {
   for (std::size_t p = 0; p < problem_->active().size(); ++p) {
     VertexPool& pool = *problem_->graph().vertex_pools()[p];
     for (const ActiveVertex& v : problem_->active()[p]) {
       if (v.tangent_offset < 0) continue;
-      std::copy_n(state_.begin() + v.state_offset, pool.state_size(v.index), pool.state(v.index));
+      std::copy_n(state.begin() + v.state_offset, pool.state_size(v.index), pool.state(v.index));
     }
   }
 }
@@ -111,12 +118,19 @@ Cost Workspace::sum_chunks(Task&& task) {
   return total;
 }
 
-void Workspace::return_to_state() {
-  if (evaluated_ != state_.data()) evaluate(state_);
+Cost Workspace::return_to_state() {
+  if (evaluated_ == state_.data()) return evaluated_cost_;
+  if (derived_from_ == state_.data()) return sum_costs(state_);
+  return evaluate(state_);
 }
 
 Cost Workspace::evaluate(const std::vector<double>& state) {
-  evaluated_ = state.data();
+  derive(state);
+  return sum_costs(state);
+}
+
+void Workspace::derive(const std::vector<double>& state) {
+  derived_from_ = state.data();
   const std::size_t chunks = problem_->chunks();
   for (std::size_t p = 0; p < derived_.size(); ++p) {
     if (!derived_[p]) continue;
@@ -127,12 +141,18 @@ Cost Workspace::evaluate(const std::vector<double>& state) {
                                                   state.data(), *derived_[p]);
     });
   }
+}
+
+/// With the quantities derived of it.
+Cost Workspace::sum_costs(const std::vector<double>& state) {
+  evaluated_ = state.data();
   try {
-    return sum_chunks([&](int chunk, std::size_t p) {
+    evaluated_cost_ = sum_chunks([&](int chunk, std::size_t p) {
       const CompiledEdges& edges = problem_->edges()[p];
       return problem_->graph().edge_pools()[p]->cost(
           edges, edges.chunk_begin[chunk], edges.chunk_begin[chunk + 1], evaluation(state, chunk));
     });
+    return evaluated_cost_;
   } catch (const Error&) {
     throw_with_line(state);
     throw;

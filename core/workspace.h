@@ -24,12 +24,15 @@ class Workspace {
   /// under way would compare costs of different parameters. Throws Error when they do not fit.
   void bind(const Bindings& bindings);
   const Bindings& bindings() const { return bindings_; }
-  void load_state();         ///< graph → state()
-  void store_state() const;  ///< state() → graph
+  void load_state();                                   ///< graph → state()
+  void store_state() const { store(state_); }          ///< state() → graph
+  void store(const std::vector<double>& state) const;  ///< one of this size → graph
 
   /// To change it, apply_step() and accept_trial(): a fixed vertex has a copy in trial() too.
   std::vector<double>& state() { return state_; }
   std::vector<double>& trial() { return trial_; }
+  /// Overwrites state(). One that is the same to the last bit stays evaluated if it was.
+  void set_state(const std::vector<double>& state);
   std::span<double> hessian() {
     return {hessian_.data(), static_cast<std::size_t>(problem_->pattern().values())};
   }
@@ -39,8 +42,12 @@ class Workspace {
   }
   std::vector<double>& step() { return step_; }
   std::vector<double>& damping() { return damping_; }
-  /// Of the problem's constraints(); as allocated: no shift, scale 1.
-  std::vector<ConstraintRow>& constraint_rows() { return constraint_rows_; }
+  /// Of the problem's constraints(); as allocated: no shift, scale 1. Costs of before they are
+  /// changed do not count any more.
+  std::vector<ConstraintRow>& constraint_rows() {
+    evaluated_ = nullptr;
+    return constraint_rows_;
+  }
   const std::vector<ConstraintRow>& constraint_rows() const { return constraint_rows_; }
   /// By the same rows: their errors at the state evaluated last, as the edges' types give them.
   const std::vector<double>& constraint_errors() const { return constraint_errors_; }
@@ -52,9 +59,11 @@ class Workspace {
   /// Derives the quantities of `state` and sums the cost. Returns a non-finite cost for a state
   /// that cannot be evaluated. What an edge throws gets the line that the edge was read from.
   Cost evaluate(const std::vector<double>& state);
-  /// evaluate(state()) after a run whose last trial may have been refused: does nothing where the
-  /// state was evaluated last, as it is when the last trial was accepted.
-  void return_to_state();
+  /// The cost at state() of a workspace that nobody has written into since it was evaluated, but by
+  /// bind() and set_state(). Evaluates it where that is needed: not where it was evaluated last, as
+  /// it is after a run whose last trial was accepted. Where only the bindings are others, what was
+  /// derived of it stays.
+  Cost return_to_state();
   /// Fills hessian() and gradient() at state(), which was evaluated last.
   Cost linearise();
   /// Error vector of edge k of pool p at the state evaluated last.
@@ -98,13 +107,17 @@ class Workspace {
   void for_each(int count, Task&& task);
   template <class Task>
   Cost sum_chunks(Task&& task);
+  void derive(const std::vector<double>& state);
+  Cost sum_costs(const std::vector<double>& state);
   void reduce(const Problem::Reductions& reductions, std::vector<double>& values);
 
   const Problem* problem_ = nullptr;
   Bindings bindings_;
   std::vector<ConstraintRow> constraint_rows_;
   std::vector<double> constraint_errors_;
-  const double* evaluated_ = nullptr;  ///< the buffer, state or trial, that was evaluated last
+  /// The buffer, state or trial, that was evaluated last; that of whose numbers all is derived.
+  const double *evaluated_ = nullptr, *derived_from_ = nullptr;
+  Cost evaluated_cost_;
   std::vector<double> state_, trial_, hessian_, gradient_, step_, damping_;
   std::vector<std::unique_ptr<DerivedStore>> derived_;
   std::vector<DerivedFor> derived_for_;

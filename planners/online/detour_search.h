@@ -54,9 +54,10 @@ class DetourSearch {
   /// plan: the configurations of the window as planned. start and start_slope_m: where the executed
   /// configuration is, and how much its offset changed in the last step. first: index in the plan
   /// of the window's first configuration. Returns a detour for each configuration; none when the
-  /// termination ends it. The costs of obstacles that have been worked out by then are kept for the
-  /// next call, by index in the plan: every call works out those of at least one more
-  /// configuration.
+  /// termination ends it. What has been worked out by then is kept for the next call, the costs of
+  /// obstacles by index in the plan, and every call works out some more. Iterations of the
+  /// termination: the costs of one configuration with one offset, or a fifth of a row of the
+  /// dynamic programming.
   std::vector<Detour> find(int first, const std::vector<const double*>& plan,
                            const std::vector<double>& time_s, const WorldDistance& world,
                            const Detour& start = {}, double start_slope_m = 0.0,
@@ -66,11 +67,40 @@ class DetourSearch {
   void forget();
 
  private:
+  /// Of the obstacles for one configuration, [yaw][offset]; the first `done` of them are there, of
+  /// every other offset.
+  struct Costs {
+    std::vector<double> of;
+    int done = 0;
+  };
+  /// What the dynamic programming is about, and how far it has come.
+  struct Progress {
+    int first = -1, steps = 0;
+    Detour start;
+    double start_slope_m = 0.0;
+    int step = 0, yaw = 0;
+  };
+  /// Counts what a call works out.
+  struct Slice {
+    const Termination& termination;
+    int used = 0;
+
+    bool ended() const { return used > 0 && termination.ended(used); }
+  };
+
+  bool fill_obstacle_costs(int index, const double* planned, const WorldDistance& world,
+                           double time_s, Slice& slice);
+  void place(const double* planned, int yaw);
   double obstacle_cost(const WorldDistance& world, double time_s,
                        const Eigen::Vector3d& shift) const;
-  /// Of every offset, with the configuration as it is.
-  void fill_obstacle_costs(const Eigen::VectorXd& configuration, const Eigen::Vector3d& side,
-                           const WorldDistance& world, double time_s, double* costs);
+  void begin_ways(const Progress& from);
+  bool find_ways(Slice& slice);
+  void go_on(int step, int yaw);
+  std::vector<Detour> best_way() const;
+  int state_of(int yaw, int offset, int slope) const {
+    return (yaw * offsets() + offset) * slopes_ + slope + options_.steepest;
+  }
+  int states() const { return yaws() * offsets() * slopes_; }
   int offsets() const { return 2 * half_ + 1; }
   int yaws() const { return 2 * options_.most_yaw + 1; }
 
@@ -80,9 +110,12 @@ class DetourSearch {
   int half_ = 0;    ///< offsets run from −half_ to half_ grid steps
   int slopes_ = 0;  ///< 2 · steepest + 1
   std::vector<Eigen::Vector3d> centres_, bound_centres_;
+  std::map<int, Costs> obstacle_;  ///< by index in the plan
+  Progress progress_;
+  /// [yaw, offset, slope]: of the best way from the start to there, a step further, and how it came
+  /// there, by step: how the slope changed + 3 · how the yaw did.
   std::vector<double> cost_, next_;
-  std::map<int, std::vector<double>> obstacle_;  ///< [yaw][offset], by index in the plan
-  std::vector<std::int8_t> choice_;              ///< how the slope changed + 3 · how the yaw did
+  std::vector<std::int8_t> choice_;
 };
 
 }  // namespace locograph

@@ -8,6 +8,12 @@
 namespace locograph {
 namespace {
 
+/// Iterations after which a window that is violated still is not worth any more of them before
+/// there are proposals, where a cycle is short.
+constexpr int kSoon = 3;
+/// Of a proposal's search, see Proposal::search(): some 0.2 ms.
+constexpr int kSlice = 40;
+
 Horizon horizon_of(const LocalPlannerOptions& options) {
   return {options.horizon, options.horizon_s};
 }
@@ -69,8 +75,9 @@ CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
   CycleReport report;
   report.executed = executed;
   const Stopwatch watch;
-  new_world_ = take_shown();
-  if (settled_ && !new_world_ && answer_.executed == executed) {
+  const bool new_world = take_shown();
+  const bool moved = std::exchange(changed_, false) || answer_.executed != executed;
+  if (phase_ == Phase::kOver && !moved && !new_world && !tries_again()) {
     report = answer_;
     report.detour = report.deadline_missed = false;
     report.statistics = {};
@@ -78,9 +85,10 @@ CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
     report.statistics.total_s = watch.seconds();
     return report;
   }
-  begin(report);
+  if (moved || new_world) begin(report, moved);
+  report.window = window_.steps();
+  report.statistics.constraints = static_cast<int>(solver_.problem().constraints().size());
   const bool cut_short = improve(report, termination);
-  keep_unfinished(cut_short);
   hand_out_best();
   describe_best(report);
   const auto end = end_by(termination, report.statistics.iterations);
@@ -90,76 +98,260 @@ CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
   }
   report.statistics.total_s = watch.seconds();
   report.deadline_missed = termination.deadline.passed();
-  keep_answer(report, cut_short);
+  answer_ = report;
   return report;
 }
 
-void LocalPlanner::keep_answer(const CycleReport& report, bool cut_short) {
-  const WindowQuality& quality = incumbent_.best().quality;
-  const bool again = answer_.executed == report.executed && !new_world_;
-  settled_ = again && !cut_short && !quality.feasible() && !quality.better_than(quality_);
-  quality_ = quality;
-  answer_ = report;
+/// A search that has led to a better window than the one before, but to none that is feasible, is
+/// begun once more.
+bool LocalPlanner::tries_again() {
+  const WindowQuality& best = incumbent_.best().quality;
+  if (best.feasible() || !best.better_than(tried_)) return false;
+  tried_ = best;
+  solver_.set_state(incumbent_.least_violating().state);
+  left_over_ = incumbent_.least_violating().state != incumbent_.best().state;
+  enter(Phase::kOptimise);
+  return true;
 }
 
-void LocalPlanner::begin(CycleReport& report) {
+/// At another configuration, or in another world. What the search had come to goes on from there;
+/// one that is over, or whose window is good as it is, begins anew.
+void LocalPlanner::begin(CycleReport& report, bool moved) {
   const Stopwatch watch;
-  incumbent_.clear();
-  window_.move_to(report.executed);
+  const bool goes_on = phase_ != Phase::kOver &&
+                       (phase_ != Phase::kOptimise ||
+                        !(incumbent_.best().state.empty() || incumbent_.best().quality.feasible()));
+  tried_ = {};
+  left_over_ = false;
+  if (moved) {
+    left_over_ = move_window(report.executed);
+  } else {
+    see_new_world();
+  }
+  report.statistics.compile_s = watch.seconds();
+  const bool good = is_good();
+  left_over_ = left_over_ && !good;
+  if (left_over_) {
+    warm_start_.load_unfinished(window_);
+    solver_.load_state();
+    better_ = true;  // the graph has another window now
+  }
+  warm_start_.drop_unfinished();
+  if (goes_on && !good) return;
+  proposals_.give_up();
+  fallbacks_.give_up();
+  if (!moved) {
+    const WindowCandidate& from = good ? incumbent_.best() : incumbent_.least_violating();
+    left_over_ = from.state != incumbent_.best().state;
+    solver_.set_state(from.state);
+  }
+  enter(Phase::kOptimise);
+}
+
+/// The window that the search goes on from, where it is not the one that was handed out: that of
+/// the run, or else the least violating one. Null: none.
+const std::vector<double>* LocalPlanner::leftover() {
+  return incumbent_.unfinished(solver_.running() ? &solver_.state() : nullptr);
+}
+
+/// Returns whether there is something left over, which is kept as unfinished.
+bool LocalPlanner::move_window(int executed) {
+  if (answer_.executed >= 0) {
+    if (const std::vector<double>* state = leftover()) {
+      solver_.store(*state);
+      warm_start_.keep_unfinished(window_);
+      solver_.store(incumbent_.best().state);
+    }
+  }
+  window_.move_to(executed);
   warm_start_.enter(window_);
   solver_.compile(window_);
   solver_.load_state();
-  report.window = window_.steps();
-  report.statistics.constraints = static_cast<int>(solver_.problem().constraints().size());
-  report.statistics.compile_s = watch.seconds();
+  incumbent_.clear();
+  beside_.clear();
+  incumbent_.offer(solver_.quality(), solver_.state());
+  better_ = true;  // other configurations are handed out
+  return warm_start_.has_unfinished();
 }
 
-/// Optimises, asks proposals and raises constraints, as far as there is need and time. Returns
-/// whether the termination cut the last of it short.
+/// What the search has come to stays as it is; what it has found is looked at anew.
+void LocalPlanner::see_new_world() {
+  solver_.rebind(plan_.bindings());
+  for (Incumbent* incumbent : {&incumbent_, &beside_}) {
+    if (incumbent->best().state.empty()) continue;
+    handed_out_ = incumbent->best().state;
+    least_ = incumbent->least_violating().state;
+    incumbent->clear();
+    incumbent->offer(solver_.quality_of(handed_out_), handed_out_);
+    if (solver_.running() || least_ == handed_out_) continue;
+    const bool better = incumbent->offer(solver_.quality_of(least_), least_);
+    better_ = better_ || (better && incumbent == &incumbent_);
+  }
+}
+
+/// Step by step. Returns whether the termination cut it short.
 bool LocalPlanner::improve(CycleReport& report, const Termination& termination) {
-  using Start = WindowSolver::Start;
-  const WindowQuality& best = incumbent_.best().quality;
-  const bool continued = load_unfinished();
-  bool cut_short = false;
-  if (!continued && !proposals_.due() && is_as_planned()) {
-    solver_.offer_state(incumbent_);
-    if (best.feasible()) return false;
+  if (phase_ == Phase::kOptimise && !solver_.running() && incumbent_.best().quality.feasible() &&
+      is_as_planned()) {
+    phase_ = Phase::kOver;
   }
-  if (proposals_.due()) {
-    solver_.offer_state(incumbent_);
-    cut_short = try_proposals(report, termination);
-  } else {
-    const Start start = continued ? Start::kCandidate : Start::kIncumbent;
-    cut_short = solver_.optimise(start, incumbent_, termination, report.statistics).cut_short;
-    // It may take some cycles more.
-    if (cut_short && continued) proposals_.pause_after(report.executed);
-    proposals_.set_due(cut_short && !continued && !best.feasible());
+  for (int steps = 0; phase_ != Phase::kOver; ++steps) {
+    if (steps > 0 && termination.ended(steps)) {
+      if (solver_.running()) offer();
+      return true;
+    }
+    if (!advance(report, termination)) break;
   }
-  if (cut_short) return true;
-  hand_out_best();
-  const int& iterations = report.statistics.iterations;
-  if (!report.detour && wants_proposals(continued) && !termination.ended(iterations)) {
-    cut_short = try_proposals(report, termination);
-  }
-  if (!cut_short && !best.feasible() && options_.solver.max_rounds > 0 &&
-      !termination.ended(iterations)) {
-    cut_short = solver_.raise_constraints(incumbent_, termination, report.statistics).cut_short;
-    proposals_.pause_after(report.executed);
-  }
-  if (!cut_short && !best.feasible() && !termination.ended(iterations)) {
-    cut_short = try_fallbacks(report, termination);
-  }
-  return cut_short;
+  return phase_ == Phase::kPropose || phase_ == Phase::kFallBack;
 }
 
-/// The window that the last cycle left unfinished, in the place of the one that it handed out,
-/// which is offered as it is. Returns whether there is one.
-bool LocalPlanner::load_unfinished() {
-  if (!warm_start_.has_unfinished()) return false;
-  solver_.offer_state(incumbent_);
-  warm_start_.load_unfinished(window_);
-  solver_.load_state();
-  return true;
+/// One step of the search. False where the cycle may rest: its window is feasible, and the last
+/// step made it hardly better, or a proposal is not finished.
+bool LocalPlanner::advance(CycleReport& report, const Termination& termination) {
+  if (phase_ != Phase::kPropose && phase_ != Phase::kFallBack) return run(report, termination);
+  return propose(report, termination) && phase_ != Phase::kOptimise;
+}
+
+bool LocalPlanner::run(CycleReport& report, const Termination& termination) {
+  using Start = WindowSolver::Start;
+  const bool raises = phase_ == Phase::kRaise || phase_ == Phase::kRaiseFallback;
+  const bool optimises = phase_ == Phase::kOptimise;
+  if (!solver_.running()) {
+    if (!optimises || left_over_) offer();
+    if (raises) {
+      solver_.begin_raising();
+    } else {
+      solver_.begin(optimises && !left_over_ ? Start::kIncumbent : Start::kCandidate);
+    }
+  }
+  const bool more = solver_.step(termination, report.statistics);
+  ++iterations_;
+  const WindowSolverOptions& options = options_.solver;
+  const int most = options.max_iterations * (raises ? options.max_rounds + 2 : 1);
+  if (more && iterations_ < most && !raises) {
+    const bool is_soon = optimises && termination.max_iterations > 0 && iterations_ == kSoon;
+    if (!solver_.gained_little() && !is_soon) return true;
+    const bool feasible = solver_.quality().feasible();
+    if (!feasible && !is_soon) return true;
+    if (feasible && optimises) {
+      offer();
+      return !is_good();  // or else the run goes on with the next cycle
+    }
+  } else if (more && iterations_ < most) {
+    return true;
+  }
+  end_run();
+  return phase_ != Phase::kOptimise;
+}
+
+/// Of the phase, with what it has led to.
+void LocalPlanner::end_run() {
+  solver_.end_run();
+  const bool better = offer();
+  const bool is_raised = options_.solver.max_rounds == 0 || beside_.best().quality.feasible();
+  switch (phase_) {
+    case Phase::kOptimise:
+      if (wants_proposals()) {
+        asked_ = 0;
+        helped_ = false;
+        enter(Phase::kPropose);
+      } else {
+        raise_or_fall_back();
+      }
+      break;
+    case Phase::kFollow:
+      helped_ = helped_ || better;
+      if (asked_ < proposals_.size()) {
+        enter(Phase::kPropose);
+      } else {
+        go_on_after_proposals();
+      }
+      break;
+    case Phase::kRaise:
+      proposals_.pause_after(window_.executed());
+      fall_back();
+      break;
+    case Phase::kFollowFallback:
+    case Phase::kRaiseFallback:
+      if (phase_ == Phase::kFollowFallback && !is_raised) {
+        solver_.set_state(beside_.least_violating().state);
+        enter(Phase::kRaiseFallback);
+        break;
+      }
+      better_ = incumbent_.offer(beside_.best().quality, beside_.best().state) || better_;
+      if (is_good() || asked_ == fallbacks_.size()) {
+        enter(Phase::kOver);
+      } else {
+        enter(Phase::kFallBack);
+      }
+      break;
+    default:
+      break;
+  }
+}
+
+/// A slice of a proposal's search, or all of it. Whether that is finished.
+bool LocalPlanner::propose(CycleReport& report, const Termination& termination) {
+  const Stopwatch watch;
+  const bool falls_back = phase_ == Phase::kFallBack;
+  ProposalSchedule& schedule = falls_back ? fallbacks_ : proposals_;
+  Termination slice = termination;
+  if (slice.max_iterations > 0) slice.max_iterations = kSlice;
+  report.detour = true;
+  const Proposal::Answer answer = schedule.ask(plan_, window_, slice, candidate_);
+  if (answer != Proposal::Answer::kUnfinished) ++asked_;
+  if (answer == Proposal::Answer::kFound) {
+    plan_.overwrite(window_.first(), candidate_);
+    better_ = true;  // the graph has another window now
+    solver_.load_state();
+    beside_.clear();
+    enter(falls_back ? Phase::kFollowFallback : Phase::kFollow);
+  } else if (answer == Proposal::Answer::kNone && asked_ == schedule.size()) {
+    if (falls_back) {
+      enter(Phase::kOver);
+    } else {
+      go_on_after_proposals();
+    }
+  }
+  report.statistics.proposals_s += watch.seconds();
+  return answer != Proposal::Answer::kUnfinished;
+}
+
+void LocalPlanner::go_on_after_proposals() {
+  if (!helped_) proposals_.pause_after(window_.executed());
+  if (!is_good()) {
+    raise_or_fall_back();
+    return;
+  }
+  solver_.set_state(incumbent_.best().state);
+  enter(Phase::kOptimise);
+}
+
+void LocalPlanner::raise_or_fall_back() {
+  if (incumbent_.best().quality.feasible() || options_.solver.max_rounds == 0) {
+    fall_back();
+    return;
+  }
+  solver_.set_state(incumbent_.least_violating().state);
+  enter(Phase::kRaise);
+}
+
+void LocalPlanner::fall_back() {
+  asked_ = 0;
+  const bool has_to = !incumbent_.best().quality.feasible() && fallbacks_.size() > 0;
+  enter(has_to ? Phase::kFallBack : Phase::kOver);
+}
+
+void LocalPlanner::enter(Phase phase) {
+  phase_ = phase;
+  iterations_ = 0;
+}
+
+/// Whether the incumbent needs no proposals. It is in the graph then.
+bool LocalPlanner::is_good() {
+  hand_out_best();
+  return incumbent_.best().quality.feasible() &&
+         !(plan_.behind_m(window_.last()) > options_.blocked_m);
 }
 
 /// Whether the window is where it was planned, and was come to as planned. Not on wheels, where a
@@ -172,76 +364,25 @@ bool LocalPlanner::is_as_planned() const {
   return true;
 }
 
-/// continued: the cycle began with an unfinished window.
-bool LocalPlanner::wants_proposals(bool continued) const {
+bool LocalPlanner::wants_proposals() {
+  if (proposals_.size() == 0 || is_good()) return false;
   const bool feasible = incumbent_.best().quality.feasible();
-  if (feasible && !(plan_.behind_m(window_.last()) > options_.blocked_m)) return false;
-  return !proposals_.paused_at(window_.executed()) || !(continued || feasible);
+  return !proposals_.paused_at(window_.executed()) || !(left_over_ || feasible);
 }
 
-/// Asks each of the proposals, and optimises from their candidates. Returns whether the
-/// termination cut one of them short.
-bool LocalPlanner::try_proposals(CycleReport& report, const Termination& termination) {
-  bool better = false;
-  for (int asked = 0; asked < proposals_.size(); ++asked) {
-    const Proposal::Answer answer = ask(proposals_, report, termination);
-    if (answer == Proposal::Answer::kUnfinished) return true;
-    if (answer == Proposal::Answer::kNone) continue;
-    const WindowSolver::Run run = solver_.optimise(WindowSolver::Start::kCandidate, incumbent_,
-                                                   termination, report.statistics);
-    if (run.cut_short) {
-      proposals_.pause_after(report.executed);
-      return true;
-    }
-    better = run.better || better;
-  }
-  if (!better) proposals_.pause_after(report.executed);
-  return false;
+/// The solver's state, to what the phase is about.
+bool LocalPlanner::offer() {
+  const bool beside = phase_ == Phase::kFollowFallback || phase_ == Phase::kRaiseFallback;
+  if (beside) return beside_.offer(solver_.quality(), solver_.state());
+  const bool better = incumbent_.offer(solver_.quality(), solver_.state());
+  better_ = better_ || better;
+  return better;
 }
 
-/// One after the other, until a window is feasible. Returns whether the termination cut one of them
-/// short.
-bool LocalPlanner::try_fallbacks(CycleReport& report, const Termination& termination) {
-  for (int asked = 0; asked < fallbacks_.size(); ++asked) {
-    const Proposal::Answer answer = ask(fallbacks_, report, termination);
-    if (answer == Proposal::Answer::kUnfinished) return true;
-    if (answer == Proposal::Answer::kNone) continue;
-    beside_.clear();
-    WindowSolver::Run run =
-        solver_.optimise(WindowSolver::Start::kCandidate, beside_, termination, report.statistics);
-    if (!run.cut_short && !beside_.best().quality.feasible() && options_.solver.max_rounds > 0) {
-      run = solver_.raise_constraints(beside_, termination, report.statistics);
-    }
-    incumbent_.offer(beside_.best().quality, beside_.best().state);
-    if (run.cut_short) return true;
-    if (incumbent_.best().quality.feasible()) break;
-  }
-  return false;
-}
-
-/// Loads the candidate that one of them finds into the solver.
-Proposal::Answer LocalPlanner::ask(ProposalSchedule& proposals, CycleReport& report,
-                                   const Termination& termination) {
-  report.detour = true;
-  const Stopwatch watch;
-  const Proposal::Answer answer = proposals.ask(plan_, window_, termination, candidate_);
-  if (answer == Proposal::Answer::kFound) plan_.overwrite(window_.first(), candidate_);
-  solver_.load_state();
-  report.statistics.proposals_s += watch.seconds();
-  return answer;
-}
-
-void LocalPlanner::keep_unfinished(bool cut_short) {
-  warm_start_.drop_unfinished();
-  const std::vector<double>* state = incumbent_.unfinished(cut_short ? &solver_.state() : nullptr);
-  if (state == nullptr) return;
-  solver_.store_state(*state);
-  warm_start_.keep_unfinished(window_);
-}
-
-/// Into the graph.
+/// Into the graph, where it has another one.
 void LocalPlanner::hand_out_best() {
-  solver_.store_state(incumbent_.best().state);
+  if (!std::exchange(better_, false)) return;
+  solver_.store(incumbent_.best().state);
   plan_.follow_moved(window_.first(), window_.last());
 }
 

@@ -9,23 +9,30 @@
 ///     }
 ///
 /// A cycle moves the window (window.h) to the H configurations after the executed one, initialises
-/// those that enter it (warm_start.h) and optimises it (window_solver.h). If constraints are still
-/// violated, or the window falls behind the plan, it asks proposals (proposal.h), such as a detour,
-/// and optimises from what they find. Constraints that are violated after that are raised. Where
-/// they are violated still, each of LocalPlannerOptions::fallbacks has a try of its own.
+/// those that enter it (warm_start.h) and goes on with the search for a better one, step by step:
+///
+///   1. optimise from the window that the last cycle handed out (window_solver.h)
+///   2. if constraints are still violated, or the window falls behind the plan: ask proposals
+///      (proposal.h), such as a detour, and optimise from what they find
+///   3. raise the constraints that are violated after that
+///   4. give each of LocalPlannerOptions::fallbacks a try of its own
+///
+/// One iteration of the optimiser is a step, or a slice of a proposal. A termination that counts
+/// iterations ends a cycle after so many steps, whatever they were, and the next cycle goes on from
+/// there, in a world that is new as well: at 50 cycles of one step for each second of the plan no
+/// cycle takes longer than its longest step. Without a termination a cycle goes through to the end.
 ///
 /// Constraints are whatever the edges of the graph say (core/violations.h), those of plug-ins too.
-/// The graph is only given a window that is better than the one it had (incumbent.h), also when the
-/// termination ends the cycle; the next cycle then continues from the unfinished window. A cycle
-/// ends at most one iteration after that. Constraints that cannot be met are reported, with
-/// place and size; no window that violates one is reported as feasible.
+/// The graph is only given a window that is better than the one it had (incumbent.h). Constraints
+/// that cannot be met are reported, with place and size; no window that violates one is reported as
+/// feasible.
 ///
-/// A cycle that got nothing better out of an infeasible window than the one before it, at the same
-/// configuration and in the same world, is the last that tries: until one of them changes, cycles
-/// give its answer again.
+/// The window is compiled when it moves, not once a cycle. A search that is over is not begun again
+/// until the configuration or the world is another one: cycles give its answer again.
 ///
 /// Time and memory of a cycle depend on H, not on the length of the plan.
 
+#include <locograph/planners/online/incumbent.h>
 #include <locograph/planners/online/proposal_schedule.h>
 #include <locograph/planners/online/standard_proposals.h>
 #include <locograph/planners/online/warm_start.h>
@@ -66,6 +73,9 @@ class LocalPlanner {
   /// executed: index in the plan of the configuration the robot is at.
   CycleReport cycle(int executed, const Termination& termination = {});
 
+  /// Something of the graph is different that no vertex's state says, such as times.
+  void plan_changed() { changed_ = true; }
+
   int plan_size() const { return plan_.size(); }
   const Plan& plan() const { return plan_.plan(); }
   /// The plan as it came, and as it is now.
@@ -75,20 +85,39 @@ class LocalPlanner {
   const Problem& compiled_window() const { return solver_.problem(); }  ///< of the last cycle
 
  private:
+  /// What the search goes on with.
+  enum class Phase {
+    kOptimise,  ///< from what was handed out
+    kPropose,
+    kFollow,  ///< what a proposal has found
+    kRaise,
+    kFallBack,
+    kFollowFallback,
+    kRaiseFallback,
+    kOver,
+  };
+
   bool take_shown();
-  void begin(CycleReport& report);
+  bool tries_again();
+  void begin(CycleReport& report, bool moved);
+  const std::vector<double>* leftover();
+  bool move_window(int executed);
+  void see_new_world();
   bool improve(CycleReport& report, const Termination& termination);
-  bool load_unfinished();
+  bool advance(CycleReport& report, const Termination& termination);
+  bool run(CycleReport& report, const Termination& termination);
+  void end_run();
+  bool propose(CycleReport& report, const Termination& termination);
+  void go_on_after_proposals();
+  void raise_or_fall_back();
+  void fall_back();
+  void enter(Phase phase);
+  bool is_good();
   bool is_as_planned() const;
-  bool wants_proposals(bool continued) const;
-  bool try_proposals(CycleReport& report, const Termination& termination);
-  bool try_fallbacks(CycleReport& report, const Termination& termination);
-  Proposal::Answer ask(ProposalSchedule& proposals, CycleReport& report,
-                       const Termination& termination);
-  void keep_unfinished(bool cut_short);
+  bool wants_proposals();
+  bool offer();
   void hand_out_best();
   void describe_best(CycleReport& report) const;
-  void keep_answer(const CycleReport& report, bool cut_short);
 
   LocalPlannerOptions options_;
   OnlinePlan plan_;
@@ -99,10 +128,16 @@ class LocalPlanner {
   Incumbent beside_;  ///< what a fallback has led to
   ProposalSchedule proposals_, fallbacks_;
   std::vector<Eigen::VectorXd> candidate_;  ///< a proposal's
+  Phase phase_ = Phase::kOptimise;
+  int asked_ = 0;           ///< proposals or fallbacks, of this search
+  int iterations_ = 0;      ///< of this phase
+  bool helped_ = false;     ///< proposals
+  bool left_over_ = false;  ///< the search began with a window that the one before had left
+  bool better_ = false;     ///< the incumbent, than what was handed out
+  bool changed_ = false;    ///< see plan_changed()
+  std::vector<double> handed_out_, least_;  ///< see see_new_world()
   CycleReport answer_;                      ///< of the last cycle
-  WindowQuality quality_;                   ///< what it handed out
-  bool new_world_ = true;                   ///< since the cycle before
-  bool settled_ = false;                    ///< nothing better is found at the same configuration
+  WindowQuality tried_;                     ///< what the last search at this configuration led to
   std::mutex showing_;
   std::shared_ptr<const WorldSnapshot> shown_;  ///< since the last cycle began; null: none
 };

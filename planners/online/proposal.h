@@ -40,8 +40,10 @@ class Proposal {
   virtual ~Proposal() = default;
 
   /// One slice of the search. Returns soon after the termination ends it; intermediate results are
-  /// kept for the next call, whose window has moved on by then. Every call makes some progress,
-  /// also after that. kUnfinished is for searches that the termination ended.
+  /// kept for the next call, whose window may have moved on by then. Every call makes some
+  /// progress, also after that. kUnfinished is for searches that the termination ended. A
+  /// termination that counts iterations counts pieces of work that take some microseconds each: the
+  /// same slices on every machine.
   ///
   /// candidate: on kFound the configurations of the window in their order; those that are fixed in
   /// the plan are ignored. Read planned configurations, fixed ones, and those up to the executed
@@ -50,7 +52,8 @@ class Proposal {
                         const Termination& termination,
                         std::vector<Eigen::VectorXd>& candidate) = 0;
 
-  /// The world has changed: intermediate results about it do not hold any more.
+  /// The world has changed: intermediate results about it do not hold any more. A search that is
+  /// unfinished goes on as it is, and hears of it afterwards.
   virtual void world_changed() {}
 };
 

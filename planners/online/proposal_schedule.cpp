@@ -1,6 +1,8 @@
 #include <locograph/common/error.h>
 #include <locograph/planners/online/proposal_schedule.h>
 
+#include <utility>
+
 namespace locograph {
 namespace {
 
@@ -32,12 +34,21 @@ Proposal::Answer ProposalSchedule::ask(const OnlinePlan& plan, const Window& win
                                        std::vector<Eigen::VectorXd>& candidate) {
   const Proposal::Answer answer = proposals_[next_]->search(plan, window, termination, candidate);
   if (answer == Proposal::Answer::kFound) require_fit(candidate, plan, window);
-  due_ = answer == Proposal::Answer::kUnfinished;
-  if (!due_) next_ = (next_ + 1) % proposals_.size();
+  unfinished_ = answer == Proposal::Answer::kUnfinished;
+  if (unfinished_) return answer;
+  next_ = (next_ + 1) % proposals_.size();
+  give_up();
   return answer;
 }
 
+void ProposalSchedule::give_up() {
+  unfinished_ = false;
+  if (std::exchange(world_changed_, false)) world_changed();
+}
+
 void ProposalSchedule::world_changed() {
+  world_changed_ = unfinished_;
+  if (unfinished_) return;
   for (const std::unique_ptr<Proposal>& proposal : proposals_) proposal->world_changed();
 }
 

@@ -7,8 +7,8 @@
 ///       if (answer == Proposal::Answer::kNone) schedule.pause_after(executed);
 ///     }
 ///
-/// They take turns. One that the termination interrupts stays next and is due: the next cycle
-/// begins with it.
+/// They take turns. One whose search is unfinished stays next. It hears of a new world after that:
+/// a search whose world changes in each cycle would never end.
 
 #include <locograph/planners/online/proposal.h>
 
@@ -30,22 +30,21 @@ class ProposalSchedule {
   Proposal::Answer ask(const OnlinePlan& plan, const Window& window, const Termination& termination,
                        std::vector<Eigen::VectorXd>& candidate);
 
-  /// Whether a cycle is to begin with proposals.
-  bool due() const { return due_; }
-  void set_due(bool due) { due_ = due && !proposals_.empty(); }
-
   /// From the cycle after `executed` on.
   void pause_after(int executed) { not_before_ = executed + 1 + pause_; }
   bool paused_at(int executed) const { return executed < not_before_; }
 
   void world_changed();
+  /// A search that is unfinished does not go on.
+  void give_up();
 
  private:
   std::vector<std::unique_ptr<Proposal>> proposals_;
   int pause_;
   std::size_t next_ = 0;
-  bool due_ = false;
-  int not_before_ = 0;  ///< executed index
+  bool unfinished_ = false;     ///< the search of the next one
+  bool world_changed_ = false;  ///< since it began
+  int not_before_ = 0;          ///< executed index
 };
 
 }  // namespace locograph

@@ -204,6 +204,7 @@ class Walk {
       vertex(i).slopes *= pace_ / pace;
     }
     pace_ = pace;
+    planner_.plan_changed();
   }
 
   /// Whether the walk ends because steps that are this slow end later than any file may say.
@@ -344,11 +345,11 @@ void WalkOptions::validate() const {
 WalkOptions walk_options_for(const Plan& plan) {
   WalkOptions options;
   options.rate_hz = 50.0;
+  options.cycle_iterations = 1;
   const bool drives = std::ranges::all_of(
       plan.stance_from, [](const auto& stance) { return stance && rolls_on_wheels(*stance); });
   if (drives) return options;
   options.planner.horizon_s = 2.0;
-  options.cycle_iterations = 1;
   return options;
 }
 

@@ -33,7 +33,8 @@ struct WalkOptions {
   double goal_tolerance_m = limits::kGoal_m;
   double goal_tolerance_rad = limits::kGoal_rad;
   double cycle_deadline_s = 0.0;  ///< for one cycle; 0: none
-  int cycle_iterations = 0;  ///< of one cycle at most, which the next one continues; 0: no limit
+  /// Steps of one cycle at most, see LocalPlanner; the next one goes on. 0: no limit.
+  int cycle_iterations = 0;
   /// Of the walk, which ends between two cycles where the robot is.
   Termination termination = {};
   /// Asked where a robot on legs has stopped: the plan as far as it was executed, and how it goes
@@ -56,8 +57,8 @@ struct WalkOptions {
   void validate() const;
 };
 
-/// What suits a plan: 50 cycles for each second, on wheels of 20 configurations, else of 2 s and
-/// one iteration each, as plans on legs are sampled finely for their judge.
+/// What suits a plan: 50 cycles of one step for each second, on wheels of 20 configurations, else
+/// of 2 s, as plans on legs are sampled finely for their judge.
 WalkOptions walk_options_for(const Plan& plan);
 
 struct WalkReport : PlannerAnswer {

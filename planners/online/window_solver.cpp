@@ -3,6 +3,7 @@
 #include <locograph/solvers/linear_solvers.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace locograph {
 
@@ -16,6 +17,8 @@ namespace {
 
 /// Constraints weigh up to 1e5 times as much as tracking: λ must begin far below either.
 constexpr double kLeastLambda = 1e-10;
+/// Of an iteration that has to be short, and of iterations in a row.
+constexpr int kFewRefusals = 2, kMostRefused = 5;
 
 OptimiserOptions optimiser_options(const WindowSolverOptions& options) {
   OptimiserOptions result;
@@ -25,10 +28,25 @@ OptimiserOptions optimiser_options(const WindowSolverOptions& options) {
   return result;
 }
 
-bool cut_short(const OptimiserResult& result, const Termination& termination,
-               const WindowStatistics& statistics) {
-  return result.reason == OptimiserResult::Reason::kDeadline || termination.stopped() ||
-         termination.used_up(statistics.iterations);
+ConstrainedOptions raising_options(const WindowSolverOptions& options) {
+  ConstrainedOptions raising;
+  raising.inner = optimiser_options(options);
+  raising.inner.shorten_steps = true;
+  // The first two rounds find the violations that do not come down by themselves.
+  raising.max_rounds = options.max_rounds + 2;
+  raising.own_tolerances = true;
+  raising.tolerance = ViolationOptions().tolerance;
+  raising.growth = options.raise;
+  raising.max_penalty = options.max_raise;
+  return raising;
+}
+
+void add_times(const IterationStatistics& made, WindowStatistics& statistics) {
+  statistics.linearise_s += made.time_linearise;
+  statistics.solve_s += made.time_solve;
+  statistics.evaluate_s += made.time_evaluate;
+  statistics.iteration_s =
+      std::max(statistics.iteration_s, made.time_linearise + made.time_solve + made.time_evaluate);
 }
 
 }  // namespace
@@ -45,12 +63,16 @@ WindowSolver::WindowSolver(const WindowSolverOptions& options)
       reader_(workspace_),
       linear_solver_(make_linear_solver("auto")),
       optimiser_(optimiser_options(options)),
+      raising_(raising_options(options)),
       incumbent_lambda_(kLeastLambda),
       candidate_lambda_(kLeastLambda) {}
 
 WindowSolver::~WindowSolver() = default;
 
 void WindowSolver::compile(const Window& window) {
+  end_run();
+  if (raised_) keep_multipliers();
+  raised_ = false;
   problem_.compile(window.graph(), window.free_vertices(), window.held_vertices());
   workspace_.allocate(problem_);
   workspace_.bind(window.plan().bindings());
@@ -60,12 +82,22 @@ void WindowSolver::compile(const Window& window) {
     step_of_.push_back(window.step_of(c.edge));
   }
   steps_ = window.steps();
-  first_iteration_ = true;
 }
 
-void WindowSolver::store_state(const std::vector<double>& state) {
-  workspace_.state() = state;
-  workspace_.store_state();
+void WindowSolver::rebind(const Bindings& bindings) {
+  workspace_.bind(bindings);
+  rebound_ = running();
+}
+
+void WindowSolver::load_state() {
+  end_run();
+  workspace_.load_state();
+}
+
+void WindowSolver::set_state(const std::vector<double>& state) {
+  if (state == workspace_.state()) return;
+  end_run();
+  workspace_.set_state(state);
 }
 
 void WindowSolver::prepare() {
@@ -75,6 +107,7 @@ void WindowSolver::prepare() {
 
 /// To the rows of a workspace just allocated.
 void WindowSolver::restore_multipliers() {
+  if (multipliers_.empty()) return;
   std::vector<ConstraintRow>& rows = workspace_.constraint_rows();
   auto next = multipliers_.begin();
   for (const CompiledConstraint& c : problem_.constraints()) {
@@ -88,9 +121,10 @@ void WindowSolver::restore_multipliers() {
 
 void WindowSolver::keep_multipliers() {
   multipliers_.clear();
+  const std::vector<ConstraintRow>& rows = std::as_const(workspace_).constraint_rows();
   for (const CompiledConstraint& c : problem_.constraints()) {
     for (int r = 0; r < c.count; ++r) {
-      const ConstraintRow& row = workspace_.constraint_rows()[c.row + r];
+      const ConstraintRow& row = rows[c.row + r];
       if (row.shift != 0.0 || row.scale != 1.0) {
         multipliers_.push_back({c.edge, r, row.shift, row.scale});
       }
@@ -98,117 +132,117 @@ void WindowSolver::keep_multipliers() {
   }
 }
 
-/// Of the state that was evaluated last.
-WindowQuality WindowSolver::quality(double cost) const {
+WindowQuality WindowSolver::quality() {
+  const double cost = workspace_.return_to_state().robust;
   return window_quality(reader_, step_of_, steps_, cost);
 }
 
-void WindowSolver::offer_state(Incumbent& incumbent) {
-  incumbent.offer(quality(workspace_.evaluate(workspace_.state()).robust), workspace_.state());
+WindowQuality WindowSolver::quality_of(const std::vector<double>& state) {
+  if (state == workspace_.state()) return quality();
+  return window_quality(reader_, step_of_, steps_, workspace_.evaluate(state).robust);
 }
 
-/// The next run begins near where this one did: a step that was refused here would be refused
-/// there.
-void WindowSolver::learn(double& lambda) {
+void WindowSolver::begin(Start start) {
+  run_ = RunKind::kPlain;
+  start_ = start;
+  begins_ = true;
+  refused_ = 0;
+  gain_ = 1.0;
+}
+
+void WindowSolver::begin_raising() {
+  begin(Start::kCandidate);
+  run_ = RunKind::kRaising;
+  raised_ = true;
+}
+
+void WindowSolver::end_run() {
+  if (run_ == RunKind::kPlain && !begins_) learn(true);
+  run_ = RunKind::kNone;
+  begins_ = rebound_ = false;
+}
+
+void WindowSolver::begin_run() {
+  begins_ = rebound_ = false;
+  if (run_ == RunKind::kRaising) {
+    raising_.start(workspace_, *linear_solver_, true, true);
+    return;
+  }
+  optimiser_.options().initial_lambda = lambda();
+  optimiser_.start(workspace_, *linear_solver_, true);
+}
+
+/// The next run begins near where this one did, or goes on from where it is: a step that was
+/// refused here would be refused there.
+void WindowSolver::learn(bool from_first) {
   constexpr double kChange = 10.0;
-  const OptimiserResult& result = optimiser_.result();
-  if (result.statistics.empty()) return;
-  const IterationStatistics& first = result.statistics.front();
+  const std::vector<IterationStatistics>& done = optimiser_.result().statistics;
+  if (done.empty()) return;
+  const IterationStatistics& one = from_first ? done.front() : done.back();
   diagonal_.resize(workspace_.step().size());
   workspace_.diagonal(diagonal_);
   const double unit = *std::max_element(diagonal_.begin(), diagonal_.end());
-  if (result.iterations == 0 && result.reason == OptimiserResult::Reason::kDeadline) {
-    lambda = std::max(kChange * lambda, optimiser_.options().refused_lambda);
+  if (one.step_norm == 0.0) {
+    lambda() = std::max(kChange * one.lambda / unit, optimiser_.options().refused_lambda);
   } else {
-    lambda = std::max(kLeastLambda, first.refusals > 0 ? first.lambda / unit : lambda / kChange);
+    lambda() = std::max(kLeastLambda, one.refusals > 0 ? one.lambda / unit : lambda() / kChange);
   }
 }
 
-/// By the last iteration. After one that took no step nobody knows yet how much there is to gain.
-bool WindowSolver::gained_little() const {
-  const OptimiserResult& result = optimiser_.result();
-  const std::vector<IterationStatistics>& steps = result.statistics;
-  if (result.iterations == 0 || steps.empty()) return false;
-  const double before = steps.size() > 1 ? steps[steps.size() - 2].cost : result.initial.robust;
-  return before - steps.back().cost <= options_.feasible_gain * before;
-}
+bool WindowSolver::gained_little() const { return gain_ <= options_.feasible_gain; }
 
-/// Whether the last iteration left a feasible window and gained little.
-bool WindowSolver::good_enough() const {
-  return gained_little() && quality(optimiser_.result().final.robust).feasible();
-}
-
-void WindowSolver::add_statistics(WindowStatistics& statistics) const {
-  const OptimiserResult& result = optimiser_.result();
-  statistics.iterations += result.iterations;
-  for (const IterationStatistics& step : result.statistics) {
-    statistics.linearise_s += step.time_linearise;
-    statistics.solve_s += step.time_solve;
-    statistics.evaluate_s += step.time_evaluate;
-    statistics.iteration_s = std::max(statistics.iteration_s,
-                                      step.time_linearise + step.time_solve + step.time_evaluate);
-  }
-}
-
-WindowSolver::Run WindowSolver::optimise(Start start, Incumbent& incumbent,
-                                         const Termination& termination,
-                                         WindowStatistics& statistics) {
-  Stopwatch watch;
-  double& lambda = start == Start::kIncumbent ? incumbent_lambda_ : candidate_lambda_;
-  optimiser_.options().initial_lambda = lambda;
-  optimiser_.start(workspace_, *linear_solver_);
-  const OptimiserResult& result = optimiser_.result();
-  Run run;
-  run.better = incumbent.offer(quality(result.initial.robust), workspace_.state());
-  // However little time there is, a cycle makes one step, or tries to.
-  constexpr double kOneStep_s = 1e-4;
-  const Deadline& deadline = termination.deadline;
-  optimiser_.options().max_iterations =
-      termination.left_of(options_.max_iterations, statistics.iterations);
-  optimiser_.options().deadline =
-      first_iteration_ && deadline.passed() ? Deadline::after(kOneStep_s) : deadline;
+/// One that has to be short and takes no step leaves it to the next one, with more damping.
+bool WindowSolver::step_plain(const Termination& termination) {
+  using Reason = OptimiserResult::Reason;
+  const bool is_short = termination.max_iterations > 0;
+  OptimiserOptions& options = optimiser_.options();
+  options.max_refusals = is_short ? kFewRefusals : OptimiserOptions().max_refusals;
+  options.deadline = termination.deadline.passed() ? Deadline() : termination.deadline;
+  const int before = optimiser_.result().iterations;
   const bool more = optimiser_.iterate();
-  first_iteration_ = false;
-  optimiser_.options().deadline = deadline;
-  while (more && !good_enough() && !termination.stopped() && optimiser_.iterate()) {
+  const OptimiserResult& now = optimiser_.result();
+  if (more || now.iterations > before) {
+    refused_ = 0;
+    return more;
   }
-  learn(lambda);
-  add_statistics(statistics);
-  run.cut_short = cut_short(result, termination, statistics);
-  statistics.optimise_s += watch.lap();
-  workspace_.return_to_state();
-  run.better = incumbent.offer(quality(result.final.robust), workspace_.state()) || run.better;
-  statistics.check_s += watch.lap();
-  return run;
+  const bool refused = now.reason == Reason::kDeadline || now.reason == Reason::kSingular ||
+                       (is_short && now.reason == Reason::kNoProgress);
+  if (!refused || ++refused_ >= kMostRefused) return false;
+  learn(false);
+  begins_ = true;
+  return true;
 }
 
-WindowSolver::Run WindowSolver::raise_constraints(Incumbent& incumbent,
-                                                  const Termination& termination,
-                                                  WindowStatistics& statistics) {
+bool WindowSolver::step_raising(const Termination& termination, WindowStatistics& statistics) {
+  raising_.inner_options().deadline =
+      termination.deadline.passed() ? Deadline() : termination.deadline;
+  const bool more = raising_.iterate();
+  statistics.rounds = raising_.rounds();
+  return more;
+}
+
+bool WindowSolver::step(const Termination& termination, WindowStatistics& statistics) {
   const Stopwatch watch;
-  ConstrainedOptions raising;
-  raising.inner = optimiser_options(options_);
-  raising.inner.deadline = termination.deadline;
-  raising.inner.on_iteration = [&, made = statistics.iterations](const OptimiserResult&) mutable {
-    return !termination.stopped() && !termination.used_up(++made);
+  const bool raises = run_ == RunKind::kRaising;
+  if (begins_) {
+    begin_run();
+  } else if (std::exchange(rebound_, false)) {
+    raises ? raising_.costs_changed() : optimiser_.costs_changed();
+  }
+  const auto iterations = [&] {
+    return raises ? raising_.iterations() : optimiser_.result().iterations;
   };
-  raising.inner.shorten_steps = true;
-  // The first two rounds find the violations that do not come down by themselves.
-  raising.max_rounds = options_.max_rounds + 2;
-  raising.own_tolerances = true;
-  raising.tolerance = ViolationOptions().tolerance;
-  raising.growth = options_.raise;
-  raising.max_penalty = options_.max_raise;
-  workspace_.state() = incumbent.least_violating().state;
-  const ConstrainedResult result = optimise_constrained(workspace_, raising, *linear_solver_, true);
-  statistics.iterations += result.iterations;
-  statistics.rounds = result.rounds;
-  Run run;
-  run.cut_short = cut_short(result.inner, termination, statistics);
-  run.better = incumbent.offer(quality(result.inner.final.robust), workspace_.state());
-  keep_multipliers();
+  const double before = workspace_.return_to_state().robust;
+  const int made = iterations();
+  const bool more = raises ? step_raising(termination, statistics) : step_plain(termination);
+  const int steps = iterations() - made;
+  const OptimiserResult& now = raises ? raising_.inner() : optimiser_.result();
+  gain_ = steps == 0 ? 1.0 : (before - now.final.robust) / before;
+  statistics.iterations += steps;
+  if (!now.statistics.empty()) add_times(now.statistics.back(), statistics);
+  if (!more) end_run();
   statistics.optimise_s += watch.seconds();
-  return run;
+  return more;
 }
 
 }  // namespace locograph

@@ -1,26 +1,27 @@
 #pragma once
-/// Optimises the window of an online planner on one compiled problem.
+/// Optimises the window of an online planner on one compiled problem, an iteration at a time.
 ///
 ///     WindowSolver solver{WindowSolverOptions()};
 ///     solver.compile(window);
 ///     solver.load_state();
-///     solver.optimise(WindowSolver::Start::kIncumbent, incumbent, termination, statistics);
-///     const bool feasible = incumbent.best().quality.feasible();
-///     if (!feasible) solver.raise_constraints(incumbent, termination, statistics);
-///     solver.store_state(incumbent.best().state);
+///     solver.begin(WindowSolver::Start::kIncumbent);
+///     while (solver.step(termination, statistics)) {
+///     }
+///     incumbent.offer(solver.quality(), solver.state());
 ///
-/// A run takes a few Levenberg-Marquardt steps from the state that was loaded, and offers its first
-/// and its last state to the incumbent. Constraints that are still violated after it are raised by
-/// the augmented Lagrangian of core; its multipliers are kept by edge from cycle to cycle, and so
-/// is the damping λ.
+/// A run goes on over cycles as long as the window stays what it is, also in a world that is new,
+/// with the damping λ that it has. Each is one of
+/// Levenberg-Marquardt or, after begin_raising(), of the augmented Lagrangian of core, which raises
+/// the constraints that are violated still; its multipliers are kept by edge from cycle to cycle.
 ///
-/// The structure of the compiled problem is kept while the window slides. A run ends at most one
-/// iteration after the termination asks for it.
+/// Nothing is evaluated twice: a run begins with what is known of the state it begins from, and a
+/// world that is new needs no new kinematics. The structure of the compiled problem is kept while
+/// the window slides.
 
 #include <locograph/core/augmented_lagrangian.h>
 #include <locograph/planners/online/cycle_report.h>
-#include <locograph/planners/online/incumbent.h>
 #include <locograph/planners/online/window.h>
+#include <locograph/planners/online/window_quality.h>
 
 #include <memory>
 #include <vector>
@@ -43,29 +44,37 @@ class WindowSolver {
   /// The window that a run starts from: the one that the last cycle handed out, or one beside it.
   /// Each has a damping of its own.
   enum class Start { kIncumbent, kCandidate };
-  struct Run {
-    bool better = false;     ///< one of its states is the incumbent's best now
-    bool cut_short = false;  ///< by the termination
-  };
 
   explicit WindowSolver(const WindowSolverOptions& options);
   ~WindowSolver();
 
-  /// Once a cycle. The first iteration after it is begun whatever the deadline.
+  /// Of a window that has moved. A run ends.
   void compile(const Window& window);
-  void load_state() { workspace_.load_state(); }       ///< graph → state()
-  void store_state(const std::vector<double>& state);  ///< → state() → graph
+  /// The world has changed. A run goes on in it.
+  void rebind(const Bindings& bindings);
+  /// Graph → state(). A run ends.
+  void load_state();
+  /// As the one that it has already, or another one: then a run ends.
+  void set_state(const std::vector<double>& state);
+  void store(const std::vector<double>& state) const { workspace_.store(state); }  ///< → graph
   const std::vector<double>& state() { return workspace_.state(); }
   const Problem& problem() const { return problem_; }
 
-  /// Evaluates the state and offers it as it is.
-  void offer_state(Incumbent& incumbent);
-  /// Adds to the iterations and seconds, as does raise_constraints().
-  Run optimise(Start start, Incumbent& incumbent, const Termination& termination,
-               WindowStatistics& statistics);
-  /// Optimises again from the least violating window, however early it was seen.
-  Run raise_constraints(Incumbent& incumbent, const Termination& termination,
-                        WindowStatistics& statistics);
+  /// Of the state, and of another one.
+  WindowQuality quality();
+  WindowQuality quality_of(const std::vector<double>& state);
+
+  /// From the state.
+  void begin(Start start);
+  void begin_raising();
+  bool running() const { return run_ != RunKind::kNone; }
+  /// One iteration of the run. With a termination that counts iterations one whose steps are
+  /// refused tries few of them; the next one goes on with what it learnt. False: the run is over.
+  bool step(const Termination& termination, WindowStatistics& statistics);
+  void end_run();
+  /// By the last iteration. After one that took no step nobody knows yet how much there is to gain.
+  bool gained_little() const;
+
   /// One iteration from the state, so that memory and the order of elimination are there.
   void prepare();
 
@@ -75,14 +84,15 @@ class WindowSolver {
 
  private:
   struct Multiplier;
+  enum class RunKind { kNone, kPlain, kRaising };
 
   void restore_multipliers();
   void keep_multipliers();
-  WindowQuality quality(double cost) const;
-  bool gained_little() const;
-  bool good_enough() const;
-  void learn(double& lambda);
-  void add_statistics(WindowStatistics& statistics) const;
+  void begin_run();
+  bool step_plain(const Termination& termination);
+  bool step_raising(const Termination& termination, WindowStatistics& statistics);
+  void learn(bool from_first);
+  double& lambda() { return start_ == Start::kIncumbent ? incumbent_lambda_ : candidate_lambda_; }
 
   WindowSolverOptions options_;
   Problem problem_;
@@ -90,10 +100,17 @@ class WindowSolver {
   ConstraintReader reader_;
   std::unique_ptr<LinearSolver> linear_solver_;
   Optimiser optimiser_;
+  ConstrainedOptimiser raising_;
   std::vector<double> diagonal_;
   /// With which runs begin, in units of the largest diagonal entry.
   double incumbent_lambda_, candidate_lambda_;
-  bool first_iteration_ = true;          ///< since compile()
+  RunKind run_ = RunKind::kNone;
+  Start start_ = Start::kIncumbent;
+  bool begins_ = false;                  ///< the run, with the next step
+  bool rebound_ = false;                 ///< since the last step of the run
+  int refused_ = 0;                      ///< iterations in a row that took no step
+  bool raised_ = false;                  ///< since compile()
+  double gain_ = 1.0;                    ///< of the last iteration, as a fraction of the cost
   std::vector<int> step_of_;             ///< of the constraints, see window_quality()
   int steps_ = 0;                        ///< of the window
   std::vector<Multiplier> multipliers_;  ///< by edge slot, ascending

@@ -216,6 +216,76 @@ TEST(LocalPlanner, MakesTheSamePlanWithADeadlineThatIsGenerous) {
   EXPECT_EQ(write_graph_text(without), write_graph_text(with));
 }
 
+/// Until there is nothing left to do; the most that one of the cycles did.
+struct Steps {
+  int cycles = 0, iterations = 0;
+  bool success = false;
+};
+Steps search_in_steps(LocalPlanner& planner, int executed) {
+  Steps steps;
+  for (; steps.cycles < 2000; ++steps.cycles) {
+    const CycleReport report = planner.cycle(executed, {.max_iterations = 1});
+    steps.iterations = std::max(steps.iterations, report.statistics.iterations);
+    steps.success = report.success();
+    if (report.statistics.optimise_s == 0.0 && !report.detour) break;
+  }
+  return steps;
+}
+
+TEST(LocalPlanner, FindsTheSameWayInCyclesOfOneStep) {
+  Graph at_once = drive(), in_steps = drive();
+  LocalPlannerOptions options;
+  options.horizon = 30;
+  LocalPlanner one(at_once, options), many(in_steps, options);
+  for (LocalPlanner* planner : {&one, &many}) planner->show(seeing({box_ahead()}));
+  const CycleReport report = one.cycle(0);
+  ASSERT_TRUE(report.detour);
+  const Steps steps = search_in_steps(many, 0);
+  EXPECT_GT(steps.cycles, 10);
+  EXPECT_EQ(steps.iterations, 1);
+  EXPECT_EQ(steps.success, report.success());
+  const auto farthest = [](const Graph& graph) {
+    double most = 0.0;
+    for (const Eigen::VectorXd& q : configurations(graph)) {
+      if (std::abs(q[1]) > std::abs(most)) most = q[1];
+    }
+    return most;
+  };
+  ASSERT_GT(std::abs(farthest(at_once)), 0.3);
+  EXPECT_NEAR(farthest(in_steps) / farthest(at_once), 1.0, 0.2) << "the same side, as far";
+}
+
+TEST(LocalPlanner, GoesOnWithItsSearchInAWorldThatChangesWithEveryCycle) {
+  Graph graph = drive();
+  LocalPlannerOptions options;
+  options.horizon = 30;
+  LocalPlanner planner(graph, options);
+  CycleReport report;
+  int cycles = 0;
+  do {
+    planner.show(seeing({box_ahead()}));
+    report = planner.cycle(0, {.max_iterations = 1});
+  } while (!report.success() && ++cycles < 300);
+  EXPECT_TRUE(report.success()) << report.reason;
+  EXPECT_GT(cycles, 10);
+}
+
+TEST(LocalPlanner, DoesNothingWhereNothingHasChanged) {
+  Graph graph = drive();
+  LocalPlanner planner(graph, {});
+  planner.show(seeing({box_ahead()}));
+  search_in_steps(planner, 0);
+  const std::string found = write_graph_text(graph);
+  const CycleReport again = planner.cycle(0);
+  EXPECT_EQ(again.statistics.iterations, 0);
+  EXPECT_EQ(again.statistics.compile_s, 0.0);
+  EXPECT_EQ(write_graph_text(graph), found);
+  planner.plan_changed();
+  EXPECT_GT(planner.cycle(0).statistics.compile_s, 0.0);
+  planner.show(seeing({}));
+  EXPECT_GT(planner.cycle(0).statistics.iterations, 0) << "back to the plan";
+}
+
 // crossing_campaign counts every window of 24 crossings.
 TEST(LocalPlanner, CallsFeasibleWhatTheJudgeAccepts) {
   if (test::kSanitized) GTEST_SKIP() << "takes minutes there";

@@ -58,14 +58,28 @@ TEST_F(Schedule, AsksInTurnAndStaysWithAProposalThatIsUnfinished) {
   ASSERT_EQ(schedule.size(), 2);
   EXPECT_EQ(ask(schedule), Answer::kNone);
   EXPECT_EQ(ask(schedule), Answer::kNone);
-  EXPECT_FALSE(schedule.due());
   EXPECT_EQ(ask(schedule), Answer::kUnfinished);
-  EXPECT_TRUE(schedule.due());
   EXPECT_EQ(ask(schedule), Answer::kNone);
-  EXPECT_FALSE(schedule.due());
   EXPECT_EQ(ask(schedule), Answer::kNone);
   EXPECT_EQ(first.asked, (Indices{0, 2, 3}));
   EXPECT_EQ(second.asked, (Indices{1, 4}));
+}
+
+TEST_F(Schedule, TellsASearchOfANewWorldWhenItIsOver) {
+  Script script{.answers = {Answer::kUnfinished, Answer::kNone, Answer::kUnfinished}};
+  ProposalSchedule schedule({scripted(script)}, plan_, 4);
+  ask(schedule);
+  schedule.world_changed();
+  schedule.world_changed();
+  EXPECT_EQ(script.worlds, 0);
+  ask(schedule);
+  EXPECT_EQ(script.worlds, 1);
+  ask(schedule);
+  schedule.world_changed();
+  schedule.give_up();
+  EXPECT_EQ(script.worlds, 2);
+  schedule.world_changed();
+  EXPECT_EQ(script.worlds, 3);
 }
 
 TEST_F(Schedule, PausesForSomeCycles) {
@@ -75,12 +89,6 @@ TEST_F(Schedule, PausesForSomeCycles) {
   EXPECT_TRUE(schedule.paused_at(8));
   EXPECT_TRUE(schedule.paused_at(9));
   EXPECT_FALSE(schedule.paused_at(10));
-}
-
-TEST_F(Schedule, IsNeverDueWithoutProposals) {
-  ProposalSchedule schedule({}, plan_, 2);
-  schedule.set_due(true);
-  EXPECT_FALSE(schedule.due());
 }
 
 TEST_F(Schedule, RefusesACandidateThatDoesNotFitTheWindow) {
