@@ -8,9 +8,6 @@
 namespace locograph {
 namespace {
 
-/// Iterations after which a window that is violated still is not worth any more of them before
-/// there are proposals, where a cycle is short.
-constexpr int kSoon = 3;
 /// Of a proposal's search, see Proposal::search(): some 0.2 ms.
 constexpr int kSlice = 40;
 
@@ -191,8 +188,7 @@ void LocalPlanner::see_new_world() {
 
 /// Step by step. Returns whether the termination cut it short.
 bool LocalPlanner::improve(CycleReport& report, const Termination& termination) {
-  if (phase_ == Phase::kOptimise && !solver_.running() && incumbent_.best().quality.feasible() &&
-      is_as_planned()) {
+  if (phase_ == Phase::kOptimise && !solver_.running() && is_good() && is_as_planned()) {
     phase_ = Phase::kOver;
   }
   for (int steps = 0; phase_ != Phase::kOver; ++steps) {
@@ -228,17 +224,12 @@ bool LocalPlanner::run(CycleReport& report, const Termination& termination) {
   ++iterations_;
   const WindowSolverOptions& options = options_.solver;
   const int most = options.max_iterations * (raises ? options.max_rounds + 2 : 1);
-  if (more && iterations_ < most && !raises) {
-    const bool is_soon = optimises && termination.max_iterations > 0 && iterations_ == kSoon;
-    if (!solver_.gained_little() && !is_soon) return true;
-    const bool feasible = solver_.quality().feasible();
-    if (!feasible && !is_soon) return true;
-    if (feasible && optimises) {
+  if (more && iterations_ < most) {
+    if (raises || !solver_.gained_little() || !solver_.quality().feasible()) return true;
+    if (optimises) {
       offer();
       return !is_good();  // or else the run goes on with the next cycle
     }
-  } else if (more && iterations_ < most) {
-    return true;
   }
   end_run();
   return phase_ != Phase::kOptimise;
@@ -354,10 +345,8 @@ bool LocalPlanner::is_good() {
          !(plan_.behind_m(window_.last()) > options_.blocked_m);
 }
 
-/// Whether the window is where it was planned, and was come to as planned. Not on wheels, where a
-/// window has an end that is free.
+/// Whether the window is where it was planned, and was come to as planned.
 bool LocalPlanner::is_as_planned() const {
-  if (plan_.rolls(window_.last())) return false;
   for (int i = std::max(0, window_.executed() - 1); i <= window_.last(); ++i) {
     if (!plan_.is_as_planned(i)) return false;
   }
