@@ -2,9 +2,11 @@
 #include <locograph/plugins/self_collision/edge_self_collision.h>
 #include <locograph/plugins/surface_distance/place_rows.h>
 #include <locograph/robots/kinematic_tree.h>
+#include <locograph/world/bent_legs.h>
 #include <locograph/world/distance_view.h>
 #include <locograph/world/link_solid.h>
 #include <locograph/world/obstacle_way.h>
+#include <locograph/world/proposed_effectors.h>
 
 #include <algorithm>
 #include <array>
@@ -68,6 +70,19 @@ BorderRooms border_rooms(const TouchablePlaces& places, int place, const Eigen::
                                   : BorderRooms(places.bar(place), point);
 }
 
+/// Configurations that the robot is meant for: those of its SRDF, or else as it stands by its
+/// shapes.
+std::vector<Eigen::VectorXd> example_configurations(const Robot& robot) {
+  std::vector<Eigen::VectorXd> examples = {robot.neutral_configuration()};
+  for (const std::string& name : robot.configuration_names()) {
+    examples.push_back(robot.named_configuration(name));
+  }
+  if (examples.size() > 1 || !robot.missing_meshes().empty()) return examples;
+  if (const auto effectors = proposed_effectors(robot); !effectors.empty())
+    examples.push_back(bent_legs(robot, effectors));
+  return examples;
+}
+
 }  // namespace
 
 TransitionRows::TransitionRows(std::shared_ptr<const RobotParameter> robot, World world)
@@ -98,19 +113,15 @@ TransitionRows::TransitionRows(std::shared_ptr<const RobotParameter> robot, Worl
   find_coarse_pairs();
 }
 
-/// Pairs whose covering capsules are too near in a named configuration where their exact shapes are
-/// apart are compared by those shapes.
+/// Pairs whose covering capsules are too near in one of these where their exact shapes are apart
+/// are compared by those shapes.
 void TransitionRows::find_coarse_pairs() {
   const Robot& model = robot();
   const auto shapes_of = [&](int bound) {
     return LinkShapes(model, robot_->bounds[static_cast<std::size_t>(bound)].link);
   };
-  std::vector<Eigen::VectorXd> examples = {model.neutral_configuration()};
-  for (const std::string& name : model.configuration_names()) {
-    examples.push_back(model.named_configuration(name));
-  }
   constexpr double kTooNear_m = 5e-3;
-  for (const Eigen::VectorXd& q : examples) {
+  for (const Eigen::VectorXd& q : example_configurations(model)) {
     state_.update(q.data());
     find_near_pairs(state_, pair_weights_, kTooNear_m, near_, near_gradients_);
     for (const NearPair& found : near_) {
