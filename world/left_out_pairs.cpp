@@ -7,6 +7,7 @@ namespace locograph {
 namespace {
 
 constexpr int kNearJoints = 3;
+constexpr std::size_t kLegs = 2;         // of a robot that stands, at least
 constexpr double kStandingGap_m = 6e-3;  // planners keep links 4 mm apart
 
 }  // namespace
@@ -42,8 +43,8 @@ void leave_out_overlapping(Robot& robot) {
   if (!robot.srdf_file().empty() || !robot.missing_meshes().empty()) return;
   robot.leave_out_pairs(always_overlapping_links(robot));
   const std::vector<EndEffector> effectors = proposed_effectors(robot);
-  robot.leave_out_pairs(overlapping_as_it_stands(
-      robot, effectors.empty() ? robot.neutral_configuration() : bent_legs(robot, effectors)));
+  if (effectors.size() < kLegs) return;
+  robot.leave_out_pairs(overlapping_as_it_stands(robot, bent_legs(robot, effectors)));
 }
 
 }  // namespace locograph

@@ -26,8 +26,9 @@ std::vector<std::pair<int, int>> always_overlapping_links(const Robot& robot);
 std::vector<std::pair<int, int>> overlapping_as_it_stands(const Robot& robot,
                                                           const Eigen::VectorXd& standing);
 
-/// Takes both out of the pairs of a robot without an SRDF whose meshes are all there. It stands
-/// with bent legs (bent_legs.h) on what its shapes propose, or else in the neutral configuration.
+/// Takes both out of the pairs of a robot without an SRDF whose meshes are all there; the latter
+/// where its shapes propose two or more end effectors: it stands on them with bent legs
+/// (bent_legs.h).
 void leave_out_overlapping(Robot& robot);
 
 }  // namespace locograph
