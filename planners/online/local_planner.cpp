@@ -85,11 +85,11 @@ CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
   if (moved || new_world) begin(report, moved);
   report.window = window_.steps();
   report.statistics.constraints = static_cast<int>(solver_.problem().constraints().size());
-  const bool cut_short = improve(report, termination);
+  const int cut_short_after = improve(report, termination);
   hand_out_best();
   describe_best(report);
-  const auto end = end_by(termination, report.statistics.iterations);
-  if (cut_short && end && !report.success()) {
+  const auto end = end_by(termination, cut_short_after);
+  if (cut_short_after > 0 && end && !report.success()) {
     report.status = end->status;
     report.reason += "; " + end->reason;
   }
@@ -186,19 +186,20 @@ void LocalPlanner::see_new_world() {
   }
 }
 
-/// Step by step. Returns whether the termination cut it short.
-bool LocalPlanner::improve(CycleReport& report, const Termination& termination) {
+/// Step by step. Returns after how many of them it was cut short; 0: it was not.
+int LocalPlanner::improve(CycleReport& report, const Termination& termination) {
   if (phase_ == Phase::kOptimise && !solver_.running() && is_good() && is_as_planned()) {
     phase_ = Phase::kOver;
   }
-  for (int steps = 0; phase_ != Phase::kOver; ++steps) {
+  int steps = 0;
+  for (; phase_ != Phase::kOver; ++steps) {
     if (steps > 0 && termination.ended(steps)) {
       if (solver_.running()) offer();
-      return true;
+      return steps;
     }
     if (!advance(report, termination)) break;
   }
-  return phase_ == Phase::kPropose || phase_ == Phase::kFallBack;
+  return phase_ == Phase::kPropose || phase_ == Phase::kFallBack ? steps + 1 : 0;
 }
 
 /// One step of the search. False where the cycle may rest: its window is feasible, and the last

@@ -103,7 +103,7 @@ class LocalPlanner {
   const std::vector<double>* leftover();
   bool move_window(int executed);
   void see_new_world();
-  bool improve(CycleReport& report, const Termination& termination);
+  int improve(CycleReport& report, const Termination& termination);
   bool advance(CycleReport& report, const Termination& termination);
   bool run(CycleReport& report, const Termination& termination);
   void end_run();
