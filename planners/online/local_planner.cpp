@@ -137,6 +137,7 @@ void LocalPlanner::begin(CycleReport& report, bool moved) {
   if (goes_on && !good) return;
   proposals_.give_up();
   fallbacks_.give_up();
+  if (phase_ != Phase::kOptimise) solver_.end_run();  // it may be one that raises
   if (!moved) {
     const WindowCandidate& from = good ? incumbent_.best() : incumbent_.least_violating();
     left_over_ = from.state != incumbent_.best().state;
@@ -240,7 +241,6 @@ bool LocalPlanner::run(CycleReport& report, const Termination& termination) {
 void LocalPlanner::end_run() {
   solver_.end_run();
   const bool better = offer();
-  const bool is_raised = options_.solver.max_rounds == 0 || beside_.best().quality.feasible();
   switch (phase_) {
     case Phase::kOptimise:
       if (wants_proposals()) {
@@ -264,22 +264,25 @@ void LocalPlanner::end_run() {
       fall_back();
       break;
     case Phase::kFollowFallback:
-    case Phase::kRaiseFallback:
-      if (phase_ == Phase::kFollowFallback && !is_raised) {
+      if (options_.solver.max_rounds > 0 && !beside_.best().quality.feasible()) {
         solver_.set_state(beside_.least_violating().state);
         enter(Phase::kRaiseFallback);
-        break;
-      }
-      better_ = incumbent_.offer(beside_.best().quality, beside_.best().state) || better_;
-      if (is_good() || asked_ == fallbacks_.size()) {
-        enter(Phase::kOver);
       } else {
-        enter(Phase::kFallBack);
+        end_fallback();
       }
+      break;
+    case Phase::kRaiseFallback:
+      end_fallback();
       break;
     default:
       break;
   }
+}
+
+void LocalPlanner::end_fallback() {
+  better_ = incumbent_.offer(beside_.best().quality, beside_.best().state) || better_;
+  beside_.clear();
+  enter(is_good() || asked_ == fallbacks_.size() ? Phase::kOver : Phase::kFallBack);
 }
 
 /// A slice of a proposal's search, or all of it. Whether that is finished.

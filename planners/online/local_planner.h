@@ -107,6 +107,7 @@ class LocalPlanner {
   bool advance(CycleReport& report, const Termination& termination);
   bool run(CycleReport& report, const Termination& termination);
   void end_run();
+  void end_fallback();
   bool propose(CycleReport& report, const Termination& termination);
   void go_on_after_proposals();
   void raise_or_fall_back();

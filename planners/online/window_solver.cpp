@@ -41,6 +41,11 @@ ConstrainedOptions raising_options(const WindowSolverOptions& options) {
   return raising;
 }
 
+/// A step is made however late it is.
+Deadline deadline_of_step(const Termination& termination) {
+  return termination.deadline.passed() ? Deadline() : termination.deadline;
+}
+
 void add_times(const IterationStatistics& made, WindowStatistics& statistics) {
   statistics.linearise_s += made.time_linearise;
   statistics.solve_s += made.time_solve;
@@ -197,7 +202,7 @@ bool WindowSolver::step_plain(const Termination& termination) {
   const bool is_short = termination.max_iterations > 0;
   OptimiserOptions& options = optimiser_.options();
   options.max_refusals = is_short ? kFewRefusals : OptimiserOptions().max_refusals;
-  options.deadline = termination.deadline.passed() ? Deadline() : termination.deadline;
+  options.deadline = deadline_of_step(termination);
   const int before = optimiser_.result().iterations;
   const bool more = optimiser_.iterate();
   const OptimiserResult& now = optimiser_.result();
@@ -214,8 +219,7 @@ bool WindowSolver::step_plain(const Termination& termination) {
 }
 
 bool WindowSolver::step_raising(const Termination& termination, WindowStatistics& statistics) {
-  raising_.inner_options().deadline =
-      termination.deadline.passed() ? Deadline() : termination.deadline;
+  raising_.inner_options().deadline = deadline_of_step(termination);
   const bool more = raising_.iterate();
   statistics.rounds = raising_.rounds();
   return more;
@@ -229,16 +233,19 @@ bool WindowSolver::step(const Termination& termination, WindowStatistics& statis
   } else if (std::exchange(rebound_, false)) {
     raises ? raising_.costs_changed() : optimiser_.costs_changed();
   }
-  const auto iterations = [&] {
+  const auto accepted = [&] {
     return raises ? raising_.iterations() : optimiser_.result().iterations;
   };
+  // Those of a plain run that were refused count, too.
+  const auto tried = [&] {
+    return raises ? accepted() : static_cast<int>(optimiser_.result().statistics.size());
+  };
   const double before = workspace_.return_to_state().robust;
-  const int made = iterations();
+  const int accepted_before = accepted(), tried_before = tried();
   const bool more = raises ? step_raising(termination, statistics) : step_plain(termination);
-  const int steps = iterations() - made;
   const OptimiserResult& now = raises ? raising_.inner() : optimiser_.result();
-  gain_ = steps == 0 ? 1.0 : (before - now.final.robust) / before;
-  statistics.iterations += steps;
+  gain_ = accepted() == accepted_before ? 1.0 : (before - now.final.robust) / before;
+  statistics.iterations += tried() - tried_before;
   if (!now.statistics.empty()) add_times(now.statistics.back(), statistics);
   if (!more) end_run();
   statistics.optimise_s += watch.seconds();

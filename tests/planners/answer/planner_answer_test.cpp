@@ -41,7 +41,7 @@ void expect_counts(const Plan& plan) {
   EXPECT_NE(answer.reason.find("the iterations allowed are used up (allow more)"),
             std::string::npos)
       << answer.reason;
-  EXPECT_LE(answer.statistics.iterations, 1);
+  EXPECT_EQ(answer.statistics.iterations, 1);
 }
 
 TEST(PlannerStatus, HasANameOfItsOwn) {
