@@ -10,7 +10,7 @@
 namespace locograph {
 namespace {
 
-constexpr double kTimeout_s = 120.0;
+constexpr double kBrowserTimeout_s = 120.0;
 /// A picture of one colour, 1280 × 720, has about 4 kB; one with a ground grid has 100.
 constexpr std::size_t kBlankBytes = 8000;
 
@@ -50,7 +50,7 @@ std::string shoot(const std::filesystem::path& chromium, const std::string& url,
        "--hide-scrollbars", "--user-data-dir=" + (folder.path() / "profile").string(),
        "--window-size=1280,720", "--timeout=" + std::to_string(patience_ms),
        "--screenshot=" + shot.string(), url},
-      kTimeout_s);
+      kBrowserTimeout_s);
   if (result.timed_out) throw Error("Chromium did not finish the picture", "one in two minutes");
   if (!std::filesystem::is_regular_file(shot)) {
     throw Error("Chromium made no picture: " + result.last_line(), "a PNG");

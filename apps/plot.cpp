@@ -6,7 +6,7 @@
 namespace locograph {
 namespace {
 
-constexpr double kTimeout_s = 60.0;
+constexpr double kGnuplotTimeout_s = 60.0;
 
 bool is_plain(unsigned char c) {
   return std::isalnum(c) != 0 ||
@@ -52,7 +52,7 @@ void PlotScript::write(const std::filesystem::path& svg) const {
   const std::filesystem::path script = folder.path() / "plot.gp", output = folder.path() / "p.svg";
   write_file_atomically(script, "set output '" + output.string() + "'\n" + script_);
   // -d: no settings of the user's.
-  const ProcessResult result = run_process(*gnuplot, {"-d", script.string()}, kTimeout_s);
+  const ProcessResult result = run_process(*gnuplot, {"-d", script.string()}, kGnuplotTimeout_s);
   if (result.timed_out) throw Error("gnuplot did not finish", "a picture within a minute");
   if (result.exit_code != 0 || !std::filesystem::is_regular_file(output)) {
     throw Error("gnuplot failed: " + result.last_line(), "a picture");

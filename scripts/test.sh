@@ -1,8 +1,7 @@
 #!/bin/bash
-# Builds and runs every test: sources formatted, unit tests and the examples of headers under
-# AddressSanitizer and UBSan, what threads share under ThreadSanitizer, every parser for some
-# seconds under libFuzzer, then all tests in Release. Quick when nothing has changed; ends with
-# ctest's summary.
+# Builds and runs every test: sources formatted, unit tests under AddressSanitizer and UBSan, every
+# parser for some seconds under libFuzzer, what threads share under ThreadSanitizer, then all tests
+# in Release. Quick when nothing has changed; ends with ctest's summary.
 
 . "$(dirname "$0")/setup.sh"
 
@@ -22,33 +21,26 @@ build build
 say "checking the layout of the sources"
 "$root/scripts/format.sh" --check
 
-# configure_sanitized FOLDER SANITIZERS: without NDEBUG, so that Eigen's own assertions count too.
-# -Og takes a quarter less to compile than -O1.
-configure_sanitized() {
-  configure "$1" -DLOCOGRAPH_SANITIZE="$2" -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-    -DLOCOGRAPH_UNITY_TESTS=ON "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-Og -g1" -DLOCOGRAPH_BENCHMARKS=OFF
-}
-
-# The libraries' unit tests and examples; the command itself and the installed package are tested
-# in Release, those of threads under ThreadSanitizer.
-configure_sanitized build-asan address,undefined
+# The libraries' unit tests; the command itself, the examples of headers and the installed package
+# are tested in Release, those of threads under ThreadSanitizer.
+configure_sanitized build-asan -DLOCOGRAPH_FUZZ=ON
 mapfile -t unit_tests < <(
   cd "$root/tests"
   sed -n 's/^locograph_test(\([a-z_]*\).*/\1/p' \
     {common,core,solvers,types,robots,world,check,plugins,planners,execution}/CMakeLists.txt |
     grep -vx '.*_thread_tests'
 )
-build build-asan --target "${unit_tests[@]}" header_examples
-say "running ${unit_tests[*]} and the examples of headers under AddressSanitizer and UBSan"
+build build-asan --target "${unit_tests[@]}"
+say "running ${unit_tests[*]} under AddressSanitizer and UBSan"
 ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 run_tests build-asan \
-  --tests-regex "^($(IFS='|' && echo "${unit_tests[*]}")|header_examples)" >&2
+  --tests-regex "^($(IFS='|' && echo "${unit_tests[*]}"))" >&2
 
-configure_sanitized build-tsan thread
+"$root/scripts/fuzz.sh" 20000x
+
+configure_sanitized build-tsan -DLOCOGRAPH_SANITIZE=thread
 build build-tsan --target planners_thread_tests world_thread_tests
 say "running planners_thread_tests and world_thread_tests under ThreadSanitizer"
 TSAN_OPTIONS=halt_on_error=1 run_tests build-tsan --tests-regex '_thread_tests$' >&2
-
-"$root/scripts/fuzz.sh" 20000x
 
 say "running all tests"
 run_tests build
