@@ -1,7 +1,7 @@
 #!/bin/bash
 # Builds and runs every test: sources formatted, unit tests under AddressSanitizer and UBSan, every
-# parser for some seconds under libFuzzer, what threads share under ThreadSanitizer, then all tests
-# in Release. Quick when nothing has changed; ends with ctest's summary.
+# parser for some seconds under libFuzzer, then all tests in Release. What threads share is tested
+# under ThreadSanitizer by scripts/threads.sh. Quick when nothing has changed; ends with ctest's summary.
 
 . "$(dirname "$0")/setup.sh"
 
@@ -22,7 +22,7 @@ say "checking the layout of the sources"
 "$root/scripts/format.sh" --check
 
 # The libraries' unit tests; the command itself, the examples of headers and the installed package
-# are tested in Release, those of threads under ThreadSanitizer.
+# are tested in Release.
 configure_sanitized build-asan -DLOCOGRAPH_FUZZ=ON
 mapfile -t unit_tests < <(
   cd "$root/tests"
@@ -36,11 +36,6 @@ ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 run_tests build-asa
   --tests-regex "^($(IFS='|' && echo "${unit_tests[*]}"))" >&2
 
 "$root/scripts/fuzz.sh" 20000x
-
-configure_sanitized build-tsan -DLOCOGRAPH_SANITIZE=thread
-build build-tsan --target planners_thread_tests world_thread_tests
-say "running planners_thread_tests and world_thread_tests under ThreadSanitizer"
-TSAN_OPTIONS=halt_on_error=1 run_tests build-tsan --tests-regex '_thread_tests$' >&2
 
 say "running all tests"
 run_tests build
