@@ -159,6 +159,11 @@ class ConstrainedOptimiser::Rows {
     return *problem_->graph().edge_pools()[c.pool];
   }
   double error(int row) const { return workspace_->constraint_errors()[row]; }
+
+ public:
+  std::vector<double>& last() { return last_; }
+
+ private:
   bool slow(int r) const {
     return violation_[r] > tolerance_[r] && violation_[r] > options_.decrease * last_[r];
   }
@@ -235,27 +240,48 @@ void ConstrainedOptimiser::start(Workspace& workspace, LinearSolver& solver, boo
   solver_ = &solver;
   rows_->start(workspace, warm);
   reason_ = ConstrainedReason::kMaxRounds;
-  rounds_ = finished_iterations_ = 0;
+  rounds_ = finished_iterations_ = round_iterations_ = 0;
   raised_ = true;
-  over_ = false;
+  over_ = goes_on_ = false;
   inner_.start(workspace, solver, evaluated);
 }
 
+void ConstrainedOptimiser::go_on(Workspace& workspace, LinearSolver& solver, bool evaluated) {
+  const bool raised = raised_;
+  const int rounds = rounds_, iterations = this->iterations(), of_round = round_iterations_;
+  start(workspace, solver, true, evaluated);
+  raised_ = raised;
+  rounds_ = rounds;
+  finished_iterations_ = iterations;
+  round_iterations_ = of_round;
+  goes_on_ = true;
+}
+
+std::vector<double>& ConstrainedOptimiser::last_violations() { return rows_->last(); }
+
 bool ConstrainedOptimiser::iterate() {
-  if (!over_ && !inner_.iterate()) over_ = !end_round();
+  constexpr int kOfARound = 3;
+  if (over_) return false;
+  const bool more = inner_.iterate();
+  ++round_iterations_;
+  if (more && !(goes_on_ && round_iterations_ >= kOfARound)) return true;
+  over_ = !end_round(more);
   return !over_;
 }
 
-/// Whether there is another round.
-bool ConstrainedOptimiser::end_round() {
+/// Whether there is another round. cut_short: this one might have gone on.
+bool ConstrainedOptimiser::end_round(bool cut_short) {
   ++rounds_;
+  round_iterations_ = 0;
+  goes_on_ = false;
   workspace_->return_to_state();
   rows_->measure();
   if (gave_up(inner_.result().reason)) {
     reason_ = ConstrainedReason::kInnerFailed;
     return false;
   }
-  if (rows_->satisfied() && inner_.result().reason != OptimiserResult::Reason::kMaxIterations) {
+  cut_short = cut_short || inner_.result().reason == OptimiserResult::Reason::kMaxIterations;
+  if (rows_->satisfied() && !cut_short) {
     rows_->update();
     reason_ = ConstrainedReason::kConverged;
   } else if (!raised_) {

@@ -99,6 +99,14 @@ class ConstrainedOptimiser {
 
   /// As optimise_constrained(). evaluated: see Optimiser::start().
   void start(Workspace& workspace, LinearSolver& solver, bool warm, bool evaluated = false);
+  /// The run goes on in another problem that shares most of the last one's, such as a window that
+  /// has moved: in the same round, which then ends after a few iterations, as nothing converges in
+  /// a problem that changes. The workspace has multipliers and penalties; last_violations() are to
+  /// be given.
+  void go_on(Workspace& workspace, LinearSolver& solver, bool evaluated);
+  /// By constraint row, at the end of the last round; infinite before the first one.
+  std::vector<double>& last_violations();
+
   /// One iteration of the inner algorithm, and the end of a round where it ends with it. False when
   /// all is over: Workspace::constraint_errors() are then those of its state.
   bool iterate();
@@ -116,7 +124,7 @@ class ConstrainedOptimiser {
 
  private:
   class Rows;
-  bool end_round();
+  bool end_round(bool cut_short);
 
   ConstrainedOptions options_;
   Optimiser inner_;
@@ -126,6 +134,8 @@ class ConstrainedOptimiser {
   ConstrainedResult::Reason reason_ = ConstrainedResult::Reason::kMaxRounds;
   int rounds_ = 0;
   int finished_iterations_ = 0;  ///< of the rounds that are over
+  int round_iterations_ = 0;     ///< of this one, when the run goes on
+  bool goes_on_ = false;         ///< since this round began
   bool raised_ = true;
   bool over_ = true;
 };

@@ -3,6 +3,7 @@
 #include <locograph/planners/online/window_cause.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace locograph {
@@ -48,6 +49,33 @@ void LocalPlanner::show(std::shared_ptr<const WorldSnapshot> world) {
   shown_ = std::move(world);
 }
 
+void LocalPlanner::measure(const Eigen::VectorXd& configuration) {
+  constexpr double kUnit = 1e-3;
+  const Robot& robot = plan_.robot();
+  const std::string what = "a measured configuration";
+  if (configuration.size() != robot.configuration_size()) {
+    throw Error(what + " of " + std::to_string(configuration.size()) + " numbers",
+                std::to_string(robot.configuration_size()) + " of " + robot.name());
+  }
+  if (!configuration.allFinite()) throw Error(what + " that is not finite", "finite numbers");
+  Eigen::VectorXd q = configuration;
+  if (robot.floating_base()) {
+    const double norm = q.segment<4>(3).norm();
+    if (!(std::abs(norm - 1.0) <= kUnit)) {
+      throw Error(what + " whose quaternion has the norm " + std::to_string(norm), "1");
+    }
+    q.segment<4>(3) /= norm;
+  }
+  const std::lock_guard lock(showing_);
+  measured_ = std::move(q);
+}
+
+/// Empty: none.
+Eigen::VectorXd LocalPlanner::take_measured() {
+  const std::lock_guard lock(showing_);
+  return std::exchange(measured_, {});
+}
+
 /// Whether there was something new.
 bool LocalPlanner::take_shown() {
   std::shared_ptr<const WorldSnapshot> world;
@@ -73,7 +101,9 @@ CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
   report.executed = executed;
   const Stopwatch watch;
   const bool new_world = take_shown();
-  const bool moved = std::exchange(changed_, false) || answer_.executed != executed;
+  const Eigen::VectorXd measured = take_measured();
+  const bool moved =
+      std::exchange(changed_, false) || answer_.executed != executed || measured.size() > 0;
   if (phase_ == Phase::kOver && !moved && !new_world && !tries_again()) {
     report = answer_;
     report.detour = report.deadline_missed = false;
@@ -82,7 +112,7 @@ CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
     report.statistics.total_s = watch.seconds();
     return report;
   }
-  if (moved || new_world) begin(report, moved);
+  if (moved || new_world) begin(report, moved, measured);
   report.window = window_.steps();
   report.statistics.constraints = static_cast<int>(solver_.problem().constraints().size());
   const int cut_short_after = improve(report, termination);
@@ -113,7 +143,7 @@ bool LocalPlanner::tries_again() {
 
 /// At another configuration, or in another world. What the search had come to goes on from there;
 /// one that is over, or whose window is good as it is, begins anew.
-void LocalPlanner::begin(CycleReport& report, bool moved) {
+void LocalPlanner::begin(CycleReport& report, bool moved, const Eigen::VectorXd& measured) {
   const Stopwatch watch;
   const bool goes_on = phase_ != Phase::kOver &&
                        (phase_ != Phase::kOptimise ||
@@ -121,7 +151,7 @@ void LocalPlanner::begin(CycleReport& report, bool moved) {
   tried_ = {};
   left_over_ = false;
   if (moved) {
-    left_over_ = move_window(report.executed);
+    left_over_ = move_window(report.executed, measured);
   } else {
     see_new_world();
   }
@@ -152,8 +182,9 @@ const std::vector<double>* LocalPlanner::leftover() {
   return incumbent_.unfinished(solver_.running() ? &solver_.state() : nullptr);
 }
 
-/// Returns whether there is something left over, which is kept as unfinished.
-bool LocalPlanner::move_window(int executed) {
+/// measured: see measure(); empty: nothing. Returns whether there is something left over, which is
+/// kept as unfinished.
+bool LocalPlanner::move_window(int executed, const Eigen::VectorXd& measured) {
   if (answer_.executed >= 0) {
     if (const std::vector<double>* state = leftover()) {
       solver_.store(*state);
@@ -163,6 +194,12 @@ bool LocalPlanner::move_window(int executed) {
   }
   window_.move_to(executed);
   warm_start_.enter(window_);
+  if (measured.size() > 0) {
+    const Eigen::VectorXd was = plan_.configuration(executed);
+    plan_.move_to(executed, measured, window_.first_held());
+    plan_.take_contacts(executed);
+    warm_start_.lead_back(window_, was);
+  }
   solver_.compile(window_);
   solver_.load_state();
   incumbent_.clear();

@@ -4,6 +4,7 @@
 ///     LocalPlanner planner(plan_graph, options);
 ///     for (int executed = 0; executed + 1 < planner.plan_size(); ++executed) {
 ///       planner.show(snapshot);                         // what the sensors see now; optional
+///       planner.measure(configuration);                 // where the robot is; optional
 ///       CycleReport cycle = planner.cycle(executed);    // refines executed + 1 … executed + H
 ///       if (!cycle.next_feasible) break;                // stop: the robot stays where it is
 ///     }
@@ -70,6 +71,13 @@ class LocalPlanner {
   /// with. Not null. The snapshot's distance() is made here, lest a cycle wait for it.
   void show(std::shared_ptr<const WorldSnapshot> world);
 
+  /// Where the robot is, at the configuration of the next cycle: a configuration of its plan, as
+  /// the robot's sensors tell it. The plan has it from then on, contacts that are elsewhere too
+  /// (OnlinePlan::take_contacts()), and the window leads back to where it was planned, within
+  /// limits. As show(): the last one counts, other threads may call it. Throws Error for another
+  /// size, for what is not finite, and for an attitude that is none.
+  void measure(const Eigen::VectorXd& configuration);
+
   /// executed: index in the plan of the configuration the robot is at.
   CycleReport cycle(int executed, const Termination& termination = {});
 
@@ -98,10 +106,11 @@ class LocalPlanner {
   };
 
   bool take_shown();
+  Eigen::VectorXd take_measured();
   bool tries_again();
-  void begin(CycleReport& report, bool moved);
+  void begin(CycleReport& report, bool moved, const Eigen::VectorXd& measured);
   const std::vector<double>* leftover();
-  bool move_window(int executed);
+  bool move_window(int executed, const Eigen::VectorXd& measured);
   void see_new_world();
   int improve(CycleReport& report, const Termination& termination);
   bool advance(CycleReport& report, const Termination& termination);
@@ -141,6 +150,7 @@ class LocalPlanner {
   WindowQuality tried_;                     ///< what the last search at this configuration led to
   std::mutex showing_;
   std::shared_ptr<const WorldSnapshot> shown_;  ///< since the last cycle began; null: none
+  Eigen::VectorXd measured_;                    ///< likewise; empty: none
 };
 
 }  // namespace locograph

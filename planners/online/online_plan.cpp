@@ -48,6 +48,64 @@ Eigen::Map<const Eigen::VectorXd> OnlinePlan::configuration(int index) const {
   return {std::as_const(graph_).state(slot(index)), graph_.state_size(slot(index))};
 }
 
+void OnlinePlan::move_to(int index, const Eigen::VectorXd& measured, int first) {
+  Eigen::VectorXd off(robot().tangent_size()), step_back = off;
+  Eigen::VectorXd was = configuration(index);
+  robot().difference(was.data(), measured.data(), off.data());
+  configuration(index) = measured;
+  for (int i = index - 1; i >= first; --i) {
+    robot().difference(was.data(), configuration(i).data(), step_back.data());
+    was = configuration(i);
+    const double* from = rolls(i) ? configuration(i + 1).data() : was.data();
+    robot().integrate(from, rolls(i) ? step_back.data() : off.data(), configuration(i).data());
+  }
+}
+
+void OnlinePlan::take_contacts(int index) {
+  constexpr double kClosed_m = 1e-5;  // within what an edge tolerates
+  RobotState state(robot());
+  state.update(configuration(index).data());
+  std::vector<int> taken;
+  for (const int number : plan_.stance_from[static_cast<std::size_t>(index)]->contact_numbers) {
+    const auto parameter = graph_.parameters().get<ContactParameter>(number);
+    Contact contact = parameter->contact;
+    if (contact.effector.kind == ContactKind::kGrasp || contact.bar || is_ball(contact.effector))
+      continue;
+    const ContactClosure& closure = parameter->closure;
+    Eigen::VectorXd off(closure.rows());
+    closure.error(state, off.data());
+    const Eigen::Matrix3d axes = axes_in_world(contact);
+    Eigen::Vector3d along = Eigen::Vector3d::Zero();
+    for (int row = 0; row < closure.rows(); ++row) {
+      const int held = closure.held()[static_cast<std::size_t>(row)];
+      if (held < 2) along += off[row] * axes.col(held);
+    }
+    if (along.norm() <= kClosed_m || along.norm() > kElsewhere_m) continue;
+    contact.position += along;
+    graph_.replace_parameter(
+        number, std::make_shared<const ContactParameter>(parameter->robot, parameter->robot_number,
+                                                         contact, parameter->friction));
+    taken.push_back(number);
+  }
+  if (taken.empty()) return;
+  const auto has_taken = [&](const StanceParameter& stance) {
+    return std::ranges::find_first_of(stance.contact_numbers, taken) !=
+           stance.contact_numbers.end();
+  };
+  int replaced = kNoStance;
+  for (int i = 0; i < size(); ++i) {
+    auto& stance = plan_.stance_from[static_cast<std::size_t>(i)];
+    if (!has_taken(*stance)) continue;
+    const int number = graph_.vertex(VertexId<VertexConfiguration>{slot(i)}).stance_number;
+    if (number != replaced) {
+      graph_.replace_parameter(number, std::make_shared<const StanceParameter>(
+                                           graph_.parameters(), stance->contact_numbers));
+      replaced = number;
+    }
+    stance = graph_.parameters().get<StanceParameter>(number);
+  }
+}
+
 void OnlinePlan::overwrite(int first, std::span<const Eigen::VectorXd> configurations) {
   int index = first;
   for (const Eigen::VectorXd& q : configurations) {

@@ -39,6 +39,14 @@ class OnlinePlan {
   /// One of them as the graph has it now.
   Eigen::Map<Eigen::VectorXd> configuration(int index);
   Eigen::Map<const Eigen::VectorXd> configuration(int index) const;
+  /// The robot is in another configuration than the plan has, also where that is fixed. Those
+  /// before it move along, from `first` on: on wheels by the same steps, on legs all by as much.
+  void move_to(int index, const Eigen::VectorXd& measured, int first);
+  /// Contacts that are held from a configuration on, and are elsewhere there than planned, along
+  /// what they are on and by kElsewhere_m at most, are taken as they are, in all stances that have
+  /// them. Balls roll on from where they are by themselves; a bar is where it is.
+  void take_contacts(int index);
+  static constexpr double kElsewhere_m = 0.02;
   /// Overwrites the configurations from `first` on, but for those that the graph holds fixed.
   void overwrite(int first, std::span<const Eigen::VectorXd> configurations);
   bool is_fixed(int index) const { return graph_.vertex_record(slot(index)).fixed; }

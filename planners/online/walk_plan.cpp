@@ -28,6 +28,10 @@ std::string describe(const CheckReport& check) {
 /// Steps before the executed one are judged with it, at most so many.
 constexpr int kMostVerifiedSteps = 12;
 
+/// Before the step after a measurement, at least: more than one iteration is needed until the
+/// forces on the way back balance.
+constexpr int kMeasuredCycles = 10;
+
 /// How many times as fast as another one a slope is, along it; up to twice, as on any ramp.
 double ratio(const Eigen::VectorXd& slope, const Eigen::VectorXd& along) {
   const double length = along.squaredNorm();
@@ -76,6 +80,12 @@ class Walk {
     find_end();
   }
 
+  void measure(const Eigen::VectorXd& configuration) {
+    planner_.measure(configuration);
+    measured_at_ = verified_to_ = executed_;
+    measured_ = true;
+  }
+
   void step(const WorldAt& world_at, int carried_out) {
     carried_out_ = carried_out;
     over_ = ends_at(executed_) || !step_from(executed_, world_at);
@@ -114,8 +124,10 @@ class Walk {
       if (ends_too_late(executed)) return false;
     }
     const Braking::Passing before = braking_.passing(executed);
-    for (int cycle = cycles_of(executed); cycle > 1; --cycle) run_cycle(executed);
-    const CycleReport cycle = run_cycle(executed);
+    int cycles = cycles_of(executed);
+    if (std::exchange(measured_, false)) cycles = std::max(cycles, kMeasuredCycles);
+    CycleReport cycle = run_cycle(executed);
+    for (; cycles > 1; --cycles) cycle = run_cycle(executed);
     std::string refused;
     if (!cycle.next_feasible) {
       refused = cycle.reason;
@@ -180,7 +192,8 @@ class Walk {
   int stretch_before(int executed) {
     int first = executed;
     double way_m = 0.0;
-    while (first > 0 && executed - first < kMostVerifiedSteps && way_m < limits::kSlipStretch_m) {
+    while (first > measured_at_ && executed - first < kMostVerifiedSteps &&
+           way_m < limits::kSlipStretch_m) {
       way_m += (vertex(first).state - vertex(first - 1).state).head<3>().norm();
       --first;
     }
@@ -312,7 +325,9 @@ class Walk {
   int executed_ = 0;
   int carried_out_ = -1;  // what may not be changed any more
   bool over_ = false;
-  int verified_to_ = 0;  // steps up to this configuration hold for the judge
+  bool measured_ = false;  // since the last step
+  int measured_at_ = 0;    // the robot was found there; before it the plan is another one
+  int verified_to_ = 0;    // steps up to this configuration hold for the judge
   WalkReport report_;
 };
 
@@ -392,16 +407,23 @@ struct PlanWalk::Own {
   }
 };
 
-PlanWalk::PlanWalk(Graph& graph, WorldAt world_at, const WalkOptions& options) {
+PlanWalk::PlanWalk(Graph& graph, WorldAt world_at, const WalkOptions& options, int executed) {
   options.validate();
   own_.reset(new Own{graph, std::move(world_at), options});
   own_->walk.emplace(graph, own_->options);
-  own_->walk->start_at(0);
+  const int last = static_cast<int>(own_->walk->plan().slots.size()) - 1;
+  if (executed < 0 || executed > last) {
+    throw Error("executed configuration " + std::to_string(executed),
+                "0 to " + std::to_string(last));
+  }
+  own_->walk->start_at(executed);
 }
 
 PlanWalk::~PlanWalk() = default;
 
 int PlanWalk::executed() const { return own_->walk->executed(); }
+
+void PlanWalk::measure(const Eigen::VectorXd& configuration) { own_->walk->measure(configuration); }
 
 bool PlanWalk::step(int carried_out) {
   if (!own_->walk->over()) {

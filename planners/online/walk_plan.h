@@ -89,13 +89,18 @@ WalkReport walk_plan(Graph& graph, const WorldAt& world_at, const WalkOptions& o
 /// The same, a step at a time, while something carries the plan out. See walk_ahead.h.
 class PlanWalk {
  public:
-  /// The graph must outlive it. Throws Error as LocalPlanner does, and for options out of range.
-  PlanWalk(Graph& graph, WorldAt world_at, const WalkOptions& options);
+  /// The graph must outlive it. executed: the configuration that the robot is at. Throws Error as
+  /// LocalPlanner does, for options out of range, and for a configuration that is not in the plan.
+  PlanWalk(Graph& graph, WorldAt world_at, const WalkOptions& options, int executed = 0);
   ~PlanWalk();
 
   /// The steps up to this configuration are decided. One that has just been planned on may be less
   /// far than before.
   int executed() const;
+  /// Where the robot is, see LocalPlanner::measure(), at the configuration executed(). The judge
+  /// sees motions from there on. The next step is decided on after ten cycles, or as many as there
+  /// are at the rate. Not across a resume.
+  void measure(const Eigen::VectorXd& configuration);
   /// Decides on the next step. The plan up to the configuration `carried_out` stays as it is; a
   /// robot that cannot come to rest after it does not, and the report says so. False: the walk is
   /// over.

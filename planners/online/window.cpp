@@ -49,6 +49,14 @@ void Window::move_to(int executed) {
   }
 }
 
+int Window::first_held() const {
+  int first = executed_;
+  for (const int slot : held_) {
+    if (const int i = plan_.index_of(slot); i >= 0) first = std::min(first, i);
+  }
+  return first;
+}
+
 /// Whether the window decides a vertex of another type.
 bool Window::owns(int slot) const {
   if (const int borne = plan_.borne_at(slot); borne >= 0) return borne >= executed_ && borne < end_;

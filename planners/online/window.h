@@ -44,6 +44,8 @@ class Window {
   const OnlinePlan& plan() const { return plan_; }
   int executed() const { return executed_; }
   int first() const { return executed_ + 1; }
+  /// The first configuration that is held because edges tie it to the window.
+  int first_held() const;
   int end() const { return end_; }
   int last() const { return end_ - 1; }
   int steps() const { return end_ - first(); }

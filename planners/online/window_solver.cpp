@@ -11,6 +11,7 @@ namespace locograph {
 struct WindowSolver::Multiplier {
   int edge, row;
   double shift, scale;
+  double last_violation;  ///< see ConstrainedOptimiser; while constraints are raised
 };
 
 namespace {
@@ -75,8 +76,9 @@ WindowSolver::WindowSolver(const WindowSolverOptions& options)
 WindowSolver::~WindowSolver() = default;
 
 void WindowSolver::compile(const Window& window) {
-  end_run();
+  goes_on_ = run_ == RunKind::kRaising && !begins_;
   if (raised_) keep_multipliers();
+  end_run();
   raised_ = false;
   problem_.compile(window.graph(), window.free_vertices(), window.held_vertices());
   workspace_.allocate(problem_);
@@ -110,18 +112,26 @@ void WindowSolver::prepare() {
   optimiser_.iterate();
 }
 
-/// To the rows of a workspace just allocated.
-void WindowSolver::restore_multipliers() {
-  if (multipliers_.empty()) return;
-  std::vector<ConstraintRow>& rows = workspace_.constraint_rows();
+/// Calls with the rows that were kept: with a row of the problem, and what it had.
+template <class Take>
+void WindowSolver::each_kept(const Take& take) const {
   auto next = multipliers_.begin();
   for (const CompiledConstraint& c : problem_.constraints()) {
     while (next != multipliers_.end() && next->edge < c.edge) ++next;
     for (; next != multipliers_.end() && next->edge == c.edge; ++next) {
-      rows[c.row + next->row].shift = next->shift;
-      rows[c.row + next->row].scale = next->scale;
+      take(static_cast<std::size_t>(c.row + next->row), *next);
     }
   }
+}
+
+/// To the rows of a workspace just allocated.
+void WindowSolver::restore_multipliers() {
+  if (multipliers_.empty()) return;
+  std::vector<ConstraintRow>& rows = workspace_.constraint_rows();
+  each_kept([&](std::size_t row, const Multiplier& kept) {
+    rows[row].shift = kept.shift;
+    rows[row].scale = kept.scale;
+  });
 }
 
 void WindowSolver::keep_multipliers() {
@@ -130,8 +140,9 @@ void WindowSolver::keep_multipliers() {
   for (const CompiledConstraint& c : problem_.constraints()) {
     for (int r = 0; r < c.count; ++r) {
       const ConstraintRow& row = rows[c.row + r];
-      if (row.shift != 0.0 || row.scale != 1.0) {
-        multipliers_.push_back({c.edge, r, row.shift, row.scale});
+      const double last = goes_on_ ? raising_.last_violations()[c.row + r] : 0.0;
+      if (row.shift != 0.0 || row.scale != 1.0 || last > 0.0) {
+        multipliers_.push_back({c.edge, r, row.shift, row.scale, last});
       }
     }
   }
@@ -170,9 +181,16 @@ void WindowSolver::end_run() {
 void WindowSolver::begin_run() {
   begins_ = rebound_ = false;
   if (run_ == RunKind::kRaising) {
-    raising_.start(workspace_, *linear_solver_, true, true);
+    if (!std::exchange(goes_on_, false)) {
+      raising_.start(workspace_, *linear_solver_, true, true);
+      return;
+    }
+    raising_.go_on(workspace_, *linear_solver_, true);
+    std::vector<double>& last = raising_.last_violations();
+    each_kept([&](std::size_t row, const Multiplier& kept) { last[row] = kept.last_violation; });
     return;
   }
+  goes_on_ = false;
   optimiser_.options().initial_lambda = lambda();
   optimiser_.start(workspace_, *linear_solver_, true);
 }

@@ -86,6 +86,8 @@ class WindowSolver {
   struct Multiplier;
   enum class RunKind { kNone, kPlain, kRaising };
 
+  template <class Take>
+  void each_kept(const Take& take) const;
   void restore_multipliers();
   void keep_multipliers();
   void begin_run();
@@ -107,6 +109,7 @@ class WindowSolver {
   RunKind run_ = RunKind::kNone;
   Start start_ = Start::kIncumbent;
   bool begins_ = false;                  ///< the run, with the next step
+  bool goes_on_ = false;                 ///< raising, in a window that has moved
   bool rebound_ = false;                 ///< since the last step of the run
   int refused_ = 0;                      ///< iterations in a row that took no step
   bool raised_ = false;                  ///< since compile()

@@ -236,7 +236,7 @@ std::function<CheckReport(const Motion&)> step_check(const Judging& judging) {
   options.starts_at_rest = false;
   return [judge, options](const Motion& motion) {
     CheckOptions asked = options;
-    asked.ends_at_rest = motion.slopes.back().isZero(0.0);
+    asked.ends_at_rest = motion.slopes.empty() || motion.slopes.back().isZero(0.0);
     return judge->check(motion, asked);
   };
 }

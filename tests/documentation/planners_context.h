@@ -462,6 +462,12 @@ struct Context : StepContext {
 namespace offline_stance_stance_space_h {
 using Context = StepContext;
 }
+namespace posture_contact_projection_h {
+struct Context : StepContext {
+  const HeldBalls balls = HeldBalls(stance.contacts.size());
+  Eigen::VectorXd q = StepContext::q, slope = Eigen::VectorXd::Ones(robot.tangent_size());
+};
+}  // namespace posture_contact_projection_h
 namespace posture_transition_problem_h {
 struct Context : TransitionContext {
   const Stance& larger = stance;
@@ -510,6 +516,7 @@ struct Context : DriveContext {
   const LocalPlannerOptions options;
   const std::shared_ptr<const WorldSnapshot> snapshot =
       std::make_shared<const WorldSnapshot>(world);
+  const Eigen::VectorXd& configuration = planned.front();
 };
 }  // namespace online_local_planner_h
 namespace online_online_plan_h {

@@ -2,7 +2,6 @@
 #include <locograph/robots/contact_kinds.h>
 #include <locograph/robots/wheel.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -10,9 +9,6 @@ namespace locograph {
 namespace {
 
 constexpr double kSomeFriction = 0.1;  // of what bears nothing, where its kind has none
-constexpr double kProjected = 1e-9;    // m, rad
-constexpr int kMostProjections = 12;
-constexpr double kLongestProjection = 0.3;
 /// Between configurations that were found with all of their margins, so much of them is asked for.
 constexpr double kShareOfMargins = 0.5;
 constexpr double kRowsTolerance = 1e-4;  // m, rad
@@ -81,7 +77,8 @@ SegmentSpace::SegmentSpace(std::shared_ptr<const RobotParameter> robot, World wo
     : state_(*robot->robot),
       solver_(robot, world),
       rows_(robot, std::move(world)),
-      lift_off_m_(lift_off_m) {}
+      lift_off_m_(lift_off_m),
+      contacts_(*robot->robot) {}
 
 void SegmentSpace::leave_as_near(const Eigen::VectorXd& q, double margin_m) {
   rows_.leave_as_near(q, margin_m);
@@ -101,15 +98,7 @@ void SegmentSpace::set_segment(const Segment& segment) {
 
 void SegmentSpace::roll_from(HeldBalls balls) {
   balls_ = std::move(balls);
-  closures_.clear();
-  Eigen::Index rows = 0;
-  for (std::size_t i = 0; i < balls_.size(); ++i) {
-    const Contact& contact = segment_->held[i];
-    closures_.push_back(balls_[i] ? ContactClosure(robot(), contact, *balls_[i])
-                                  : ContactClosure(robot(), contact));
-    rows += closures_.back().rows();
-  }
-  error_.resize(rows);
+  contacts_.set(segment_->held, balls_);
 }
 
 HeldBalls SegmentSpace::balls_at(const Eigen::VectorXd& q) {
@@ -121,55 +110,15 @@ bool SegmentSpace::has_balls() const {
   return std::ranges::any_of(balls_, [](const auto& ball) { return ball.has_value(); });
 }
 
-void SegmentSpace::closure(const Eigen::VectorXd& q, Eigen::VectorXd& error) {
-  state_.update(q.data());
-  error.resize(closure_rows());
-  Eigen::Index row = 0;
-  for (const ContactClosure& closure : closures_) {
-    closure.error(state_, error.data() + row);
-    row += closure.rows();
-  }
-}
-
-void SegmentSpace::closure(const Eigen::VectorXd& q, Eigen::VectorXd& error,
-                           Eigen::MatrixXd& jacobian) {
-  closure(q, error);
-  const int size = robot().tangent_size();
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows =
-      Eigen::MatrixXd::Zero(closure_rows(), size);
-  Eigen::Index row = 0;
-  for (const ContactClosure& closure : closures_) {
-    closure.add_jacobian(state_, rows.data() + row * size, size);
-    row += closure.rows();
-  }
-  jacobian = rows;
-}
-
-bool SegmentSpace::project(Eigen::VectorXd& q) {
-  if (closures_.empty()) return true;
-  Eigen::VectorXd step;
-  for (int i = 0; i < kMostProjections; ++i) {
-    closure(q, error_, jacobian_);
-    if (error_.cwiseAbs().maxCoeff() < kProjected) return true;
-    Eigen::MatrixXd gram = jacobian_ * jacobian_.transpose();
-    gram.diagonal().array() += 1e-9;
-    step = -(jacobian_.transpose() * gram.llt().solve(error_));
-    if (!(step.cwiseAbs().maxCoeff() < kLongestProjection)) return false;
-    robot().integrate(q.data(), step.data(), q.data());
-  }
-  return false;
-}
-
 bool SegmentSpace::project_end(Eigen::VectorXd& q) {
-  Eigen::Index rows = error_.size();
-  for (const Contact& contact : segment_->reached) {
-    closures_.emplace_back(robot(), contact);
-    rows += closures_.back().rows();
-  }
-  error_.resize(rows);
-  const bool closed = project(q);
-  roll_from(std::move(balls_));
-  return closed;
+  std::vector<Contact> closed = segment_->held;
+  closed.insert(closed.end(), segment_->reached.begin(), segment_->reached.end());
+  HeldBalls balls = balls_;
+  balls.resize(closed.size());
+  contacts_.set(closed, balls);
+  const bool found = contacts_.project(q);
+  contacts_.set(segment_->held, balls_);
+  return found;
 }
 
 std::vector<bool> SegmentSpace::what_is_near(const Eigen::VectorXd& q,

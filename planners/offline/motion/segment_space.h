@@ -16,6 +16,7 @@
 
 #include <locograph/planners/balance/balance_region.h>
 #include <locograph/planners/balance/torque_programme.h>
+#include <locograph/planners/posture/contact_projection.h>
 #include <locograph/planners/posture/transition_rows.h>
 #include <locograph/planners/posture/transition_solver.h>
 
@@ -66,13 +67,15 @@ class SegmentSpace {
 
   const Robot& robot() const { return state_.robot(); }
   /// Rows of the closure of the contacts that are held.
-  int closure_rows() const { return static_cast<int>(error_.size()); }
+  int closure_rows() const { return contacts_.rows(); }
   /// Closure of a configuration whose quaternion has norm 1 [m, rad].
-  void closure(const Eigen::VectorXd& q, Eigen::VectorXd& error);
+  void closure(const Eigen::VectorXd& q, Eigen::VectorXd& error) { contacts_.closure(q, error); }
   /// The same with its Jacobian, closure_rows() x tangent_size, by the robot's tangent (robot.h).
-  void closure(const Eigen::VectorXd& q, Eigen::VectorXd& error, Eigen::MatrixXd& jacobian);
+  void closure(const Eigen::VectorXd& q, Eigen::VectorXd& error, Eigen::MatrixXd& jacobian) {
+    contacts_.closure(q, error, jacobian);
+  }
   /// Poses of links, of the last closure().
-  const RobotState& state() const { return state_; }
+  const RobotState& state() const { return contacts_.state(); }
 
   /// From here on balls roll from there; of the contacts that are held. In the beginning: from
   /// `from`.
@@ -82,7 +85,7 @@ class SegmentSpace {
   bool has_balls() const;
 
   /// Moves q the shortest way to where the contacts are closed to 1e-9; false: not found.
-  bool project(Eigen::VectorXd& q);
+  bool project(Eigen::VectorXd& q) { return contacts_.project(q); }
   /// Likewise with the contacts that are reached.
   bool project_end(Eigen::VectorXd& q);
   /// All that has to be positive is: distances to what is not touched, joints within limits, the
@@ -126,12 +129,10 @@ class SegmentSpace {
   TransitionRows rows_;
   double lift_off_m_;
   const Segment* segment_ = nullptr;
-  std::vector<ContactClosure> closures_;
+  ContactProjection contacts_;
   HeldBalls balls_;            ///< of the contacts that are held: from where they roll
   std::vector<Contact> near_;  ///< left and reached
   std::optional<std::pair<bool, std::vector<bool>>> rows_for_;  ///< what rows_ are set for
-  Eigen::VectorXd error_;
-  Eigen::MatrixXd jacobian_;
   std::vector<Eigen::VectorXd> lifted_, landing_;
   std::string why_not_;
   double room_m_ = 0.0;  ///< of the last valid(): to what is nearest

@@ -67,6 +67,32 @@ TEST(LocalPlanner, RefusesAnExecutedConfigurationThatHasNoNext) {
   EXPECT_EQ(planner.cycle(48).window, 1);
 }
 
+TEST(LocalPlanner, RefusesMeasurementsThatAreNone) {
+  Graph graph = drive();
+  LocalPlanner planner(graph, {});
+  const Eigen::VectorXd q = configurations(graph)[3];
+  const auto refused = [&](const Eigen::VectorXd& measured, const std::string& why) {
+    try {
+      planner.measure(measured);
+      ADD_FAILURE() << "taken: " << why;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+    }
+  };
+  refused(q.head(10), "of 10 numbers");
+  Eigen::VectorXd wrong = q;
+  wrong[8] = std::numeric_limits<double>::quiet_NaN();
+  refused(wrong, "not finite");
+  wrong = q;
+  wrong.segment<4>(3).setZero();
+  refused(wrong, "quaternion has the norm 0");
+  wrong = q;
+  wrong.segment<4>(3) *= 1.0 + 1e-5;  // as single precision gives it
+  planner.measure(wrong);
+  EXPECT_TRUE(planner.cycle(3).success());
+  EXPECT_NEAR(configurations(graph)[3].segment<4>(3).norm(), 1.0, 1e-12);
+}
+
 TEST(LocalPlanner, RestoresTheWeightsItRaised) {
   Graph graph = drive();
   LocalPlanner planner(graph, {});

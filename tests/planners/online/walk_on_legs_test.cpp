@@ -7,6 +7,7 @@
 #include <locograph/planners/online/resumed_plan.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/judging.h>
+#include <locograph/planners/posture/contact_projection.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
 
 #include <algorithm>
@@ -219,6 +220,48 @@ TEST_F(WalkOnLegs, SaysWhyItIsNotPlannedOn) {
   EXPECT_FALSE(answer.success());
   EXPECT_FALSE(answer.reason.empty());
   EXPECT_TRUE(check().feasible);
+}
+
+/// On its contacts, one of them 1 cm beside where it was planned, balls where they have rolled to.
+TEST_F(WalkOnLegs, LeadsBackARobotThatIsOffItsPlan) {
+  const Robot& robot = *task_->robot->robot;
+  const std::vector<double>& time_s = planned().time_s;
+  const int at = 300;
+  const Eigen::VectorXd& was = planned().configurations[at];
+  std::vector<Contact> contacts = planned().stances[planned().stance_from[at]].contacts;
+  RobotState state(robot);
+  state.update(was.data());
+  const HeldBalls balls = held_balls(state, contacts, [](const Contact&) { return true; });
+  int moved = -1;
+  for (std::size_t i = 0; i < contacts.size() && moved < 0; ++i) {
+    if (balls[i]) continue;
+    moved = static_cast<int>(i);
+    contacts[i].position += 0.01 * axes_in_world(contacts[i]).col(0);
+  }
+  ASSERT_GE(moved, 0);
+  Eigen::VectorXd off(robot.tangent_size()), q(was.size());
+  for (Eigen::Index k = 0; k < off.size(); ++k) off[k] = k % 2 == 0 ? 0.02 : -0.02;
+  robot.integrate(was.data(), off.data(), q.data());
+  ContactProjection closed(robot);
+  closed.set(contacts, balls);
+  ASSERT_TRUE(closed.project(q));
+
+  WalkOptions options = walk_options_for(plan_of(graph_));
+  judging_ = judging_of(task_);
+  options.verify = step_check(judging_);
+  PlanWalk walk(graph_, {}, options, at);
+  walk.measure(q);
+  while (walk.time_s(walk.executed()) < time_s[at] + 2.0) {
+    ASSERT_TRUE(walk.step()) << walk.report().reason;
+  }
+  const Motion now = walk.motion();
+  EXPECT_EQ(now.configurations[at], q) << "the robot is where it is";
+  const int there = walk.executed();
+  robot.difference(planned().configurations[there].data(), now.configurations[there].data(),
+                   off.data());
+  EXPECT_LT(off.head<6>().lpNorm<Eigen::Infinity>(), 0.01);
+  const Stance& stance = now.stances[now.stance_from[at]];
+  EXPECT_LT((stance.contacts[moved].position - contacts[moved].position).norm(), 1e-6);
 }
 
 TEST_F(WalkOnLegs, PlansOfStancesAreRefused) {

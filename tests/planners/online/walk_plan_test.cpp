@@ -187,6 +187,30 @@ void start_at(Graph& graph, double time_s) {
 
 double end_s(const Graph& graph) { return motion_of(graph, plan_of(graph)).time_s.back(); }
 
+TEST(WalkPlan, LeadsBackADriveThatIsOffItsWay) {
+  Graph graph = drive();
+  const std::vector<Eigen::VectorXd> planned = configurations(graph);
+  const std::shared_ptr<const Robot> robot = plan_of(graph).robot->robot;
+  WalkOptions options;
+  options.verify = [&](const Motion& step) { return check_step(robot, step, world_of({})); };
+  const int pushed = 10;
+  PlanWalk walk(graph, {}, options, pushed);
+  Eigen::VectorXd off = Eigen::VectorXd::Zero(robot->tangent_size()), q(planned[pushed].size());
+  off[1] = 0.04;
+  off[5] = 0.03;
+  robot->integrate(planned[pushed].data(), off.data(), q.data());
+  walk.measure(q);
+  while (walk.step()) {
+  }
+  const WalkReport report = walk.report();
+  EXPECT_TRUE(report.success()) << report.reason;
+  const std::vector<Eigen::VectorXd> now = configurations(graph);
+  EXPECT_EQ(now[pushed], q) << "the robot is where it is";
+  robot->difference(planned.back().data(), now.back().data(), off.data());
+  EXPECT_LT(off.head<6>().lpNorm<Eigen::Infinity>(), 0.01);
+  EXPECT_THROW(PlanWalk(graph, {}, options, 50), Error);
+}
+
 TEST(WalkPlan, EndsWhereSlowStepsWouldTakeLongerThanAFileMaySay) {
   Graph graph = planned_drive(centauro_drive(0.8, 0.0, 11));
   start_at(graph, ranges::kTime_s - 1.5 * end_s(graph));
