@@ -95,7 +95,7 @@ void plan_whole_motion(const PlanOptions& options, const StancePlannerOptions& a
 constexpr int kTowardsUnheld = 500, kTowardsUnheldAfterOthers = 5000;
 
 constexpr const char* kHeldButNotFound =
-    "a way was not found, which proves nothing: postures that hold the goals are";
+    "a way was not found, which proves nothing: postures that hold the goals exist";
 
 /// finish: from when on there is something to keep when it is asked to stop.
 ContactTaskPlan plan_of_task(const Scenario& scenario, const PlanOptions& options,

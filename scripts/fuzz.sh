@@ -5,8 +5,8 @@
 #   scripts/fuzz.sh 1000000x graph   # a million executions of one
 #
 # `plan`, graphs with the types of robots, is run by its name only: it takes minutes to build.
-# What a target finds is left in build-asan/fuzz/findings/ and ends the script with an error; what it
-# learns stays in build-asan/fuzz/corpus/. The seeds are made by fuzz/make_corpus.sh.
+# What a target finds is left in build-fuzz/fuzz/findings/ and ends the script with an error; what it
+# learns stays in build-fuzz/fuzz/corpus/. The seeds are made by fuzz/make_corpus.sh.
 
 . "$(dirname "$0")/setup.sh"
 
@@ -20,12 +20,14 @@ limit=(-max_total_time="$amount")
 [[ $amount == *x ]] && limit=(-runs="${amount%x}")
 
 install_missing
-# The folder of the unit tests under AddressSanitizer and UBSan (scripts/test.sh).
-configure_sanitized build-asan -DLOCOGRAPH_FUZZ=ON
-build build-asan --target graph_seeds "${targets[@]/#/fuzz_}"
+# Without debug information and several sources at a time: it is made for each test run.
+configure build-fuzz -DCMAKE_CXX_COMPILER=clang++-14 -DLOCOGRAPH_FUZZ=ON -DLOCOGRAPH_TESTS=OFF \
+  -DLOCOGRAPH_NATIVE=OFF -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_UNITY_BUILD=ON \
+  -DCMAKE_UNITY_BUILD_BATCH_SIZE=16 "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -gline-tables-only"
+build build-fuzz --target graph_seeds "${targets[@]/#/fuzz_}"
 
-folder=$root/build-asan/fuzz
-"$root/fuzz/make_corpus.sh" "$root/build-asan"
+folder=$root/build-fuzz/fuzz
+"$root/fuzz/make_corpus.sh" "$root/build-fuzz"
 mkdir -p "$folder/findings"
 failed=()
 for target in "${targets[@]}"; do

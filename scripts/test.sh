@@ -1,7 +1,8 @@
 #!/bin/bash
-# Builds and runs every test: sources formatted, unit tests under AddressSanitizer and UBSan, every
-# parser for some seconds under libFuzzer, then all tests in Release. What threads share is tested
-# under ThreadSanitizer by scripts/threads.sh. Quick when nothing has changed; ends with ctest's summary.
+# Builds and runs every test: sources formatted, unit tests under AddressSanitizer and UBSan, then
+# all tests in Release. Quick when nothing has changed; ends with ctest's summary. By hand besides, as
+# their builds take long: scripts/fuzz.sh after changes of parsers, scripts/threads.sh of what threads
+# share.
 
 . "$(dirname "$0")/setup.sh"
 
@@ -23,7 +24,7 @@ say "checking the layout of the sources"
 
 # The libraries' unit tests; the command itself, the examples of headers and the installed package
 # are tested in Release.
-configure_sanitized build-asan -DLOCOGRAPH_FUZZ=ON
+configure_sanitized build-asan address,undefined
 mapfile -t unit_tests < <(
   cd "$root/tests"
   sed -n 's/^locograph_test(\([a-z_]*\).*/\1/p' \
@@ -34,8 +35,6 @@ build build-asan --target "${unit_tests[@]}"
 say "running ${unit_tests[*]} under AddressSanitizer and UBSan"
 ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 run_tests build-asan \
   --tests-regex "^($(IFS='|' && echo "${unit_tests[*]}"))" >&2
-
-"$root/scripts/fuzz.sh" 20000x
 
 say "running all tests"
 run_tests build

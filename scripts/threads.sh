@@ -5,7 +5,7 @@
 . "$(dirname "$0")/setup.sh"
 
 install_missing
-configure_sanitized build-tsan -DLOCOGRAPH_SANITIZE=thread
+configure_sanitized build-tsan thread
 build build-tsan --target planners_thread_tests world_thread_tests
 TSAN_OPTIONS=halt_on_error=1 ctest --test-dir "$root/build-tsan" --output-on-failure \
   --no-tests=error --parallel "$jobs" --tests-regex '_thread_tests$'

@@ -4,7 +4,9 @@
 #include <cerrno>
 #include <cstddef>
 
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#include "common/sanitized.h"
+
+#if defined(__GLIBC__) && !defined(LOCOGRAPH_SANITIZED)
 
 namespace {
 std::atomic<long> allocations = 0;

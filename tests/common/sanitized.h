@@ -4,9 +4,17 @@
 ///
 ///     inline constexpr int kStates = kSanitized ? 12 : 120;
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)  // GCC
+#define LOCOGRAPH_SANITIZED
+#elif defined(__has_feature)  // clang
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define LOCOGRAPH_SANITIZED
+#endif
+#endif
+
 namespace locograph::test {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef LOCOGRAPH_SANITIZED
 inline constexpr bool kSanitized = true;
 #else
 inline constexpr bool kSanitized = false;

@@ -340,7 +340,7 @@ TEST(TimeStep, StaysPositiveWhateverTheStep) {
   EXPECT_THROW(VertexTimeStep(0.0), Error);
   EXPECT_THROW(VertexTimeStep(-0.1), Error);
   EXPECT_THROW(VertexTimeStep(std::nan("")), Error);
-  EXPECT_THROW(VertexTimeStep(std::numeric_limits<double>::infinity()), Error);
+  EXPECT_THROW(VertexTimeStep{std::numeric_limits<double>::infinity()}, Error);
 }
 
 TEST(TimeStep, EdgesHaveTheJacobianOfNumericDifferences) {

@@ -151,7 +151,7 @@ std::string text_of(const UnheldGoal& unheld, std::size_t goals, const std::stri
   text += " (" + reason + ")";
   if (unheld.contact.empty()) return text + ", nor one with one of its contacts elsewhere";
   char by[120];
-  std::snprintf(by, sizeof by, " moved by (%.4g %.4g %.4g) m, %.3g m in all, one is",
+  std::snprintf(by, sizeof by, " moved by (%.4g %.4g %.4g) m, %.3g m in all, one is found",
                 unheld.move_m.x(), unheld.move_m.y(), unheld.move_m.z(), unheld.move_m.norm());
   text += "; with " + unheld.contact + by;
   return unheld.touches ? text : text + ", where there is nothing to touch as yet";

@@ -222,46 +222,79 @@ TEST_F(WalkOnLegs, SaysWhyItIsNotPlannedOn) {
   EXPECT_TRUE(check().feasible);
 }
 
-/// On its contacts, one of them 1 cm beside where it was planned, balls where they have rolled to.
-TEST_F(WalkOnLegs, LeadsBackARobotThatIsOffItsPlan) {
-  const Robot& robot = *task_->robot->robot;
-  const std::vector<double>& time_s = planned().time_s;
-  const int at = 300;
-  const Eigen::VectorXd& was = planned().configurations[at];
-  std::vector<Contact> contacts = planned().stances[planned().stance_from[at]].contacts;
-  RobotState state(robot);
-  state.update(was.data());
-  const HeldBalls balls = held_balls(state, contacts, [](const Contact&) { return true; });
-  int moved = -1;
-  for (std::size_t i = 0; i < contacts.size() && moved < 0; ++i) {
-    if (balls[i]) continue;
-    moved = static_cast<int>(i);
-    contacts[i].position += 0.01 * axes_in_world(contacts[i]).col(0);
+/// A configuration of the plan that is off by as much in each coordinate, on its contacts, balls
+/// where they have rolled to. aside_m: of contacts that do not roll, along what they are on.
+class OffItsPlan : public WalkOnLegs {
+ protected:
+  void put_off(double by, double aside_m) {
+    RobotState state(robot());
+    state.update(was().data());
+    contacts_ = planned().stances[planned().stance_from[kAt]].contacts;
+    const HeldBalls balls = held_balls(state, contacts_, [](const Contact&) { return true; });
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      if (!balls[i]) contacts_[i].position += aside_m * axes_in_world(contacts_[i]).col(0);
+    }
+    Eigen::VectorXd off(robot().tangent_size());
+    for (Eigen::Index k = 0; k < off.size(); ++k) off[k] = k % 2 == 0 ? by : -by;
+    robot().integrate(was().data(), off.data(), q_.data());
+    ContactProjection closed(robot());
+    closed.set(contacts_, balls);
+    ASSERT_TRUE(closed.project(q_));
   }
-  ASSERT_GE(moved, 0);
-  Eigen::VectorXd off(robot.tangent_size()), q(was.size());
-  for (Eigen::Index k = 0; k < off.size(); ++k) off[k] = k % 2 == 0 ? 0.02 : -0.02;
-  robot.integrate(was.data(), off.data(), q.data());
-  ContactProjection closed(robot);
-  closed.set(contacts, balls);
-  ASSERT_TRUE(closed.project(q));
 
+  const Robot& robot() const { return *task_->robot->robot; }
+  const Eigen::VectorXd& was() const { return planned().configurations[kAt]; }
+
+  static constexpr int kAt = 300;
+  std::vector<Contact> contacts_;
+  Eigen::VectorXd q_ = Eigen::VectorXd(robot().configuration_size());
+};
+
+TEST_F(OffItsPlan, IsLedBack) {
+  put_off(0.003, 0.0);
+  const std::vector<double>& time_s = planned().time_s;
   WalkOptions options = walk_options_for(plan_of(graph_));
   judging_ = judging_of(task_);
   options.verify = step_check(judging_);
-  PlanWalk walk(graph_, {}, options, at);
-  walk.measure(q);
-  while (walk.time_s(walk.executed()) < time_s[at] + 2.0) {
+  PlanWalk walk(graph_, {}, options, kAt);
+  walk.measure(q_);
+  while (walk.time_s(walk.executed()) < time_s[kAt] + 2.0) {
     ASSERT_TRUE(walk.step()) << walk.report().reason;
   }
   const Motion now = walk.motion();
-  EXPECT_EQ(now.configurations[at], q) << "the robot is where it is";
+  EXPECT_EQ(now.configurations[kAt], q_) << "the robot is where it is";
   const int there = walk.executed();
-  robot.difference(planned().configurations[there].data(), now.configurations[there].data(),
-                   off.data());
-  EXPECT_LT(off.head<6>().lpNorm<Eigen::Infinity>(), 0.01);
-  const Stance& stance = now.stances[now.stance_from[at]];
-  EXPECT_LT((stance.contacts[moved].position - contacts[moved].position).norm(), 1e-6);
+  Eigen::VectorXd left(robot().tangent_size());
+  robot().difference(planned().configurations[there].data(), now.configurations[there].data(),
+                     left.data());
+  EXPECT_LT(left.lpNorm<Eigen::Infinity>(), 1e-3);
+}
+
+TEST_F(OffItsPlan, HasItsContactsWhereTheyAre) {
+  put_off(0.003, 0.01);
+  LocalPlanner planner(graph_, walk_options_for(plan_of(graph_)).planner);
+  planner.measure(q_);
+  const CycleReport report = planner.cycle(kAt, {.max_iterations = 30});
+  EXPECT_GE(report.feasible_steps, 1) << report.reason;
+  const Motion now = motion_of(graph_, planner.plan());
+  for (const int i : {kAt, kAt + 1}) {
+    const Stance& stance = now.stances[now.stance_from[i]];
+    ASSERT_EQ(stance.contacts.size(), contacts_.size());
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      EXPECT_LT((stance.contacts[c].position - contacts_[c].position).norm(), 1e-6) << c;
+    }
+  }
+  // What is lifted and put down elsewhere goes to where it was planned.
+  const Stance &last = now.stances[now.stance_from.back()],
+               &goal = planned().stances[planned().stance_from.back()];
+  for (std::size_t c = 0; c < last.contacts.size(); ++c) {
+    const bool held = std::ranges::any_of(contacts_, [&](const Contact& contact) {
+      return (contact.position - last.contacts[c].position).norm() < 1e-6;
+    });
+    if (!held) {
+      EXPECT_EQ(last.contacts[c].position, goal.contacts[c].position) << c;
+    }
+  }
 }
 
 TEST_F(WalkOnLegs, PlansOfStancesAreRefused) {

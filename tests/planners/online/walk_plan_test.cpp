@@ -191,8 +191,9 @@ TEST(WalkPlan, LeadsBackADriveThatIsOffItsWay) {
   Graph graph = drive();
   const std::vector<Eigen::VectorXd> planned = configurations(graph);
   const std::shared_ptr<const Robot> robot = plan_of(graph).robot->robot;
+  const World nothing = world_of(std::vector<Obstacle>());
   WalkOptions options;
-  options.verify = [&](const Motion& step) { return check_step(robot, step, world_of({})); };
+  options.verify = [&](const Motion& step) { return check_step(robot, step, nothing); };
   const int pushed = 10;
   PlanWalk walk(graph, {}, options, pushed);
   Eigen::VectorXd off = Eigen::VectorXd::Zero(robot->tangent_size()), q(planned[pushed].size());
