@@ -117,6 +117,9 @@ class ConstrainedOptimiser::Rows {
     return !exhausted;
   }
 
+  /// Violations at the end of the last round.
+  std::vector<double>& last() { return last_; }
+
   void report(ConstrainedResult& result) const {
     const std::vector<ConstraintRow>& rows = std::as_const(*workspace_).constraint_rows();
     double most = -1.0;
@@ -159,11 +162,6 @@ class ConstrainedOptimiser::Rows {
     return *problem_->graph().edge_pools()[c.pool];
   }
   double error(int row) const { return workspace_->constraint_errors()[row]; }
-
- public:
-  std::vector<double>& last() { return last_; }
-
- private:
   bool slow(int r) const {
     return violation_[r] > tolerance_[r] && violation_[r] > options_.decrease * last_[r];
   }
