@@ -236,6 +236,7 @@ class OffItsPlan : public WalkOnLegs {
     }
     Eigen::VectorXd off(robot().tangent_size());
     for (Eigen::Index k = 0; k < off.size(); ++k) off[k] = k % 2 == 0 ? by : -by;
+    q_.resize(robot().configuration_size());
     robot().integrate(was().data(), off.data(), q_.data());
     ContactProjection closed(robot());
     closed.set(contacts_, balls);
@@ -247,7 +248,7 @@ class OffItsPlan : public WalkOnLegs {
 
   static constexpr int kAt = 300;
   std::vector<Contact> contacts_;
-  Eigen::VectorXd q_ = Eigen::VectorXd(robot().configuration_size());
+  Eigen::VectorXd q_;
 };
 
 TEST_F(OffItsPlan, IsLedBack) {
