@@ -195,8 +195,9 @@ bool LocalPlanner::move_window(int executed, const Eigen::VectorXd& measured) {
   window_.move_to(executed);
   warm_start_.enter(window_);
   constexpr double kOff = 1e-9;  // m, rad
-  const Eigen::VectorXd was = plan_.configuration(executed);
-  if (measured.size() > 0 && (measured - was).lpNorm<Eigen::Infinity>() > kOff) {
+  if (measured.size() > 0 &&
+      (measured - plan_.configuration(executed)).lpNorm<Eigen::Infinity>() > kOff) {
+    const Eigen::VectorXd was = plan_.configuration(executed);
     plan_.move_to(executed, measured, window_.first_held());
     plan_.take_contacts(executed);
     warm_start_.lead_back(window_, was);

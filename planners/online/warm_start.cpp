@@ -63,20 +63,20 @@ double WarmStart::time_to_lead_back(int executed) const {
 /// The contacts that are closed at a configuration: at their places, balls where they have rolled
 /// to from another configuration beside it.
 void WarmStart::set_contacts(int index, int beside) {
+  const auto& stance_from = plan_.plan().stance_from;
+  const std::vector<int> numbers = contacts_at(stance_from, static_cast<std::size_t>(index));
   std::vector<Contact> contacts;
+  for (const int number : numbers) {
+    contacts.push_back(plan_.graph().parameters().get<ContactParameter>(number)->contact);
+  }
+  const auto& held =
+      stance_from[static_cast<std::size_t>(std::min(index, beside))]->contact_numbers;
   RobotState state(plan_.robot());
   state.update(plan_.configuration(beside).data());
-  HeldBalls balls;
-  const int step = std::min(index, beside);
-  const auto& held = plan_.plan().stance_from[static_cast<std::size_t>(step)]->contact_numbers;
-  for (const int number : contacts_at(plan_.plan().stance_from, static_cast<std::size_t>(index))) {
-    const Contact& contact = plan_.graph().parameters().get<ContactParameter>(number)->contact;
-    contacts.push_back(contact);
-    const bool rolls = is_ball(contact.effector) && std::ranges::find(held, number) != held.end();
-    balls.push_back(rolls ? std::optional<BallPose>(BallPose(state, contact.effector))
-                          : std::nullopt);
-  }
-  contacts_.set(contacts, balls);
+  contacts_.set(contacts, held_balls(state, contacts, [&](const Contact& contact) {
+                  const int number = numbers[static_cast<std::size_t>(&contact - contacts.data())];
+                  return std::ranges::find(held, number) != held.end();
+                }));
 }
 
 /// Configurations that came before the executed one, on legs: on their contacts.

@@ -45,28 +45,18 @@ void ContactProjection::closure(const Eigen::VectorXd& q, Eigen::VectorXd& error
   jacobian = rows;
 }
 
-Eigen::VectorXd ContactProjection::step(const Eigen::VectorXd& rows) const {
-  Eigen::MatrixXd gram = jacobian_ * jacobian_.transpose();
-  gram.diagonal().array() += 1e-9;
-  return jacobian_.transpose() * gram.llt().solve(rows);
-}
-
 bool ContactProjection::project(Eigen::VectorXd& q) {
   if (closures_.empty()) return true;
   for (int i = 0; i < kMostProjections; ++i) {
     closure(q, error_, jacobian_);
     if (error_.cwiseAbs().maxCoeff() < kProjected) return true;
-    const Eigen::VectorXd back = -step(error_);
-    if (!(back.cwiseAbs().maxCoeff() < kLongestProjection)) return false;
-    robot().integrate(q.data(), back.data(), q.data());
+    Eigen::MatrixXd gram = jacobian_ * jacobian_.transpose();
+    gram.diagonal().array() += 1e-9;
+    const Eigen::VectorXd step = -(jacobian_.transpose() * gram.llt().solve(error_));
+    if (!(step.cwiseAbs().maxCoeff() < kLongestProjection)) return false;
+    robot().integrate(q.data(), step.data(), q.data());
   }
   return false;
-}
-
-void ContactProjection::project_rate(const Eigen::VectorXd& q, Eigen::VectorXd& rate) {
-  if (closures_.empty()) return;
-  closure(q, error_, jacobian_);
-  rate -= step(jacobian_ * rate);
 }
 
 }  // namespace locograph

@@ -1,10 +1,9 @@
 #pragma once
-/// The nearest configuration in which contacts are closed, and the nearest motion in which they
-/// stay closed.
+/// The nearest configuration in which contacts are closed.
 ///
 ///     ContactProjection contacts(robot);
 ///     contacts.set(stance.contacts, balls);
-///     if (contacts.project(q)) contacts.project_rate(q, slope);
+///     if (!contacts.project(q)) throw Error("the contacts do not close");
 ///
 /// Nearest by the robot's tangent (robots/robot.h), each coordinate alike: Newton's steps of least
 /// norm, -Jᵀ(J Jᵀ)⁺ e. Balls roll from where they are said to be (robots/rolling_ball.h).
@@ -38,13 +37,8 @@ class ContactProjection {
 
   /// Moves q the shortest way to where the contacts are closed to 1e-9; false: not found.
   bool project(Eigen::VectorXd& q);
-  /// Changes a rate, tangent_size numbers, as little as may be, so that contacts stay closed.
-  void project_rate(const Eigen::VectorXd& q, Eigen::VectorXd& rate);
 
  private:
-  /// Of least norm, that changes the rows by what is given.
-  Eigen::VectorXd step(const Eigen::VectorXd& rows) const;
-
   RobotState state_;
   std::vector<ContactClosure> closures_;
   int rows_ = 0;

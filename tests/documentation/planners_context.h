@@ -465,7 +465,7 @@ using Context = StepContext;
 namespace posture_contact_projection_h {
 struct Context : StepContext {
   const HeldBalls balls = HeldBalls(stance.contacts.size());
-  Eigen::VectorXd q = StepContext::q, slope = Eigen::VectorXd::Ones(robot.tangent_size());
+  Eigen::VectorXd q = StepContext::q;
 };
 }  // namespace posture_contact_projection_h
 namespace posture_transition_problem_h {
