@@ -90,14 +90,36 @@ Plan Braking::part(int first, int last) const {
   return plan;
 }
 
+/// Whether the robot may stand there for kStands_s.
+bool Braking::may_stay(int at) const {
+  if (!stays_ || !verify_) return true;
+  Motion still = motion_of(graph_, plan_.plan(), at, at);
+  still.wrenches.clear();
+  still.configurations.push_back(still.configurations.front());
+  still.slopes.assign(2, Eigen::VectorXd::Zero(plan_.plan().robot->robot->tangent_size()));
+  still.stance_from.push_back(still.stance_from.front());
+  still.time_s.push_back(still.time_s.front() + kStands_s);
+  return verify_(still).feasible;
+}
+
 std::optional<int> Braking::come_to_rest(int executed, int furthest, int carried_out) {
+  for (stays_ = true;; stays_ = false) {
+    const std::optional<int> rest = find_rest(executed, furthest, carried_out);
+    if (rest || !stays_) return rest;
+  }
+}
+
+std::optional<int> Braking::find_rest(int executed, int furthest, int carried_out) {
   for (int steps = kFewestBrakingStepsOfLegs; executed + steps <= furthest; steps += steps / 2) {
-    if (rests(executed)) return stay(executed);
+    if (rests(executed) && may_stay(executed)) return stay(executed);
     if (executed <= carried_out || last_rest_before(executed + steps) > executed) break;
     if (comes_to_rest(executed + steps, steps, false)) return executed + steps;
   }
   for (int last = executed; last > 0 && last >= carried_out; --last) {
-    if (rests(last)) return stay(last);
+    if (rests(last)) {
+      if (may_stay(last)) return stay(last);
+      continue;
+    }
     const bool wheels = plan_.rolls(last - 1);
     const int free = last - std::max(carried_out + 1, 0);
     const int most = wheels
@@ -108,7 +130,8 @@ std::optional<int> Braking::come_to_rest(int executed, int furthest, int carried
       if (comes_to_rest(last, steps, wheels)) return last;
     }
   }
-  return carried_out > 0 ? std::nullopt : std::optional<int>(0);
+  if (carried_out > 0 || !may_stay(0)) return {};
+  return 0;
 }
 
 /// What bears a configuration at which the robot rests does not move it.
@@ -119,6 +142,7 @@ int Braking::stay(int at) {
 
 /// Whether the judge lets the robot brake so; else nothing changes.
 bool Braking::comes_to_rest(int last, int steps, bool wheels) {
+  if (!may_stay(last)) return false;
   std::vector<Passing> moving;
   for (int i = last - steps; i <= last; ++i) moving.push_back(passing(i));
   brake(last, steps, wheels);

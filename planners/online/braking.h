@@ -8,7 +8,8 @@
 ///     }
 ///
 /// On wheels it brakes before the executed configuration, as if it had known; on legs as soon as it
-/// can after it, as long as forces allow, with wrenches that bear it.
+/// can after it, as long as forces allow, with wrenches that bear it. It rests where nothing that
+/// is known comes to it within kStands_s, if there is such a place.
 
 #include <locograph/check/check_report.h>
 #include <locograph/planners/online/online_plan.h>
@@ -19,6 +20,9 @@
 #include <vector>
 
 namespace locograph {
+
+/// For so long a place of rest stays free.
+constexpr double kStands_s = 10.0;
 
 class Braking {
  public:
@@ -47,6 +51,8 @@ class Braking {
   VertexConfiguration& vertex(int i) const;
   const std::vector<int>& wrenches_at(int i) const;
   int last_rest_before(int i) const;
+  bool may_stay(int at) const;
+  std::optional<int> find_rest(int executed, int furthest, int carried_out);
   void brake(int last, int steps, bool wheels);
   bool comes_to_rest(int last, int steps, bool wheels);
   int stay(int at);
@@ -55,6 +61,7 @@ class Braking {
   Graph& graph_;
   const OnlinePlan& plan_;
   std::function<CheckReport(const Motion&)> verify_;
+  bool stays_ = true;  ///< only where it may stay
 };
 
 }  // namespace locograph

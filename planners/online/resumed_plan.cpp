@@ -4,6 +4,7 @@
 #include <locograph/planners/offline/motion/motion_loads.h>
 #include <locograph/planners/offline/motion/motion_planner.h>
 #include <locograph/planners/offline/stance/unheld_goal.h>
+#include <locograph/planners/online/braking.h>
 #include <locograph/planners/online/resumed_plan.h>
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
@@ -158,9 +159,11 @@ class Continuation {
 
 World world_at_rest(const World& world, double time_s) {
   World now = world;
-  std::erase_if(now.obstacles, [&](const Obstacle& one) { return !one.is_there(time_s); });
+  std::erase_if(now.obstacles, [&](const Obstacle& one) {
+    return !one.is_there(time_s, time_s + kStands_s);
+  });
   for (Obstacle& obstacle : now.obstacles) {
-    obstacle.world_from_obstacle = obstacle.pose_at(time_s);
+    obstacle.world_from_obstacle = obstacle.pose_at(std::max(time_s, obstacle.appears_s));
     obstacle.motion.clear();
     obstacle.repeat_s = 0.0;
     obstacle.appears_s = -std::numeric_limits<double>::infinity();

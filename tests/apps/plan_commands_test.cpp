@@ -1,5 +1,9 @@
 // `plan`, `refine` and `check`, one after the other, as a user runs them.
 #include <apps/command_runner.h>
+#include <locograph/core/graph_file.h>
+#include <locograph/planners/plan/plan.h>
+#include <locograph/plugins/robot_types.h>
+#include <locograph/types/standard_types.h>
 #include <locograph/world/octree.h>
 
 #include <algorithm>
@@ -11,6 +15,7 @@
 
 #include "apps/shipped_scenario.h"
 #include "apps/standing_plan.h"
+#include "planners/ball_in_the_way.h"
 
 namespace locograph {
 namespace {
@@ -374,15 +379,15 @@ TEST(PlanCommands, RefinePrintsOneJsonObjectWithEveryField) {
   }
 }
 
-/// A ball that hangs where COMAN+ moves its right leg two seconds later.
-const char kBall[] =
-    "<obstacles version='1'>\n<sphere name='ball' center='1.0 -0.3 0.45' radius='0.135' "
-    "appears='7.8'/>\n</obstacles>\n";
-
 TEST(PlanCommands, RefinePlansOnWhereARobotOnLegsHadToStop) {
   const CommandRunner runner;
   ASSERT_EQ(runner.run("plan standing_up --seed 9511 -o plan.g2o").exit_code, 0);
-  runner.write("ball.xml", kBall);
+  TypeRegistry types = standard_types();
+  add_robot_types(types);
+  const Graph graph = read_graph((runner.folder() / "plan.g2o").string(), types);
+  const Plan plan = plan_of(graph);
+  const Obstacle ball = test::ball_in_the_way(motion_of(graph, plan), *plan.robot, 2.0);
+  save_obstacles({&ball, 1}, runner.folder() / "ball.xml");
   const Outcome arrived =
       runner.run("refine plan.g2o --obstacles ball.xml --replan -o arrived.g2o --json");
   EXPECT_EQ(arrived.exit_code, 0) << arrived.err << arrived.out;

@@ -11,9 +11,9 @@
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "common/sanitized.h"
+#include "planners/ball_in_the_way.h"
 #include "planners/stance_tasks.h"
 
 namespace locograph::test {
@@ -39,43 +39,10 @@ class WalkOnLegs : public testing::Test {
   const Motion& planned() const { return plan_->motion; }
   Motion now() const { return motion_of(graph_, plan_of(graph_)); }
 
-  /// How far the robot is from a ball, as its spheres are, at one of its configurations.
-  double clearance(const Obstacle& ball, std::size_t i) const {
-    RobotState state(*task_->robot->robot);
-    state.update(planned().configurations[i].data());
-    double least = std::numeric_limits<double>::infinity();
-    for (const CollisionSphere& sphere : task_->robot->spheres) {
-      const Eigen::Vector3d centre = state.world_from_link(sphere.link) * sphere.center;
-      least = std::min(least, ball.distance(centre, 0.0) - sphere.radius);
-    }
-    return least;
-  }
-
-  /// A ball in the way of a link, the first that the robot is clear of 1.5 s before, when it sees
-  /// it, at its start and at its goal.
+  /// It is seen when it appears.
   Obstacle in_the_way() {
-    Obstacle ball;
-    ball.name = "ball";
-    ball.shape = Obstacle::Shape::kSphere;
-    ball.size.x() = 0.1;
-    RobotState state(*task_->robot->robot);
-    const std::vector<double>& time_s = planned().time_s;
-    for (std::size_t at = 0; at < time_s.size(); at += 20) {
-      seen_s_ = time_s[at] - 1.5;
-      if (seen_s_ < 1.0) continue;
-      state.update(planned().configurations[at].data());
-      const auto seen =
-          static_cast<std::size_t>(std::ranges::lower_bound(time_s, seen_s_) - time_s.begin());
-      for (const RobotParameter::LinkBound& bound : task_->robot->bounds) {
-        ball.world_from_obstacle.translation() = state.world_from_link(bound.link) * bound.center;
-        if (clearance(ball, seen) > 0.05 && clearance(ball, 0) > 0.05 &&
-            clearance(ball, time_s.size() - 1) > 0.05) {
-          ball.appears_s = seen_s_;
-          return ball;
-        }
-      }
-    }
-    ADD_FAILURE() << "no link moves far enough";
+    const Obstacle ball = ball_in_the_way(planned(), *task_->robot, 1.5);
+    seen_s_ = ball.appears_s;
     return ball;
   }
 
@@ -303,19 +270,27 @@ TEST_F(WalkOnLegs, PlansOfStancesAreRefused) {
   EXPECT_THROW(LocalPlanner(stances, {}), Error);
 }
 
-TEST(WorldAtRest, IsWhatIsThereThen) {
-  Obstacle cart, later;
+TEST(WorldAtRest, IsWhatIsThereThenAndSoonAfter) {
+  Obstacle cart, soon, later;
   cart.size.setConstant(0.1);
   cart.motion = {KeyFrame{2.0, Eigen::Isometry3d(Eigen::Translation3d(2.0, 0.0, 0.0))}};
   later.size.setConstant(0.1);
-  later.appears_s = 5.0;
+  later.appears_s = 15.0;
+  soon = cart;
+  soon.appears_s = 1.5;
+  soon.vanishes_s = 9.0;
   World world;
-  world.obstacles = {cart, later};
+  world.obstacles = {cart, soon, later};
   const World now = world_at_rest(world, 1.0);
-  ASSERT_EQ(now.obstacles.size(), 1u);
-  EXPECT_TRUE(now.obstacles[0].motion.empty());
+  ASSERT_EQ(now.obstacles.size(), 2u);
+  for (const Obstacle& obstacle : now.obstacles) {
+    EXPECT_TRUE(obstacle.motion.empty());
+    EXPECT_TRUE(obstacle.is_there(0.0, 100.0));
+  }
   EXPECT_NEAR(now.obstacles[0].world_from_obstacle.translation().x(), 1.0, 1e-12);
-  EXPECT_EQ(world_at_rest(world, 6.0).obstacles.size(), 2u);
+  EXPECT_NEAR(now.obstacles[1].world_from_obstacle.translation().x(), 1.5, 1e-12);
+  EXPECT_EQ(world_at_rest(world, 6.0).obstacles.size(), 3u);
+  EXPECT_EQ(world_at_rest(world, 9.5).obstacles.size(), 2u);
 }
 
 }  // namespace
