@@ -31,6 +31,7 @@ struct CommandOptions {
   double rate_hz = walk_options_for({}).rate_hz;
   double deadline_ms = 0.0;
   bool replan = false;
+  double replan_timeout_s = 20.0;
   double goal_tolerance_m = WalkOptions().goal_tolerance_m;
   double goal_tolerance_rad = WalkOptions().goal_tolerance_rad;
   std::vector<std::string> plugins;
@@ -245,7 +246,9 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
       ResumedPlan resumed = resume_plan(
           stopped, *judging.task,
           std::make_shared<const WorldSnapshot>(world_at_rest(judging.world->world(), now_s)),
-          {.termination = {.stop = &stop_flag()}, .threads = options.threads});
+          {.termination = {.deadline = Deadline::of_limit(options.replan_timeout_s),
+                           .stop = &stop_flag()},
+           .threads = options.threads});
       resume_s += resumed.total_s;
       not_resumed = resumed.success() ? "" : resumed.reason;
       progress.emplace("refining " + options.input);
@@ -327,6 +330,11 @@ Command add_refine(OptionParser& app) {
       .show_default();
   parser.add_flag("--replan", o.replan,
                   "Where a plan on legs is blocked, plan on from where the robot has stopped");
+  parser
+      .add_option("--replan-timeout", o.replan_timeout_s,
+                  "Seconds that planning on may take each time; 0: no limit")
+      .not_negative()
+      .show_default();
   parser
       .add_option("--goal-tolerance", o.goal_tolerance_m,
                   "How far from the plan's goal the base may end, in any direction [m]")

@@ -113,13 +113,12 @@ std::optional<int> Braking::find_rest(int executed, int furthest, int carried_ou
   for (int steps = kFewestBrakingStepsOfLegs; executed + steps <= furthest; steps += steps / 2) {
     if (rests(executed) && may_stay(executed)) return stay(executed);
     if (executed <= carried_out || last_rest_before(executed + steps) > executed) break;
-    if (comes_to_rest(executed + steps, steps, false)) return executed + steps;
+    const int last = executed + steps;
+    if (may_stay(last) && comes_to_rest(last, steps, false)) return last;
   }
   for (int last = executed; last > 0 && last >= carried_out; --last) {
-    if (rests(last)) {
-      if (may_stay(last)) return stay(last);
-      continue;
-    }
+    if (!may_stay(last)) continue;
+    if (rests(last)) return stay(last);
     const bool wheels = plan_.rolls(last - 1);
     const int free = last - std::max(carried_out + 1, 0);
     const int most = wheels
@@ -142,7 +141,6 @@ int Braking::stay(int at) {
 
 /// Whether the judge lets the robot brake so; else nothing changes.
 bool Braking::comes_to_rest(int last, int steps, bool wheels) {
-  if (!may_stay(last)) return false;
   std::vector<Passing> moving;
   for (int i = last - steps; i <= last; ++i) moving.push_back(passing(i));
   brake(last, steps, wheels);

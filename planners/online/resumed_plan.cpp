@@ -159,9 +159,8 @@ class Continuation {
 
 World world_at_rest(const World& world, double time_s) {
   World now = world;
-  std::erase_if(now.obstacles, [&](const Obstacle& one) {
-    return !one.is_there(time_s, time_s + kStands_s);
-  });
+  std::erase_if(now.obstacles,
+                [&](const Obstacle& one) { return !one.is_there(time_s, time_s + kStands_s); });
   for (Obstacle& obstacle : now.obstacles) {
     obstacle.world_from_obstacle = obstacle.pose_at(std::max(time_s, obstacle.appears_s));
     obstacle.motion.clear();

@@ -393,6 +393,14 @@ TEST(PlanCommands, RefinePlansOnWhereARobotOnLegsHadToStop) {
   EXPECT_EQ(arrived.exit_code, 0) << arrived.err << arrived.out;
   EXPECT_GE(arrived.json()["resumed"], 1);
   EXPECT_EQ(runner.run("check arrived.g2o").exit_code, 0);
+  const nlohmann::json stopped = runner
+                                     .run(
+                                         "refine plan.g2o --obstacles ball.xml --replan "
+                                         "--replan-timeout 0.001 -o stopped.g2o --json")
+                                     .json();
+  EXPECT_EQ(stopped["resumed"], 0);
+  EXPECT_NE(stopped["reason"].get<std::string>().find("; planning on: "), std::string::npos);
+  EXPECT_EQ(runner.run("check stopped.g2o").exit_code, 0);
 }
 
 TEST(PlanCommands, ARefinedPlanPassesTheBoxAndTakesItsWorldAlong) {

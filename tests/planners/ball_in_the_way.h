@@ -50,8 +50,8 @@ inline Obstacle ball_in_the_way(const Motion& motion, const RobotParameter& robo
     if (appears_s < kFirst_s) continue;
     for (const Eigen::Vector3d& link : there.links) {
       ball.world_from_obstacle.translation() = link;
-      const auto appears =
-          std::ranges::find_if(all, [&](double t) { return t >= appears_s; }, &Seen::time_s);
+      const auto appears = std::ranges::find_if(
+          all, [&](double t) { return t >= appears_s; }, &Seen::time_s);
       if (!is_clear(all.back()) || !std::all_of(all.begin(), appears + 1, is_clear)) continue;
       ball.appears_s = appears_s;
       return ball;
