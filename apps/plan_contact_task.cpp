@@ -92,7 +92,7 @@ void plan_whole_motion(const PlanOptions& options, const StancePlannerOptions& a
 
 /// Transitions that are worth while towards a goal that no posture holds, for the part of the way
 /// that there is: where it is the only one, and where others come before it.
-constexpr int kTowardsUnheld = 500, kTowardsUnheldAfterOthers = 5000;
+constexpr int kTowardsUnheld = 250, kTowardsUnheldAfterOthers = 5000;
 
 constexpr const char* kHeldButNotFound =
     "a way was not found, which proves nothing: postures that hold the goals exist";
@@ -263,7 +263,9 @@ Json answer_json(const PlanOptions& options, const ContactTaskPlan& plan) {
   }
   if (plan.unheld && !plan.unheld->contact.empty()) {
     const Eigen::Vector3d& by = plan.unheld->move_m;
-    json["move"] = {{"contact", plan.unheld->contact}, {"by_m", {by.x(), by.y(), by.z()}}};
+    json["move"] = {{"contact", plan.unheld->contact},
+                    {"by_m", {by.x(), by.y(), by.z()}},
+                    {"touches", plan.unheld->touches}};
   }
   if (!motion.success()) {
     json["best"] = {{"stances", stances.stances.size()},

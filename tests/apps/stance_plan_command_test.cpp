@@ -189,6 +189,7 @@ TEST(StancePlanCommand, AnIncompletePlanIsWrittenAndCheckSaysSo) {
   EXPECT_NE(reason.find("no posture is found that holds the goal ("), std::string::npos) << reason;
   EXPECT_EQ(json["move"]["contact"], "left_hand");
   EXPECT_EQ(json["move"]["by_m"].size(), 3u);
+  EXPECT_TRUE(json["move"]["touches"].is_boolean());
   EXPECT_EQ(json["best"]["goal_contacts_reached"], 3);
   EXPECT_TRUE(json["best"]["stances"].is_number_integer());
   ASSERT_TRUE(runner.exists("part.g2o"));

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <vector>
 
 namespace locograph {
@@ -14,7 +15,9 @@ namespace {
 
 /// Attempts for a goal, and for one with a contact moved; later ones have more restarts.
 constexpr int kGoalAttempts = 5, kMovedGoalAttempts = 2;
-constexpr int kHalvings = 6;
+/// Of the way to where the end effector would be, tried in this order; then halved up to the last.
+constexpr double kShares[] = {0.125, 0.25, 0.5, 1.0};
+constexpr double kShareTolerance = 1.0 / 64.0;
 constexpr double kMillimetre = 1e-3;
 constexpr std::size_t kMostSurfaces = 4;  // that a contact is moved to
 
@@ -126,9 +129,12 @@ class GoalPostures {
       for (double& value : by) value = std::copysign(std::ceil(std::abs(value) - 1e-6), value);
       return (kMillimetre * by).eval();
     };
-    if (along.norm() < kMillimetre || !holds_moved(goal, contact, rounded(1.0))) return {};
-    double not_enough = 0.0, enough = 1.0;
-    for (int k = 0; k < kHalvings && !deadline_.passed(); ++k) {
+    if (along.norm() < kMillimetre) return {};
+    const auto held = std::ranges::find_if(
+        kShares, [&](double s) { return holds_moved(goal, contact, rounded(s)); });
+    if (held == std::end(kShares)) return {};
+    double enough = *held, not_enough = held == std::begin(kShares) ? 0.0 : *std::prev(held);
+    while (enough - not_enough > kShareTolerance && !deadline_.passed()) {
       const double middle = 0.5 * (not_enough + enough);
       (holds_moved(goal, contact, rounded(middle)) ? enough : not_enough) = middle;
     }
