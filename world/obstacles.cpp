@@ -67,6 +67,28 @@ DistanceSample cylinder_sample(const Eigen::Vector3d& p, double radius, double h
   return sample;
 }
 
+/// Of the shape of an obstacle at a pose.
+DistanceSample sample_at(const Obstacle& obstacle, const Eigen::Isometry3d& pose,
+                         const Eigen::Vector3d& point) {
+  using Shape = Obstacle::Shape;
+  const Eigen::Vector3d& size = obstacle.size;
+  const Eigen::Vector3d local = pose.linear().transpose() * (point - pose.translation());
+  DistanceSample result;
+  switch (obstacle.shape) {
+    case Shape::kBox:
+      result = box_sample(local, 0.5 * size);
+      break;
+    case Shape::kSphere:
+      result = sphere_sample(local, size[0]);
+      break;
+    case Shape::kCylinder:
+      result = cylinder_sample(local, size[0], 0.5 * size[1]);
+      break;
+  }
+  result.gradient = pose.linear() * result.gradient;
+  return result;
+}
+
 void require_pose(const Eigen::Isometry3d& pose, const std::string& owner) {
   if (!pose.matrix().allFinite()) throw Error(owner + ": pose is not finite", "finite numbers");
   const Eigen::Matrix3d rotation = pose.linear();
@@ -147,22 +169,8 @@ DistanceSample Obstacle::sample(const Eigen::Vector3d& point, double time_s) con
 }
 
 DistanceSample Obstacle::sample_shape(const Eigen::Vector3d& point, double time_s) const {
-  const Eigen::Isometry3d pose = pose_at(time_s);
-  const Eigen::Vector3d local = pose.linear().transpose() * (point - pose.translation());
-  DistanceSample result;
-  switch (shape) {
-    case Shape::kBox:
-      result = box_sample(local, 0.5 * size);
-      break;
-    case Shape::kSphere:
-      result = sphere_sample(local, size[0]);
-      break;
-    case Shape::kCylinder:
-      result = cylinder_sample(local, size[0], 0.5 * size[1]);
-      break;
-  }
-  result.gradient = pose.linear() * result.gradient;
-  return result;
+  return motion.empty() ? sample_at(*this, world_from_obstacle, point)
+                        : sample_at(*this, pose_at(time_s), point);
 }
 
 void Obstacle::validate() const {

@@ -132,9 +132,7 @@ class Step {
       const auto sample = [&](const Eigen::Vector3d& point, double) {
         return world_.sample_map(point);
       };
-      if (!keeps_away(world_.sample_map(from + 0.5 * way).distance, at_rest)) {
-        try_samples(from, way, at_rest, worst, sample);
-      }
+      try_samples(from, way, at_rest, worst, sample);
     }
     for (const Obstacle& obstacle : world_.obstacles) {
       if (!is_there(obstacle)) continue;
@@ -151,14 +149,13 @@ class Step {
     return worst;
   }
 
-  /// No sample can be nearer than that, from the distance in the middle of the way.
-  static bool keeps_away(double in_middle, const Padding& padding) {
-    return in_middle - padding.to_last_sample >= padding.value;
-  }
-
   template <class Sample>
   void try_samples(const Eigen::Vector3d& from, const Eigen::Vector3d& way, const Padding& padding,
                    Worst& worst, Sample&& sample) const {
+    // No sample can be nearer than that.
+    const Eigen::Vector3d middle = from + 0.5 * way;
+    const double nearest = sample(middle, 0.5).distance - padding.to_last_sample;
+    if (padding.value - nearest <= worst.lack) return;
     for (int k = 0; k < samples_; ++k) {
       const double fraction = (k + 0.5) / samples_;
       const DistanceSample found = sample(Eigen::Vector3d(from + fraction * way), fraction);
