@@ -57,7 +57,8 @@ void Braking::restore(int i, const Passing& before) {
 }
 
 /// Lets the robot come to rest at a configuration, over some steps. On legs its speed goes with the
-/// share x of the way that it has gone as (1 - x²)^(2/3), so that forces do not jump.
+/// share x of the way that it has gone as (1 - x²)^(2/3), so that forces do not jump: what is left
+/// of the way in the last step goes with the third power of what is left of its time.
 void Braking::brake(int last, int steps, bool wheels) {
   double time_s = vertex(last - steps).time_s, before_s = time_s, faster = 1.0;
   for (int i = last - steps + 1; i <= last; ++i) {
@@ -65,7 +66,7 @@ void Braking::brake(int last, int steps, bool wheels) {
     const double slower = wheels ? std::sqrt(left) : std::pow(1.0 - x * x, 2.0 / 3.0);
     const double duration_s = vertex(i).time_s - before_s;
     before_s = vertex(i).time_s;
-    time_s += duration_s * 2.0 / (faster + slower);
+    time_s += duration_s * (wheels || i < last ? 2.0 / (faster + slower) : 3.0 / faster);
     vertex(i).time_s = time_s;
     vertex(i).slopes *= slower;
     faster = slower;

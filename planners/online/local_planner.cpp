@@ -46,6 +46,11 @@ LocalPlanner::LocalPlanner(Graph& graph, const LocalPlannerOptions& options)
 void LocalPlanner::show(std::shared_ptr<const WorldSnapshot> world) {
   world->distance();
   const std::lock_guard lock(showing_);
+  if (world->stamp_s() < shown_stamp_s_) {
+    throw Error("a snapshot of " + std::to_string(world->stamp_s()) + " s",
+                std::to_string(shown_stamp_s_) + " s or later, as the last one that was shown");
+  }
+  shown_stamp_s_ = world->stamp_s();
   shown_ = std::move(world);
 }
 

@@ -39,6 +39,7 @@
 #include <locograph/planners/online/warm_start.h>
 #include <locograph/planners/online/window_solver.h>
 
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -68,7 +69,8 @@ class LocalPlanner {
 
   /// The world that edges and proposals see from the next cycle on; the last one that is shown
   /// before it counts. Other threads may show while a cycle runs, which keeps the one it began
-  /// with. Not null. The snapshot's distance() is made here, lest a cycle wait for it.
+  /// with. Not null. The snapshot's distance() is made here, lest a cycle wait for it. Throws Error
+  /// for one that is older than the last one.
   void show(std::shared_ptr<const WorldSnapshot> world);
 
   /// Where the robot is, at the configuration of the next cycle: a configuration of its plan, as
@@ -150,7 +152,8 @@ class LocalPlanner {
   WindowQuality tried_;                     ///< what the last search at this configuration led to
   std::mutex showing_;
   std::shared_ptr<const WorldSnapshot> shown_;  ///< since the last cycle began; null: none
-  Eigen::VectorXd measured_;                    ///< likewise; empty: none
+  double shown_stamp_s_ = -std::numeric_limits<double>::infinity();  ///< of the last one
+  Eigen::VectorXd measured_;                                         ///< likewise; empty: none
 };
 
 }  // namespace locograph

@@ -93,6 +93,18 @@ TEST(LocalPlanner, RefusesMeasurementsThatAreNone) {
   EXPECT_NEAR(configurations(graph)[3].segment<4>(3).norm(), 1.0, 1e-12);
 }
 
+TEST(LocalPlanner, RefusesAnOlderWorld) {
+  Graph graph = drive();
+  LocalPlanner planner(graph, {});
+  const auto of_time = [](double stamp_s) {
+    return std::make_shared<const WorldSnapshot>(world_of({box_ahead()}), stamp_s);
+  };
+  planner.show(of_time(2.0));
+  planner.show(of_time(2.0));
+  EXPECT_THROW(planner.show(of_time(1.9)), Error);
+  planner.show(of_time(2.1));
+}
+
 TEST(LocalPlanner, RestoresTheWeightsItRaised) {
   Graph graph = drive();
   LocalPlanner planner(graph, {});
