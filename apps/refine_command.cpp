@@ -10,12 +10,14 @@
 #include <locograph/common/data_folder.h>
 #include <locograph/common/parse_number.h>
 #include <locograph/common/stop_signals.h>
+#include <locograph/planners/online/changing_obstacles.h>
 #include <locograph/planners/online/resumed_plan.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/seen_world.h>
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -199,6 +201,75 @@ void check_replan(const PlanFile& file, const Judging& judging, const Perception
   }
 }
 
+/// What a robot on legs does where it has had to stop: it waits, or plans on.
+class GoingOn {
+ public:
+  GoingOn(const PlanFile& file, const Judging& judging, const CommandOptions& options)
+      : judging_(judging),
+        options_(options),
+        planned_(motion_of(file.graph, file.plan)),
+        segments_(file.plan.segments) {
+    waits_ = judging.task && !judging.task->drive && !options.perception.given() &&
+             ChangingObstacles(*file.plan.robot, judging.world->world()).any();
+  }
+
+  bool can() const { return waits_ || options_.replan; }
+  /// Empty: it has not stopped, or went on.
+  const std::string& why_not() const { return why_not_; }
+
+  std::optional<Graph> from(const Graph& stopped) {
+    ResumedPlan resumed;
+    resumed.status = PlannerStatus::kNotFound;
+    why_not_.clear();
+    if (waits_) {
+      resumed = wait_for_free_way(stopped, planned_, segments_, *judging_.task, judging_.world);
+      if (resumed.success()) {
+        waits_s_.push_back(resumed.waits_s);
+      } else {
+        why_not_ = "; waiting: " + resumed.reason;
+      }
+    }
+    if (!resumed.success() && options_.replan) {
+      resumed =
+          resume_plan(stopped, *judging_.task,
+                      std::make_shared<const WorldSnapshot>(
+                          world_at_rest(judging_.world->world(), end_of(stopped))),
+                      {.termination = {.deadline = Deadline::of_limit(options_.replan_timeout_s),
+                                       .stop = &stop_flag()},
+                       .threads = options_.threads});
+      resume_s_ += resumed.total_s;
+      why_not_ = resumed.success() ? "" : why_not_ + "; planning on: " + resumed.reason;
+    }
+    if (!resumed.success()) return {};
+    const Plan now = plan_of(*resumed.graph);
+    planned_ = motion_of(*resumed.graph, now);
+    segments_ = now.segments;
+    return std::move(resumed.graph);
+  }
+
+  void tell(int resumed, Json& json) const {
+    const int waits = static_cast<int>(waits_s_.size());
+    if (waits_) {
+      json["waits"] = waits;
+      json["waits_s"] = std::accumulate(waits_s_.begin(), waits_s_.end(), 0.0);
+    }
+    if (options_.replan) {
+      json["resumed"] = resumed - waits;
+      json["resume_s"] = resume_s_;
+    }
+  }
+
+ private:
+  const Judging& judging_;
+  const CommandOptions& options_;
+  Motion planned_;
+  std::vector<PlanSegment> segments_;
+  bool waits_ = false;
+  std::vector<double> waits_s_;
+  double resume_s_ = 0.0;
+  std::string why_not_;
+};
+
 ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) {
   const std::vector<std::filesystem::path> inputs = {
       options.input, options.world.map, options.world.obstacles, options.perception.known_map};
@@ -237,22 +308,13 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
   const double field_s = watch.seconds();
   if (options.world.given()) replace_world(file, options.world, judging.world->world());
 
-  double resume_s = 0.0;
-  std::string not_resumed;
-  if (options.replan) {
-    walk_options.resume = [&](const Graph& stopped) -> std::optional<Graph> {
+  GoingOn going_on(file, judging, options);
+  if (going_on.can()) {
+    walk_options.resume = [&](const Graph& stopped) {
       progress.emplace("planning on");
-      const double now_s = end_of(stopped);
-      ResumedPlan resumed = resume_plan(
-          stopped, *judging.task,
-          std::make_shared<const WorldSnapshot>(world_at_rest(judging.world->world(), now_s)),
-          {.termination = {.deadline = Deadline::of_limit(options.replan_timeout_s),
-                           .stop = &stop_flag()},
-           .threads = options.threads});
-      resume_s += resumed.total_s;
-      not_resumed = resumed.success() ? "" : resumed.reason;
+      std::optional<Graph> graph = going_on.from(stopped);
       progress.emplace("refining " + options.input);
-      return std::move(resumed.graph);
+      return graph;
     };
   }
   const double configurations = static_cast<double>(file.plan.slots.size());
@@ -263,7 +325,7 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
   const FinishOnSignal finish;
   WalkReport report =
       about_file(file.name, [&] { return walk_plan(file.graph, world_at, walk_options); });
-  if (!not_resumed.empty() && !report.success()) report.reason += "; planning on: " + not_resumed;
+  if (!report.success()) report.reason += going_on.why_not();
   progress.emplace("judging " + options.input);
   const Stopwatch judge_watch;
   std::optional<CheckReport> check;
@@ -278,10 +340,7 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
   progress.reset();
 
   Json json = report_json(report, options, field_s, judge_s);
-  if (options.replan) {
-    json["resumed"] = report.resumed;
-    json["resume_s"] = resume_s;
-  }
+  going_on.tell(report.resumed, json);
   if (eyes) eyes->tell(json);
   if (eyes && check) json["truth"] = truth_json(*check);
   if (options.json) {

@@ -562,15 +562,20 @@ namespace online_resumed_plan_h {
 struct Context {
   const Task task = started_task(load_scenario("standing_up", data_folder())).task;
   Graph graph, stopped_graph;
-  std::shared_ptr<const WorldSnapshot> world_now = task.world;
+  std::shared_ptr<const WorldSnapshot> world = task.world, world_now = world;
+  const std::vector<PlanSegment> segments;
+  const Motion planned = stances_motion({task.start}, {task.start_configuration});
   Context() {
     MotionPlan plan;
-    plan.motion = stances_motion({task.start}, {task.start_configuration});
+    plan.motion = planned;
     plan.motion.stances_only = false;
     stopped_graph = motion_graph(task, plan);
   }
 };
 }  // namespace online_resumed_plan_h
+namespace online_changing_obstacles_h {
+using Context = DriveContext;
+}  // namespace online_changing_obstacles_h
 namespace online_braking_h {
 struct Context : DriveContext {
   const OnlinePlan online_plan{graph};

@@ -7,10 +7,12 @@
 #include <locograph/planners/online/resumed_plan.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/judging.h>
+#include <locograph/planners/plan/plan_edges.h>
 #include <locograph/planners/posture/contact_projection.h>
 #include <locograph/plugins/static_balance/vertex_wrenches.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "common/sanitized.h"
 #include "planners/ball_in_the_way.h"
@@ -160,6 +162,47 @@ TEST_F(WalkOnLegs, IsPlannedOnFromWhereItHasStopped) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(executed); ++i) {
     EXPECT_EQ(whole.configurations[i], stopped.configurations[i]) << i;
   }
+}
+
+TEST_F(WalkOnLegs, WaitsUntilTheWayIsFree) {
+  Obstacle ball = in_the_way();
+  ball.vanishes_s = ball.appears_s + 6.0;
+  const std::vector<PlanSegment> segments = plan_of(graph_).segments;
+  double waits_s = 0.0;
+  std::size_t executed = 0;
+  WalkOptions options;
+  options.resume = [&](const Graph& stopped) -> std::optional<Graph> {
+    executed = plan_of(stopped).slots.size();
+    ResumedPlan waited = wait_for_free_way(stopped, planned(), segments, *task_, judging_.world);
+    EXPECT_TRUE(waited.success()) << waited.reason;
+    waits_s = waited.waits_s;
+    return std::move(waited.graph);
+  };
+  const WalkReport report = walk({ball}, options);
+  ASSERT_TRUE(report.success()) << report.reason;
+  EXPECT_EQ(report.resumed, 1);
+  const CheckReport report_of_judge = check();
+  EXPECT_TRUE(report_of_judge.feasible) << violation_text(report_of_judge.worst());
+  EXPECT_EQ(report_of_judge.ends->goals_reached, report_of_judge.ends->goals);
+  EXPECT_GT(waits_s, 0.5);
+  // The way is that of the plan, after the first steps.
+  constexpr std::size_t kSlow = 128;
+  const Motion whole = now();
+  const std::size_t left = planned().configurations.size() - executed - kSlow;
+  for (std::size_t i = 1; i <= left; ++i) {
+    EXPECT_EQ(whole.configurations.rbegin()[static_cast<long>(i) - 1],
+              planned().configurations.rbegin()[static_cast<long>(i) - 1]);
+  }
+  // Nothing to wait for: it stays, or the robot is elsewhere.
+  Graph stopped = motion_graph(*task_, *plan_);
+  cut_plan(stopped, plan_of(stopped), static_cast<int>(executed) - 1);
+  ball.vanishes_s = std::numeric_limits<double>::infinity();
+  judging_ = judging_of(task_);
+  World world = judging_.world->world();
+  world.obstacles = {ball};
+  const auto stays = std::make_shared<const WorldSnapshot>(world);
+  EXPECT_FALSE(wait_for_free_way(stopped, planned(), segments, *task_, stays).success());
+  EXPECT_FALSE(wait_for_free_way(stopped, planned(), segments, *task_, judging_.world).success());
 }
 
 TEST_F(WalkOnLegs, SaysWhyItIsNotPlannedOn) {
