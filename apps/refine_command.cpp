@@ -11,6 +11,7 @@
 #include <locograph/common/parse_number.h>
 #include <locograph/common/stop_signals.h>
 #include <locograph/planners/online/changing_obstacles.h>
+#include <locograph/planners/online/free_way.h>
 #include <locograph/planners/online/resumed_plan.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/seen_world.h>

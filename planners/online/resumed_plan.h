@@ -1,9 +1,8 @@
 #pragma once
-/// The rest of a plan from where the robot has come to rest: its way is blocked, or a place of a
-/// contact is taken. As it was planned, once what blocks it has gone by; else planned anew.
+/// The rest of a plan, planned anew from where the robot has come to rest: its way is blocked, or a
+/// place of a contact is taken.
 ///
-///     ResumedPlan resumed = wait_for_free_way(stopped_graph, planned, segments, task, world);
-///     if (!resumed.success()) resumed = resume_plan(stopped_graph, task, world_now, {.seed = 7});
+///     ResumedPlan resumed = resume_plan(stopped_graph, task, world_now, {.seed = 7});
 ///     if (resumed.success()) graph = std::move(*resumed.graph);
 ///
 /// Stances and motions are those of plan_motion() from the stance and the configuration that the
@@ -15,7 +14,6 @@
 #include <locograph/core/graph.h>
 #include <locograph/planners/answer/planner_answer.h>
 #include <locograph/planners/offline/stance/stance_plan.h>
-#include <locograph/planners/plan/plan.h>
 #include <locograph/planners/task/task.h>
 #include <locograph/world/world_snapshot.h>
 
@@ -29,7 +27,7 @@ namespace locograph {
 World world_at_rest(const World& world, double time_s);
 
 struct ResumedPlan : PlannerAnswer {
-  double waits_s = 0.0;  ///< that the robot stands before it goes on
+  double waits_s = 0.0;  ///< for a free way, see free_way.h
   /// With success: the plan as it was up to where it ended, in as many configurations, and the
   /// rest.
   std::optional<Graph> graph;
@@ -41,13 +39,5 @@ struct ResumedPlan : PlannerAnswer {
 ResumedPlan resume_plan(const Graph& stopped, const Task& task,
                         std::shared_ptr<const WorldSnapshot> world,
                         const StancePlannerOptions& options);
-
-/// The rest of a plan, whose motion and segments are given as they were before `stopped` ended:
-/// begun as soon as nothing that moves, appears or vanishes is in its way, within kStands_s of
-/// braking.h. It begins slowly, as a robot brakes. Not where the robot has left the planned way,
-/// nor where nothing in the world changes. Throws Error as plan_of() does.
-ResumedPlan wait_for_free_way(const Graph& stopped, const Motion& planned,
-                              const std::vector<PlanSegment>& segments, const Task& task,
-                              std::shared_ptr<const WorldSnapshot> world);
 
 }  // namespace locograph

@@ -32,6 +32,7 @@
 #include <locograph/planners/offline/timing/path_timing.h>
 #include <locograph/planners/online/braking.h>
 #include <locograph/planners/online/camera_walk.h>
+#include <locograph/planners/online/free_way.h>
 #include <locograph/planners/online/resumed_plan.h>
 #include <locograph/planners/online/sideways_detour.h>
 #include <locograph/planners/online/walk_ahead.h>
@@ -557,22 +558,34 @@ struct Context : DriveContext {
   WalkOptions options;
 };
 }  // namespace online_camera_walk_h
-namespace online_resumed_plan_h {
 /// COMAN+ at rest in its start, which is all of its plan.
-struct Context {
+struct StoppedContext {
   const Task task = started_task(load_scenario("standing_up", data_folder())).task;
+  const Motion executed = [this] {
+    Motion motion = stances_motion({task.start}, {task.start_configuration});
+    motion.stances_only = false;
+    motion.slopes = {Eigen::VectorXd::Zero(task.robot->robot->tangent_size())};
+    return motion;
+  }();
+  const Motion& planned = executed;
+  const std::vector<PlanSegment> segments;
+  MotionPlan rest;
   Graph graph, stopped_graph;
   std::shared_ptr<const WorldSnapshot> world = task.world, world_now = world;
-  const std::vector<PlanSegment> segments;
-  const Motion planned = stances_motion({task.start}, {task.start_configuration});
-  Context() {
-    MotionPlan plan;
-    plan.motion = planned;
-    plan.motion.stances_only = false;
-    stopped_graph = motion_graph(task, plan);
+  StoppedContext() {
+    rest.motion = executed;
+    stopped_graph = motion_graph(task, rest);
   }
 };
+namespace online_resumed_plan_h {
+using Context = StoppedContext;
 }  // namespace online_resumed_plan_h
+namespace online_free_way_h {
+using Context = StoppedContext;
+}  // namespace online_free_way_h
+namespace online_continuation_h {
+using Context = StoppedContext;
+}  // namespace online_continuation_h
 namespace online_changing_obstacles_h {
 using Context = DriveContext;
 }  // namespace online_changing_obstacles_h

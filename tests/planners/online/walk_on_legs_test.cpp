@@ -4,6 +4,7 @@
 #include <locograph/planners/offline/motion/motion_graph.h>
 #include <locograph/planners/offline/motion/motion_planner.h>
 #include <locograph/planners/offline/stance/stance_graph.h>
+#include <locograph/planners/online/free_way.h>
 #include <locograph/planners/online/resumed_plan.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/judging.h>
