@@ -75,8 +75,16 @@ class LaterRest {
 
   Motion slowed(int steps) const {
     Motion then;
-    const int stance = planned_.stance_from[static_cast<std::size_t>(from_)];
-    then.stances.assign(planned_.stances.begin() + stance, planned_.stances.end());
+    // In the order in which it comes to them.
+    std::vector<int> numbers(planned_.stances.size(), -1);
+    const auto number_of = [&](int stance) {
+      int& number = numbers.at(static_cast<std::size_t>(stance));
+      if (number < 0) {
+        number = static_cast<int>(then.stances.size());
+        then.stances.push_back(planned_.stances[static_cast<std::size_t>(stance)]);
+      }
+      return number;
+    };
     double before = 0.0;
     for (std::size_t i = static_cast<std::size_t>(from_); i < planned_.configurations.size(); ++i) {
       const int step = static_cast<int>(i) - from_;
@@ -93,7 +101,7 @@ class LaterRest {
       }
       before = share;
       then.configurations.push_back(planned_.configurations[i]);
-      then.stance_from.push_back(planned_.stance_from[i] - stance);
+      then.stance_from.push_back(number_of(planned_.stance_from[i]));
       if (!planned_.wrenches.empty()) then.wrenches.push_back(planned_.wrenches[i]);
     }
     return then;
@@ -110,7 +118,9 @@ class LaterRest {
       const double from_s = coarse.time_s[i - 1], to_s = coarse.time_s[i];
       const double planned_s = planned_.time_s[static_cast<std::size_t>(from_) + i] -
                                planned_.time_s[static_cast<std::size_t>(from_) + i - 1];
-      const int parts = std::max(1, static_cast<int>(std::round((to_s - from_s) / planned_s)));
+      constexpr double kMostParts = 1000.0;
+      const double slower = planned_s > 0.0 ? std::round((to_s - from_s) / planned_s) : 1.0;
+      const int parts = static_cast<int>(std::clamp(slower, 1.0, kMostParts));
       for (int part = 1; part <= parts; ++part) {
         const double share = static_cast<double>(part) / parts;
         times_s.push_back(part == parts ? to_s : from_s + share * (to_s - from_s));
