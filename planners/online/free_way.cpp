@@ -109,40 +109,43 @@ class LaterRest {
 
   /// The first steps, none longer than planned ones. All are in one stance.
   Motion sampled(const Motion& coarse, int steps) const {
-    Motion begins = part_of(MotionCurve(robot_, coarse), 0, steps);
-    std::vector<double> times_s = {0.0};
-    std::vector<StanceWrenches> wrenches;
-    if (!coarse.wrenches.empty()) wrenches.push_back(coarse.wrenches.front());
-    for (int step = 1; step <= steps; ++step) {
-      const auto i = static_cast<std::size_t>(step);
-      const double from_s = coarse.time_s[i - 1], to_s = coarse.time_s[i];
+    const MotionCurve curve(robot_, coarse);
+    Motion begins;
+    begins.stances = coarse.stances;
+    const auto add_vertex = [&](std::size_t i) {
+      begins.time_s.push_back(coarse.time_s[i]);
+      begins.configurations.push_back(coarse.configurations[i]);
+      begins.slopes.push_back(curve.slope(static_cast<int>(i)));
+      begins.stance_from.push_back(coarse.stance_from[i]);
+      if (!coarse.wrenches.empty()) begins.wrenches.push_back(coarse.wrenches[i]);
+    };
+    add_vertex(0);
+    for (int to = 1; to <= steps; ++to) {
+      const auto i = static_cast<std::size_t>(to);
+      const double from_s = coarse.time_s[i - 1], duration_s = coarse.time_s[i] - from_s;
       const double planned_s = planned_.time_s[static_cast<std::size_t>(from_) + i] -
                                planned_.time_s[static_cast<std::size_t>(from_) + i - 1];
       constexpr double kMostParts = 1000.0;
-      const double slower = planned_s > 0.0 ? std::round((to_s - from_s) / planned_s) : 1.0;
+      const double slower = planned_s > 0.0 ? std::round(duration_s / planned_s) : 1.0;
       const int parts = static_cast<int>(std::clamp(slower, 1.0, kMostParts));
-      for (int part = 1; part <= parts; ++part) {
+      const CurveStep step = curve.step(to - 1);
+      for (int part = 1; part < parts; ++part) {
         const double share = static_cast<double>(part) / parts;
-        times_s.push_back(part == parts ? to_s : from_s + share * (to_s - from_s));
+        begins.time_s.push_back(from_s + share * duration_s);
+        step.configuration(share, begins.configurations.emplace_back());
+        begins.slopes.push_back(step.slope(share));
+        begins.stance_from.push_back(coarse.stance_from[i - 1]);
         if (coarse.wrenches.empty()) continue;
+        StanceWrenches& between = begins.wrenches.emplace_back(coarse.wrenches[i - 1]);
         // The last ones may be those of another stance.
-        StanceWrenches between = coarse.wrenches[part == parts ? i : i - 1];
         const StanceWrenches& next = coarse.wrenches[i];
-        for (std::size_t c = 0; c < between.size() && part < parts && step < steps; ++c) {
+        for (std::size_t c = 0; c < between.size() && to < steps; ++c) {
           between[c] += share * (next[c] - between[c]);
         }
-        wrenches.push_back(std::move(between));
       }
+      add_vertex(i);
     }
-    if (steps == 0) return with(begins, wrenches);
-    begins = resampled(MotionCurve(robot_, begins), times_s);
-    begins.stance_from.back() = coarse.stance_from[static_cast<std::size_t>(steps)];
-    return with(begins, wrenches);
-  }
-
-  static Motion with(Motion motion, const std::vector<StanceWrenches>& wrenches) {
-    motion.wrenches = wrenches;
-    return motion;
+    return begins;
   }
 
   const Robot& robot_;
