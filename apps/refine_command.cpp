@@ -18,7 +18,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -225,7 +224,8 @@ class GoingOn {
     if (waits_) {
       resumed = wait_for_free_way(stopped, planned_, segments_, *judging_.task, judging_.world);
       if (resumed.success()) {
-        waits_s_.push_back(resumed.waits_s);
+        ++waited_;
+        waited_s_ += resumed.waits_s;
       } else {
         why_not_ = "; waiting: " + resumed.reason;
       }
@@ -249,13 +249,12 @@ class GoingOn {
   }
 
   void tell(int resumed, Json& json) const {
-    const int waits = static_cast<int>(waits_s_.size());
     if (waits_) {
-      json["waits"] = waits;
-      json["waits_s"] = std::accumulate(waits_s_.begin(), waits_s_.end(), 0.0);
+      json["waits"] = waited_;
+      json["waits_s"] = waited_s_;
     }
     if (options_.replan) {
-      json["resumed"] = resumed - waits;
+      json["resumed"] = resumed - waited_;
       json["resume_s"] = resume_s_;
     }
   }
@@ -266,8 +265,8 @@ class GoingOn {
   Motion planned_;
   std::vector<PlanSegment> segments_;
   bool waits_ = false;
-  std::vector<double> waits_s_;
-  double resume_s_ = 0.0;
+  int waited_ = 0;
+  double waited_s_ = 0.0, resume_s_ = 0.0;
   std::string why_not_;
 };
 

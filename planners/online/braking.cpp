@@ -92,14 +92,16 @@ Plan Braking::part(int first, int last) const {
   return plan;
 }
 
-/// Whether the robot may stand there for kStands_s, for the judge and for the window's edges.
+/// Whether the robot may stand there for kStands_s, for the judge and for the window's edges: it
+/// may where nothing is known to change.
 bool Braking::may_stay(int at) const {
   if (!stays_ || !verify_) return true;
   constexpr double kStep_s = 0.1, kApart_m = 5e-3;
   ChangingObstacles obstacles(*plan_.plan().robot, plan_.world().world());
+  if (!obstacles.any()) return true;
   const double time_s = vertex(at).time_s;
   const std::vector<Eigen::Vector3d> centres = obstacles.centres(vertex(at).state);
-  for (double after_s = 0.0; obstacles.any() && after_s <= kStands_s; after_s += kStep_s) {
+  for (double after_s = 0.0; after_s <= kStands_s; after_s += kStep_s) {
     if (!obstacles.keep_away(centres, time_s + after_s, kApart_m)) return false;
   }
   Motion still = motion_of(graph_, plan_.plan(), at, at);
