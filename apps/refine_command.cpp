@@ -290,6 +290,9 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
   check_not_input(options.output, files_of(file));
   const Judging judging = judging_of(file, options.world);
   if (options.replan) check_replan(file, judging, options.perception);
+  if (!options.replan && parser.given("--replan-timeout")) {
+    throw UsageError("--replan-timeout: not without --replan");
+  }
   const Stopwatch watch;
   std::optional<RefinePerception> eyes;
   std::shared_ptr<const WorldSnapshot> seen;

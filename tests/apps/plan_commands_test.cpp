@@ -401,6 +401,8 @@ TEST(PlanCommands, RefinePlansOnWhereARobotOnLegsHadToStop) {
   EXPECT_EQ(stopped["resumed"], 0);
   EXPECT_NE(stopped["reason"].get<std::string>().find("; planning on: "), std::string::npos);
   EXPECT_EQ(runner.run("check stopped.g2o").exit_code, 0);
+  EXPECT_EQ(runner.run("refine plan.g2o --replan-timeout 3 -o alone.g2o").exit_code, 2);
+  EXPECT_FALSE(runner.exists("alone.g2o"));
 }
 
 TEST(PlanCommands, ARefinedPlanPassesTheBoxAndTakesItsWorldAlong) {
