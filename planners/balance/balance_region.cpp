@@ -31,17 +31,15 @@ class CentreOfMassProgramme {
     build(centre_of_mass);
   }
 
-  bool is_feasible() { return programme_.dual() == LinearAnswer::kOptimal; }
+  bool is_feasible() { return programme_.solve() == LinearAnswer::kOptimal; }
 
   /// The furthest point along a direction; false where nothing balances.
   bool furthest(const Eigen::Vector2d& direction, Eigen::Vector2d& point) {
     const int x = static_cast<int>(columns_.size());
-    programme_.set_cost(x, -direction.x());
-    programme_.set_cost(x + 1, -direction.y());
+    programme_.cost().segment<2>(x) = -direction;
     // From the last direction's corner.
-    if (programme_.primal() != LinearAnswer::kOptimal) return false;
-    const double* solution = programme_.solution().data();
-    point = origin_.head<2>() + Eigen::Vector2d(solution[x], solution[x + 1]);
+    if (programme_.solve() != LinearAnswer::kOptimal) return false;
+    point = origin_.head<2>() + programme_.solution().segment<2>(x);
     return point.allFinite();
   }
 
@@ -68,28 +66,31 @@ class CentreOfMassProgramme {
   }
 
   void build(const std::optional<Eigen::Vector2d>& centre_of_mass) {
-    LinearColumns columns;
-    for (const Column& column : columns_) {
-      for (int i = 0; i < 6; ++i) columns.put(i, column.wrench[i]);
-      if (column.limit >= 0) columns.put(6 + column.limit, 1.0);
-      columns.end(column.lower, column.upper);
+    const int forces = static_cast<int>(columns_.size());
+    programme_.resize(6 + limits_, forces + (centre_of_mass ? 0 : 2));
+    Eigen::MatrixXd& matrix = programme_.matrix();
+    for (int c = 0; c < forces; ++c) {
+      const Column& column = columns_[static_cast<std::size_t>(c)];
+      matrix.col(c).head<6>() = column.wrench;
+      if (column.limit >= 0) matrix(6 + column.limit, c) = 1.0;
+      programme_.bound_column(c, column.lower, column.upper);
     }
+    for (int i = 0; i < 6; ++i) programme_.bound_row(i, 0.0, 0.0);
+    programme_.bound_row(2, 1.0, 1.0);
     // The weight at (x, y): moment (x, y, .) x (0, 0, -1) = (-y, x, 0).
     if (!centre_of_mass) {
-      columns.put(4, 1.0);
-      columns.end(-kNoBound, kNoBound);
-      columns.put(3, -1.0);
-      columns.end(-kNoBound, kNoBound);
+      matrix(4, forces) = 1.0;
+      matrix(3, forces + 1) = -1.0;
+      for (const int c : {forces, forces + 1}) programme_.bound_column(c, -kNoBound, kNoBound);
+    } else {
+      const Eigen::Vector2d from_origin = *centre_of_mass - origin_.head<2>();
+      programme_.bound_row(3, from_origin.y(), from_origin.y());
+      programme_.bound_row(4, -from_origin.x(), -from_origin.x());
     }
-    std::vector<double> row_lower(6, 0.0), row_upper(6, 0.0);
-    row_lower[2] = row_upper[2] = 1.0;
-    if (centre_of_mass) {
-      row_lower[3] = row_upper[3] = centre_of_mass->y() - origin_.y();
-      row_lower[4] = row_upper[4] = origin_.x() - centre_of_mass->x();
+    for (int i = 0; i < limits_; ++i) {
+      programme_.bound_row(6 + i, least_[static_cast<std::size_t>(i)],
+                           most_[static_cast<std::size_t>(i)]);
     }
-    row_lower.insert(row_lower.end(), least_.begin(), least_.end());
-    row_upper.insert(row_upper.end(), most_.begin(), most_.end());
-    programme_.load(columns, row_lower, row_upper);
   }
 
   double weight_N_, margin_;
@@ -97,8 +98,7 @@ class CentreOfMassProgramme {
   std::vector<Column> columns_;
   std::vector<double> least_, most_;
   int limits_ = 0;
-  /// So small a programme does not stall without perturbation.
-  LinearProgramme programme_{LinearProgramme::Perturbation::kNone};
+  LinearProgramme programme_;
 };
 
 /// Appends the corners between two, counter-clockwise.

@@ -76,7 +76,7 @@ LeastWrenches::LeastWrenches(const Robot& robot, std::span<const BearingContact>
                                         : 1.0 / (ray.upper * ray.upper);
       qp_.hessian()(unknown, unknown) = weight;
       qp_.row(kBaseRows + unknown)[unknown] = 1.0;
-      const bool bounded = ray.upper < std::numeric_limits<double>::max();
+      const bool bounded = std::isfinite(ray.upper);
       qp_.bound(kBaseRows + unknown, ray.lower, bounded ? ray.upper : kUnbounded);
       if (most >= 0.0) qp_.row(sum)[unknown] = 1.0;
       ++unknown;

@@ -1,44 +1,30 @@
 #pragma once
-/// A linear programme, solved by the simplex algorithm: the least cost . x with x and A x within
+/// A linear programme of some tens of rows and columns: the least cost . x with x and A x within
 /// bounds.
 ///
-///     LinearColumns columns;                       // the most of x + y, each at most 2 ...
-///     for (const int row : {0, 1}) {
-///       columns.put(row, 1.0);
-///       columns.put(2, row == 0 ? 1.0 : 2.0);      // ... and x + 2 y at most 3
-///       columns.end(0.0, kNoBound, -1.0);
+///     LinearProgramme programme;                 // the most of x + y, each at most 2 ...
+///     programme.resize(1, 2);
+///     for (const int column : {0, 1}) {
+///       programme.matrix()(0, column) = 1.0 + column;
+///       programme.bound_column(column, 0.0, 2.0);
+///       programme.cost()[column] = -1.0;
 ///     }
-///     LinearProgramme programme(LinearProgramme::Perturbation::kNone);
-///     programme.load(columns, {-kNoBound, -kNoBound, -kNoBound}, {2.0, 2.0, 3.0});
-///     if (programme.dual() == LinearAnswer::kOptimal) std::cout << programme.solution()[0] <<
-///     '\n';
+///     programme.bound_row(0, -kNoBound, 3.0);    // ... and x + 2 y at most 3
+///     if (programme.solve() == LinearAnswer::kOptimal) std::cout << programme.solution() << '\n';
 ///
-/// Numbers are taken as they are: rows and columns should be of the order of one. Feasible and
-/// optimal to 1e-9. Thread-safety: one thread at a time.
+/// The simplex algorithm with bounded variables on a dense dictionary, first dual, then primal, so
+/// that it starts from any corner (Chvátal, Linear Programming, ch. 3, 8 and 10; ratio tests of
+/// Harris 1973). Numbers are taken as they are: rows and columns should be of the order of one.
+/// Feasible and optimal to 1e-9, checked by the matrix that was given. Allocates only where it
+/// grows. Thread-safety: one thread at a time.
 
+#include <Eigen/Core>
 #include <limits>
-#include <memory>
-#include <span>
 #include <vector>
-
-class ClpSimplex;
 
 namespace locograph {
 
-inline constexpr double kNoBound = std::numeric_limits<double>::max();
-
-/// The unknowns, one after another.
-class LinearColumns {
- public:
-  /// An entry of the column that is not ended yet; 0 is left out.
-  void put(int row, double value);
-  void end(double lower, double upper, double cost = 0.0);
-
- private:
-  friend class LinearProgramme;
-  std::vector<int> starts_ = {0}, rows_;
-  std::vector<double> entries_, lower_, upper_, costs_;
-};
+inline constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 enum class LinearAnswer {
   kOptimal,
@@ -48,32 +34,47 @@ enum class LinearAnswer {
 
 class LinearProgramme {
  public:
-  /// Whether bounds are moved a little while they are degenerate.
-  enum class Perturbation { kNone, kAutomatic };
+  /// All zero: columns from 0 up, rows without bounds, no costs. The last corner is where the next
+  /// solve() starts, if it is as large.
+  void resize(int rows, int columns);
 
-  explicit LinearProgramme(Perturbation perturbation);
-  ~LinearProgramme();
-  LinearProgramme(LinearProgramme&&) noexcept;
+  Eigen::MatrixXd& matrix();  ///< rows x columns
+  Eigen::VectorXd& cost() { return cost_; }
+  void bound_column(int column, double lower, double upper);
+  void bound_row(int row, double lower, double upper);
 
-  /// The bounds are those of A x, row by row.
-  void load(const LinearColumns& columns, const std::vector<double>& lower,
-            const std::vector<double>& upper);
-  void set_cost(int column, double cost);
-  /// Those of a column that put() was given, in its order. They may change, but not become 0.
-  std::span<double> entries(int column);
-
-  LinearAnswer primal();  ///< from the last corner
-  LinearAnswer dual();    ///< from the corner where all rows are free
-  /// From the corner that was the best one of the programme before, if that was as large.
-  LinearAnswer dual_from_before();
-  /// Of the last run.
-  double value() const;
-  std::span<const double> solution() const;  ///< of each column
-  std::span<const double> prices() const;    ///< of each row: what the cost gains with its bound
+  /// From the last corner; at first from where all rows are free.
+  LinearAnswer solve();
+  /// Of the last solve(), where it is optimal.
+  double value() const { return cost_.dot(solution_); }
+  const Eigen::VectorXd& solution() const { return solution_; }
+  const Eigen::VectorXd& prices() const { return prices_; }  ///< of rows: d value / d bound
 
  private:
-  std::unique_ptr<ClpSimplex> simplex_;
-  std::vector<unsigned char> corner_;  ///< of the programme before; empty: none
+  /// Variables: the columns, then the rows. Those that are not basic are at one of their bounds.
+  void start_afresh();
+  void build();
+  void evaluate();
+  void find_slopes();
+  double rest_at(int variable) const;
+  bool feasible() const;
+  bool make_dual_feasible();
+  LinearAnswer run();
+  LinearAnswer dual();
+  LinearAnswer primal();
+  void pivot(int row, int place);
+  bool verified();
+
+  int rows_ = 0, columns_ = 0;
+  Eigen::MatrixXd matrix_;
+  Eigen::VectorXd cost_, lower_, upper_;  ///< bounds: of all variables
+  std::vector<int> basic_, free_;         ///< variables: by row, by column of the dictionary
+  std::vector<bool> is_basic_, at_upper_;
+  bool built_ = false;
+  Eigen::MatrixXd dictionary_;                       ///< basic = dictionary free
+  Eigen::VectorXd basic_value_, free_value_, slope_;  ///< slope: d cost / d free
+  Eigen::VectorXd column_, row_;
+  Eigen::VectorXd solution_, prices_;
 };
 
 }  // namespace locograph

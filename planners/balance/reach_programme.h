@@ -35,7 +35,7 @@ class ReachProgramme {
  private:
   Eigen::VectorXd middle_;
   int way_;  ///< the column of t
-  LinearProgramme programme_{LinearProgramme::Perturbation::kNone};
+  LinearProgramme programme_;
 };
 
 }  // namespace locograph

@@ -60,48 +60,39 @@ double TorqueProgramme::solve(const RobotState& state, Eigen::VectorXd& gradient
     return effort_scale_ * robot_.active_joint(joints_[static_cast<std::size_t>(i)]).max_effort;
   };
   // Columns: the rays, then t.
-  LinearColumns columns;
+  programme_.resize(rows, rays + 1);
+  Eigen::MatrixXd& matrix = programme_.matrix();
+  matrix.topLeftCorner(base, rays) = columns_.topRows(base) / weight_N_;
+  matrix.col(rays).segment(base, 2 * torques).setConstant(-1.0);
+  programme_.cost()[rays] = 1.0;
   for (int r = 0; r < rays; ++r) {
     const Ray& ray = rays_[static_cast<std::size_t>(r)];
-    for (int i = 0; i < base; ++i) columns.put(i, columns_(i, r) / weight_N_);
-    for (int i = 0; i < torques; ++i) {
-      const double share = columns_(base + joints_[static_cast<std::size_t>(i)], r) / limit(i);
-      columns.put(base + 2 * i, -share);
-      columns.put(base + 2 * i + 1, share);
-    }
     if (most_[static_cast<std::size_t>(ray.contact)] >= 0.0) {
-      columns.put(base + 2 * torques + ray.contact, 1.0);
+      matrix(base + 2 * torques + ray.contact, r) = 1.0;
     }
-    columns.end(ray.lower, ray.upper);
+    programme_.bound_column(r, ray.lower, ray.upper);
   }
-  for (int i = 0; i < 2 * torques; ++i) columns.put(base + i, -1.0);
-  columns.end(0.0, kNoBound, 1.0);
-  std::vector<double> row_lower(static_cast<std::size_t>(rows), -kNoBound);
-  std::vector<double> row_upper(static_cast<std::size_t>(rows), kNoBound);
   for (int i = 0; i < base; ++i) {
-    const std::size_t k = static_cast<std::size_t>(i);
-    row_lower[k] = row_upper[k] = gravity_[i] / weight_N_;
+    programme_.bound_row(i, gravity_[i] / weight_N_, gravity_[i] / weight_N_);
   }
   for (int i = 0; i < torques; ++i) {
-    const double share = gravity_[base + joints_[static_cast<std::size_t>(i)]] / limit(i);
-    const std::size_t k = static_cast<std::size_t>(base + 2 * i);
-    row_upper[k] = -share;
-    row_upper[k + 1] = share;
+    const int joint = base + joints_[static_cast<std::size_t>(i)];
+    const auto shares = columns_.row(joint) / limit(i);
+    matrix.row(base + 2 * i).head(rays) = -shares;
+    matrix.row(base + 2 * i + 1).head(rays) = shares;
+    const double share = gravity_[joint] / limit(i);
+    programme_.bound_row(base + 2 * i, -kNoBound, -share);
+    programme_.bound_row(base + 2 * i + 1, -kNoBound, share);
   }
   for (int c = 0; c < limits; ++c) {
-    const auto row = static_cast<std::size_t>(base + 2 * torques + c);
     const double most = most_[static_cast<std::size_t>(c)];
     const double least = least_[static_cast<std::size_t>(c)];
-    if (most >= 0.0) row_upper[row] = most;
-    if (least > 0.0) row_lower[row] = least;
+    programme_.bound_row(base + 2 * torques + c, least > 0.0 ? least : -kNoBound,
+                         most >= 0.0 ? most : kNoBound);
   }
-  programme_.load(columns, row_lower, row_upper);
-  LinearAnswer answer = programme_.dual_from_before();
-  if (answer == LinearAnswer::kUnsolved) answer = programme_.primal();
-  if (answer != LinearAnswer::kOptimal) return std::numeric_limits<double>::infinity();
+  if (programme_.solve() != LinearAnswer::kOptimal) return std::numeric_limits<double>::infinity();
 
-  const double* solution = programme_.solution().data();
-  const double* prices = programme_.prices().data();
+  const Eigen::VectorXd &solution = programme_.solution(), &prices = programme_.prices();
   std::vector<PointWrench> wrenches;
   for (int r = 0; r < rays; ++r) {
     if (solution[r] == 0.0) continue;

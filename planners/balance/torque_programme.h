@@ -62,7 +62,7 @@ class TorqueProgramme {
   Eigen::MatrixXd columns_;
   Eigen::VectorXd gravity_;
   Eigen::MatrixXd derivative_;
-  LinearProgramme programme_{LinearProgramme::Perturbation::kAutomatic};
+  LinearProgramme programme_;
   int heaviest_ = -1;
 };
 

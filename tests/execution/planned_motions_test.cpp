@@ -93,19 +93,17 @@ std::vector<std::pair<double, double>> certified_range(const RobotState& state,
   for (std::size_t c = 0; c < stance.contacts.size(); ++c) {
     double bounds[2];
     for (const int sign : {1, -1}) {
-      LinearColumns columns;
+      LinearProgramme programme;
+      programme.resize(6, static_cast<int>(rays.size()));
       for (std::size_t r = 0; r < rays.size(); ++r) {
         const BearingRay& ray = rays[r];
         const Eigen::Vector3d arm = ray.at - state.center_of_mass();
-        const Eigen::Vector3d moment = ray.moment + arm.cross(ray.force);
-        for (int k = 0; k < 3; ++k) columns.put(k, ray.force[k]);
-        for (int k = 0; k < 3; ++k) columns.put(3 + k, moment[k]);
-        columns.end(0.0, kNoBound, of[r] == c ? sign : 0.0);
+        const auto column = static_cast<Eigen::Index>(r);
+        programme.matrix().col(column) << ray.force, ray.moment + arm.cross(ray.force);
+        programme.cost()[column] = of[r] == c ? sign : 0.0;
       }
-      LinearProgramme programme(LinearProgramme::Perturbation::kNone);
-      const std::vector<double> weight = {0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
-      programme.load(columns, weight, weight);
-      EXPECT_EQ(programme.primal(), LinearAnswer::kOptimal);
+      for (int i = 0; i < 6; ++i) programme.bound_row(i, i == 2 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0);
+      EXPECT_EQ(programme.solve(), LinearAnswer::kOptimal);
       bounds[sign < 0] = sign * programme.value() * weight_N;
     }
     ranges.emplace_back(bounds[0], bounds[1]);
