@@ -55,7 +55,8 @@ endfunction()
 # locograph_test(NAME SOURCES... LINK targets... [PRECOMPILE headers...] [SHARDS n]): one GoogleTest
 # program. Of a large one name the headers that most of its files need; the others share what
 # gtest_instances has precompiled. For ctest it is one test, a long one n of them, not one for each
-# case: a process for each of thousands of cases takes longer than the cases.
+# case: a process for each of thousands of cases takes longer than the cases. Those that
+# LOCOGRAPH_LEAVE_OUT_TESTS names are neither built with everything nor known to ctest.
 function(locograph_test name)
   cmake_parse_arguments(arg "" "SHARDS" "SOURCES;LINK;PRECOMPILE" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
@@ -72,6 +73,10 @@ function(locograph_test name)
   endif()
   set_target_properties(${name} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests/bin)
+  if(name IN_LIST LOCOGRAPH_LEAVE_OUT_TESTS)
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+    return()
+  endif()
   if(NOT arg_SHARDS)
     set(arg_SHARDS 1)
   endif()
