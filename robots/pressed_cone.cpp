@@ -78,8 +78,8 @@ std::vector<BearingRay> pressed_rays(const Contact& contact,
       // The edges of the pyramid lie on the cone.
       const double angle = (k + 0.5) * 2.0 * std::numbers::pi / kRayFacets;
       const Eigen::Vector3d along(friction * std::cos(angle), friction * std::sin(angle), 1.0);
-      rays.push_back(
-          {at, axes * along, Eigen::Vector3d::Zero(), 0.0, std::numeric_limits<double>::infinity()});
+      rays.push_back({at, axes * along, Eigen::Vector3d::Zero(), 0.0,
+                      std::numeric_limits<double>::infinity()});
     }
   }
   return rays;

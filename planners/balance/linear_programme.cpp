@@ -266,8 +266,7 @@ LinearAnswer LinearProgramme::primal() {
       continue;
     }
     const int leaving = basic_[static_cast<std::size_t>(row)];
-    const double bound =
-        way * dictionary_(row, entering) > 0.0 ? upper_[leaving] : lower_[leaving];
+    const double bound = way * dictionary_(row, entering) > 0.0 ? upper_[leaving] : lower_[leaving];
     basic_value_ += way * step * dictionary_.col(entering);
     const double value = free_value_[entering] + way * step;
     pivot(row, entering);

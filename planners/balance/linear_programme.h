@@ -71,7 +71,7 @@ class LinearProgramme {
   std::vector<int> basic_, free_;         ///< variables: by row, by column of the dictionary
   std::vector<bool> is_basic_, at_upper_;
   bool built_ = false;
-  Eigen::MatrixXd dictionary_;                       ///< basic = dictionary free
+  Eigen::MatrixXd dictionary_;                        ///< basic = dictionary free
   Eigen::VectorXd basic_value_, free_value_, slope_;  ///< slope: d cost / d free
   Eigen::VectorXd column_, row_;
   Eigen::VectorXd solution_, prices_;
