@@ -108,7 +108,8 @@ class MotionSearch {
   /// Why the last one was refused; empty: none was.
   const std::string& refused_reason() const { return refused_reason_; }
 
-  void keep(std::size_t segments) { ways_.resize(std::min(segments, ways_.size())); }
+  void remember() { remembered_ = ways_; }
+  void go_back_to_remembered() { ways_ = remembered_; }
 
  private:
   std::size_t refuse(std::size_t segment) {
@@ -506,7 +507,7 @@ class MotionSearch {
   MotionAssembly assembly_;
   double smoothing_s_;
   std::vector<std::unique_ptr<TriedSegment>> known_;
-  std::vector<TriedSegment*> ways_;
+  std::vector<TriedSegment*> ways_, remembered_;
   std::string refused_reason_;
 };
 
@@ -529,7 +530,7 @@ MotionPlan plan_motion(const Task& task, const StancePlannerOptions& stances,
       search->refuse(refused, "no motion for one of its stances");
     } else {
       search->replace(std::move(way.configurations));
-      search->take();
+      if (search->take()) motions.remember();
     }
   }
   plan.stances = search->result();
@@ -540,7 +541,7 @@ MotionPlan plan_motion(const Task& task, const StancePlannerOptions& stances,
       plan.reason += "; the last motion that was not found: " + motions.refused_reason();
     }
     plan.report = {};
-    motions.keep(search->taken().changes());
+    motions.go_back_to_remembered();
     motions.assemble(search->taken());
   }
   plan.statistics.iterations = plan.stances.statistics.iterations;
