@@ -93,30 +93,6 @@ TEST(StanceSearch, CandidatesLeadToOneGoalAfterTheOther) {
   EXPECT_TRUE(search->result().success());
 }
 
-/// How balls have rolled until a goal may keep the robot from going on.
-TEST(StanceSearch, ReachesAGoalOnceMoreWhereTheNextOneIsNotAndKeepsWhatLedFurthest) {
-  Task task = standing_up();
-  Stance beyond = task.goals.back();
-  for (Contact& contact : beyond.contacts) contact.position.x() += 40.0;
-  task.goals.push_back(beyond);
-  StancePlannerOptions options;
-  options.max_transitions = 3000;
-  const auto search = begun(task, options);
-  int first_goals = 0;
-  while (search->next()) {
-    EXPECT_EQ(search->result().goals_reached, 0);
-    EXPECT_TRUE(search->take());
-    ++first_goals;
-  }
-  EXPECT_GT(first_goals, 1);
-  const StancePlan plan = search->result();
-  EXPECT_FALSE(plan.success());
-  EXPECT_EQ(plan.goals_reached, 1);
-  EXPECT_NE(plan.reason.find("goal 2 of 2 is not reached"), std::string::npos) << plan.reason;
-  EXPECT_EQ(plan.stances.size(), search->taken().footings.size());
-  EXPECT_EQ(search->taken().footings.back(), search->space().footing(task.goals.front()));
-}
-
 TEST(StanceSearch, APlanIsTheFirstCandidates) {
   const auto search = begun(standing_up());
   while (search->next()) search->take();

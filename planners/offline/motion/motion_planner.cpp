@@ -108,8 +108,7 @@ class MotionSearch {
   /// Why the last one was refused; empty: none was.
   const std::string& refused_reason() const { return refused_reason_; }
 
-  void remember() { remembered_ = ways_; }
-  void go_back_to_remembered() { ways_ = remembered_; }
+  void keep(std::size_t segments) { ways_.resize(std::min(segments, ways_.size())); }
 
  private:
   std::size_t refuse(std::size_t segment) {
@@ -507,7 +506,7 @@ class MotionSearch {
   MotionAssembly assembly_;
   double smoothing_s_;
   std::vector<std::unique_ptr<TriedSegment>> known_;
-  std::vector<TriedSegment*> ways_, remembered_;
+  std::vector<TriedSegment*> ways_;
   std::string refused_reason_;
 };
 
@@ -530,7 +529,7 @@ MotionPlan plan_motion(const Task& task, const StancePlannerOptions& stances,
       search->refuse(refused, "no motion for one of its stances");
     } else {
       search->replace(std::move(way.configurations));
-      if (search->take()) motions.remember();
+      search->take();
     }
   }
   plan.stances = search->result();
@@ -541,7 +540,7 @@ MotionPlan plan_motion(const Task& task, const StancePlannerOptions& stances,
       plan.reason += "; the last motion that was not found: " + motions.refused_reason();
     }
     plan.report = {};
-    motions.go_back_to_remembered();
+    motions.keep(search->taken().changes());
     motions.assemble(search->taken());
   }
   plan.statistics.iterations = plan.stances.statistics.iterations;

@@ -2,17 +2,10 @@
 #include <locograph/planners/offline/stance/stance_search.h>
 #include <locograph/planners/offline/stance/stance_tree.h>
 
-#include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace locograph {
 namespace {
-
-/// Transitions that are tried for a goal until the one before is reached once more; how many more
-/// the next time.
-constexpr double kUntilBack = 1000.0, kLonger = 1.15;
-constexpr int kMostDeadEnds = 5;
 
 const Task& require_sound(const Task& task, const StancePlannerOptions& options) {
   options.validate();
@@ -28,60 +21,28 @@ StanceSearch::StanceSearch(const Task& task, const StancePlannerOptions& options
     : task_(require_sound(task, options)),
       options_(options),
       space_(task_, options_),
-      judge_(task.robot->robot, task.world),
-      changes_before_(task.goals.size(), 0),
-      tried_(task.goals.size(), 0),
-      most_transitions_(kUntilBack) {
+      judge_(task.robot->robot, task.world) {
   taken_.append(space_.footing(task.start), task.start_configuration);
   if (!task.goals.empty()) begin_goal();
 }
 
 void StanceSearch::begin_goal() {
-  const auto goal = static_cast<std::size_t>(result_.goals_reached);
-  next_goal_ = space_.footing(task_.goals[goal]);
+  next_goal_ = space_.footing(task_.goals[static_cast<std::size_t>(result_.goals_reached)]);
   first_node_ = result_.tree.size();
   result_.best_contacts = 0;
   result_.best = {};
   refused_ = 0;
-  changes_before_[goal] = taken_.changes();
-  int most = std::numeric_limits<int>::max();
-  if (options_.max_transitions > 0) most = options_.max_transitions - tried_[goal];
-  if (goal > 0) most = std::min(most, static_cast<int>(most_transitions_));
-  space_.begin_goal(most);
+  space_.begin_goal();
   candidate_ = taken_;
 }
 
-void StanceSearch::end_goal() {
-  tried_[static_cast<std::size_t>(result_.goals_reached)] += space_.transitions_tried();
-}
-
-/// To the goal before the one that was not reached; false: there is none, or nothing is left to
-/// try.
-bool StanceSearch::go_back() {
-  end_goal();
-  const auto goal = static_cast<std::size_t>(result_.goals_reached);
-  if (goal == 0 || space_.ended()) return false;
-  if (!space_.tried_enough() && ++dead_ends_ >= kMostDeadEnds) return false;
-  for (const std::size_t needed : {goal - 1, goal}) {
-    if (options_.max_transitions > 0 && tried_[needed] >= options_.max_transitions) return false;
-  }
-  most_transitions_ *= kLonger;
-  --result_.goals_reached;
-  taken_.footings.resize(changes_before_[goal - 1] + 1);
-  taken_.configurations.resize(changes_before_[goal - 1] + 1);
-  begin_goal();
-  return true;
-}
-
 bool StanceSearch::next() {
+  const std::size_t first = taken_.changes();
   while (!over_ && static_cast<std::size_t>(result_.goals_reached) < task_.goals.size()) {
-    const std::size_t first = taken_.changes();
     candidate_.footings.resize(first + 1);
     candidate_.configurations.resize(first + 1);
-    if (!reach(next_goal_, candidate_)) {
-      over_ = !go_back();
-      continue;
-    }
+    over_ = !reach(next_goal_, candidate_);
+    if (over_) break;
     if (const std::size_t slips = roll_on(space_, candidate_, first + 1); slips > 0) {
       refuse(slips, "a ball does not roll to where it is held");
       continue;
@@ -99,24 +60,13 @@ bool StanceSearch::next() {
       result_.reason = "refused: " + violation;
     }
   }
-  if (result_.goals_reached < furthest_goals_) {
-    result_.goals_reached = furthest_goals_;
-    taken_ = furthest_;
-  }
   return false;
 }
 
-bool StanceSearch::take() {
-  end_goal();
+void StanceSearch::take() {
   taken_ = std::move(candidate_);
   ++result_.goals_reached;
-  const bool furthest = result_.goals_reached >= furthest_goals_;
-  if (furthest) {
-    furthest_ = taken_;
-    furthest_goals_ = result_.goals_reached;
-  }
   if (static_cast<std::size_t>(result_.goals_reached) < task_.goals.size()) begin_goal();
-  return furthest;
 }
 
 void StanceSearch::refuse(std::size_t change, const std::string& reason) {

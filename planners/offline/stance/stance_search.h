@@ -14,11 +14,6 @@
 ///     }
 ///     const StancePlan plan = search->result();
 ///
-/// Where no way is found from a goal to the next one in some transitions, the goal before is
-/// reached once more, otherwise: how balls have rolled until there may keep the robot from going
-/// on. Each time a little more is tried. If all that is in vain, what is taken is the way that led
-/// furthest.
-///
 /// Between two candidates the search stands still, but for transitions that other threads work out
 /// ahead. The sequence of candidates depends on the task, the options and the answers alone.
 
@@ -38,14 +33,12 @@ class StanceSearch {
   StanceSearch& operator=(const StanceSearch&) = delete;
   virtual ~StanceSearch() = default;
 
-  /// Goes on to the next candidate, which leads to the goal after those that taken() has, or to one
-  /// of these once more; false: all goals are reached, or one is not.
+  /// Goes on to the next candidate; false: all goals are reached, or one is not.
   bool next();
   /// From the start on, the ways to the goals before included.
   const StancePath& candidate() const { return candidate_; }
-  /// The candidate will do: the next one leads to the goal after its own. False: another way led
-  /// further before.
-  bool take();
+  /// The candidate will do: the next one leads to the goal after its own.
+  void take();
   /// Change number `change` of the candidate, 1 or more, will not do: no later candidate has it.
   /// The reason is told if none is taken.
   void refuse(std::size_t change, const std::string& reason);
@@ -69,8 +62,6 @@ class StanceSearch {
   /// Appends a way from the path's last footing to the goal; false: not found.
   virtual bool reach(const Footing& goal, StancePath& path) = 0;
   void begin_goal();
-  void end_goal();
-  bool go_back();
   void count_refused(const std::string& reason);
   /// Why the goal after those that are reached is not.
   void explain(StancePlan& plan);
@@ -86,14 +77,8 @@ class StanceSearch {
  private:
   Judge judge_;
   StancePath taken_, candidate_;
-  StancePath furthest_;  ///< taken_ where most goals were reached
-  int furthest_goals_ = 0;
-  std::vector<std::size_t> changes_before_;  ///< of taken_, for each goal
-  std::vector<int> tried_;                   ///< transitions, for each goal
-  double most_transitions_;  ///< to be tried for a goal until the one before is reached once more
-  Footing next_goal_;        ///< that candidates lead to
+  Footing next_goal_;           ///< that candidates lead to
   std::size_t first_node_ = 0;  ///< of the result's tree, for this goal
-  int dead_ends_ = 0;           ///< goals that nothing was left to try for
   int refused_ = 0;             ///< candidates for this goal, the judge's refusals included
   std::string last_refusal_;
   bool over_ = false;

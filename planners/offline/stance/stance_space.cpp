@@ -506,6 +506,11 @@ void StanceSpace::forbid(const Footing& from, const Footing& to) {
   refused_.insert(joined(from, to));
 }
 
+int StanceSpace::transitions_left() const {
+  if (options_.max_transitions == 0) return std::numeric_limits<int>::max();
+  return options_.max_transitions - (transitions - began_);
+}
+
 void StanceSpace::count_failure(int effector, const std::string& what) {
   ++failures_[{effector, what}];
 }

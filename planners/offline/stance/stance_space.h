@@ -19,7 +19,6 @@
 #include <locograph/world/box_tree.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <memory>
 #include <unordered_set>
@@ -105,16 +104,12 @@ class StanceSpace {
   /// What was expected before will not be asked for any more.
   void expect_nothing();
 
-  /// From here on transitions count for the next goal, for which so many may be tried; StanceSearch
-  /// calls it.
-  void begin_goal(int most) {
-    began_ = transitions;
-    most_ = most;
-  }
-  int transitions_tried() const { return transitions - began_; }
+  /// From here on transitions count for the next goal; StanceSearch calls it.
+  void begin_goal() { began_ = transitions; }
   /// How many transitions may still be tried for this goal, below 0 where shortening and mending
-  /// took more.
-  int transitions_left() const { return most_ - transitions_tried(); }
+  /// took more; the largest int: any number.
+  int transitions_left() const;
+  /// StancePlannerOptions::max_transitions is used up for this goal.
   bool tried_enough() const { return transitions_left() <= 0; }
 
   /// Stopped, or the time allowed is used up.
@@ -167,9 +162,8 @@ class StanceSpace {
   std::map<std::vector<long long>, int> numbers_;
   std::unordered_set<Footing, FootingHash> refused_;  ///< transitions, as joined() gives them
   std::map<std::pair<int, std::string>, int> failures_;
-  std::map<Footing, double> given_shares_;      ///< of the execution margin, of start and goals
-  int began_ = 0;                               ///< transitions tried before this goal
-  int most_ = std::numeric_limits<int>::max();  ///< for this goal
+  std::map<Footing, double> given_shares_;  ///< of the execution margin, of start and goals
+  int began_ = 0;                           ///< transitions tried before this goal
 };
 
 }  // namespace locograph
