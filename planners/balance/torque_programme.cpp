@@ -77,9 +77,8 @@ double TorqueProgramme::solve(const RobotState& state, Eigen::VectorXd& gradient
   }
   for (int i = 0; i < torques; ++i) {
     const int joint = base + joints_[static_cast<std::size_t>(i)];
-    const auto shares = columns_.row(joint) / limit(i);
-    matrix.row(base + 2 * i).head(rays) = -shares;
-    matrix.row(base + 2 * i + 1).head(rays) = shares;
+    matrix.row(base + 2 * i).head(rays) = -columns_.row(joint) / limit(i);
+    matrix.row(base + 2 * i + 1).head(rays) = columns_.row(joint) / limit(i);
     const double share = gravity_[joint] / limit(i);
     programme_.bound_row(base + 2 * i, -kNoBound, -share);
     programme_.bound_row(base + 2 * i + 1, -kNoBound, share);
