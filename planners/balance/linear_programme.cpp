@@ -171,6 +171,15 @@ void LinearProgramme::pivot(int row, int place) {
   std::swap(basic_[static_cast<std::size_t>(row)], free_[static_cast<std::size_t>(place)]);
 }
 
+/// The variable of `place` goes by a step and becomes basic; that of `row`, then at a bound, free.
+void LinearProgramme::exchange(int row, int place, double step, double bound) {
+  basic_value_ += step * dictionary_.col(place);
+  const double value = free_value_[place] + step;
+  pivot(row, place);
+  basic_value_[row] = value;
+  free_value_[place] = bound;
+}
+
 /// From a corner where slopes lead out of all ranges to one that is feasible.
 LinearAnswer LinearProgramme::dual() {
   const int most = 4 * (rows_ + columns_);
@@ -212,11 +221,7 @@ LinearAnswer LinearProgramme::dual() {
     }
     if (entering < 0) return LinearAnswer::kInfeasible;
     const double step = (bound - basic_value_[row]) / dictionary_(row, entering);
-    basic_value_ += step * dictionary_.col(entering);
-    const double value = free_value_[entering] + step;
-    pivot(row, entering);
-    basic_value_[row] = value;
-    free_value_[entering] = bound;
+    exchange(row, entering, step, bound);
   }
   return LinearAnswer::kUnsolved;
 }
@@ -267,11 +272,7 @@ LinearAnswer LinearProgramme::primal() {
     }
     const int leaving = basic_[static_cast<std::size_t>(row)];
     const double bound = way * dictionary_(row, entering) > 0.0 ? upper_[leaving] : lower_[leaving];
-    basic_value_ += way * step * dictionary_.col(entering);
-    const double value = free_value_[entering] + way * step;
-    pivot(row, entering);
-    basic_value_[row] = value;
-    free_value_[entering] = bound;
+    exchange(row, entering, way * step, bound);
   }
   return LinearAnswer::kUnsolved;
 }
@@ -332,7 +333,7 @@ LinearAnswer LinearProgramme::solve() {
     if (!built_) build();
     answer = run();
     if (answer == LinearAnswer::kOptimal && verified()) return answer;
-    // What is infeasible or unbounded is so from any corner, unless pivots before have blurred it.
+    // What is infeasible is so from any corner, unless pivots before have blurred it.
     if (answer == LinearAnswer::kInfeasible && fresh) return answer;
     built_ = false;
   }

@@ -63,6 +63,7 @@ class LinearProgramme {
   LinearAnswer dual();
   LinearAnswer primal();
   void pivot(int row, int place);
+  void exchange(int row, int place, double step, double bound);
   bool verified();
 
   int rows_ = 0, columns_ = 0;

@@ -4,6 +4,7 @@
 #include <locograph/planners/balance/linear_programme.h>
 
 #include <ClpSimplex.hpp>
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -54,6 +55,21 @@ TEST(LinearProgramme, SaysWhereNothingIsWithinTheBoundsOrNothingIsLeast) {
   EXPECT_EQ(programme.solve(), LinearAnswer::kUnsolved);
   programme.bound_row(0, 1.0, 3.0);
   EXPECT_EQ(programme.solve(), LinearAnswer::kOptimal);
+}
+
+TEST(LinearProgramme, HasNoOptimumWhereNumbersAreNoneOrBoundsAreTheWrongWayRound) {
+  LinearProgramme programme = two_limits();
+  programme.matrix()(1, 1) = std::nan("");
+  EXPECT_NE(programme.solve(), LinearAnswer::kOptimal);
+  programme = two_limits();
+  programme.bound_row(0, std::nan(""), 4.0);
+  EXPECT_NE(programme.solve(), LinearAnswer::kOptimal);
+  programme = two_limits();
+  programme.bound_column(0, 3.0, 2.0);
+  EXPECT_NE(programme.solve(), LinearAnswer::kOptimal);
+  programme = two_limits();
+  programme.bound_row(1, 7.0, 6.0);
+  EXPECT_NE(programme.solve(), LinearAnswer::kOptimal);
 }
 
 TEST(LinearProgramme, WithoutRowsEachColumnIsAtItsBetterBound) {
