@@ -178,26 +178,37 @@ struct TransitionSolver::Parts {
     return holds();
   }
 
-  /// What is violated most, of rows() as they are.
+  /// What is violated most, of rows() as they are; and besides, which contacts are open.
   void explain(TransitionResult& result) const {
     result.failure = TransitionFailure::kNone;
     result.amount = 0.0;
+    std::string worst, open;
+    const std::string* last = nullptr;
     const auto take = [&](TransitionFailure kind, double amount, auto&& text) {
       if (amount <= result.amount) return;
       result.failure = kind;
       result.amount = amount;
-      result.reason = text();
+      worst = text();
     };
-    for (Eigen::Index i = 0; i < rows.closure().size(); ++i) {
-      take(TransitionFailure::kContact, std::abs(rows.closure()[i]) - kClosed,
-           [&] { return "contact of " + rows.contact_name(static_cast<int>(i)) + " not closed"; });
+    const Eigen::VectorXd& closure = rows.closure();
+    for (Eigen::Index i = 0; i < closure.size(); ++i) {
+      const double amount = std::abs(closure[i]) - kClosed;
+      if (amount <= 0.0) continue;
+      const std::string& name = rows.contact_name(static_cast<int>(i));
+      if (last == nullptr || *last != name) open += (open.empty() ? "" : ", ") + name;
+      last = &name;
+      take(TransitionFailure::kContact, amount,
+           [&] { return "contact of " + name + " not closed"; });
     }
     for (const TransitionRows::Row& row : rows.rows()) {
       take(row.kind, -row.value - kRowTolerance, [&] { return rows.text(row); });
     }
     char amount[32];
     std::snprintf(amount, sizeof amount, " by %.3g", result.amount);
-    result.reason += amount;
+    result.reason = worst + amount;
+    if (result.failure != TransitionFailure::kContact && !open.empty()) {
+      result.reason += ", contact of " + open + " not closed";
+    }
   }
 
   /// See TransitionSolver::perturbed().
