@@ -96,11 +96,23 @@ bool LocalPlanner::take_shown() {
   return true;
 }
 
+bool LocalPlanner::begin_window(int executed) {
+  require_step(executed);
+  take_shown();
+  move_window(executed, take_measured());
+  hand_out_best();
+  changed_ = true;
+  return incumbent_.best().quality.feasible();
+}
+
+void LocalPlanner::require_step(int executed) const {
+  if (executed >= 0 && executed + 1 < plan_size()) return;
+  throw Error("executed configuration " + std::to_string(executed),
+              "0 to " + std::to_string(plan_size() - 2));
+}
+
 CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
-  if (executed < 0 || executed + 1 >= plan_size()) {
-    throw Error("executed configuration " + std::to_string(executed),
-                "0 to " + std::to_string(plan_size() - 2));
-  }
+  require_step(executed);
   termination.validate();
   CycleReport report;
   report.executed = executed;

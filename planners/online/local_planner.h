@@ -80,6 +80,10 @@ class LocalPlanner {
   /// size, for what is not finite, and for an attitude that is none.
   void measure(const Eigen::VectorXd& configuration);
 
+  /// The window of a configuration before any search, in the graph: as planned, or as it leads back
+  /// from what was measured. Whether it is feasible. The next cycle takes it up.
+  bool begin_window(int executed);
+
   /// executed: index in the plan of the configuration the robot is at.
   CycleReport cycle(int executed, const Termination& termination = {});
 
@@ -108,6 +112,7 @@ class LocalPlanner {
   };
 
   bool take_shown();
+  void require_step(int executed) const;
   Eigen::VectorXd take_measured();
   bool tries_again();
   void begin(CycleReport& report, bool moved, const Eigen::VectorXd& measured);

@@ -1,10 +1,14 @@
 #include <locograph/common/error.h>
 #include <locograph/planners/online/heading.h>
+#include <locograph/planners/online/led_wrenches.h>
 #include <locograph/planners/online/online_plan.h>
 #include <locograph/planners/plan/carried_wrenches.h>
 #include <locograph/planners/plan/slope_limits.h>
+#include <locograph/plugins/configuration/segment_parameter.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace locograph {
@@ -139,6 +143,75 @@ void OnlinePlan::follow_moved(int first, int last) {
   if (!steps) return;
   carry_slopes(planned_, plan_, graph_, {first, last});
   carry_wrenches(planned_, plan_, graph_, {first - 1, last});
+}
+
+void OnlinePlan::slow_down(int from, int to, double duration_s) {
+  const int steps = to - from;
+  std::vector<double> step_s, faster(static_cast<std::size_t>(steps) + 1);
+  for (int i = from; i < to; ++i) step_s.push_back(time_s(i + 1) - time_s(i));
+  const auto slowed = [&](std::size_t k) { return 2.0 * step_s[k] / (faster[k] + faster[k + 1]); };
+  // As fast as 1 - a sin^2(pi x) over the share x of the steps.
+  double least = 0.0, most = 0.999;
+  constexpr int kHalved = 40;
+  for (int halved = 0; halved < kHalved; ++halved) {
+    const double a = 0.5 * (least + most);
+    for (int k = 0; k <= steps; ++k) {
+      const double sine = std::sin(std::numbers::pi * k / steps);
+      faster[static_cast<std::size_t>(k)] = 1.0 - a * sine * sine;
+    }
+    double all_s = 0.0;
+    for (std::size_t k = 0; k < step_s.size(); ++k) all_s += slowed(k);
+    (all_s < duration_s ? least : most) = a;
+  }
+  const double was_s = time_s(to);
+  double at_s = time_s(from);
+  const auto set_time = [&](int i, double time_s, double scale) {
+    VertexConfiguration& vertex = graph_.vertex(VertexId<VertexConfiguration>{slot(i)});
+    const auto at = static_cast<std::size_t>(i);
+    vertex.time_s = planned_.time_s[at] = time_s;
+    vertex.slopes *= scale;
+    if (!planned_.slopes.empty()) planned_.slopes[at] *= scale;
+  };
+  for (std::size_t k = 0; k < step_s.size(); ++k) {
+    at_s += slowed(k);
+    set_time(from + 1 + static_cast<int>(k), at_s, faster[k + 1]);
+  }
+  for (int i = to + 1; i < size(); ++i) set_time(i, time_s(i) + at_s - was_s, 1.0);
+  follow_times();
+}
+
+/// Segments begin and end with their configurations.
+void OnlinePlan::follow_times() {
+  for (const int number : graph_.parameters().numbers_of<SegmentParameter>()) {
+    const auto given = graph_.parameters().get<SegmentParameter>(number);
+    PlanSegment& segment = plan_.segments.at(static_cast<std::size_t>(given->segment));
+    const auto moved = std::make_shared<SegmentParameter>(*given);
+    moved->from_s = time_s(segment.first);
+    moved->duration_s = segment.duration_s = time_s(segment.last) - moved->from_s;
+    graph_.parameters().replace(number, moved);
+  }
+}
+
+void OnlinePlan::go_as_led(const PlanRange& range, int back) {
+  const int moved = std::min(range.last + 1, last());
+  if (!planned_.slopes.empty()) {
+    carry_slopes(planned_, plan_, graph_, {range.first, moved}, Rests::kMove);
+  }
+  balance_wrenches(plan_, graph_, range);
+  const auto& stance_from = plan_.stance_from;
+  const auto stance = stance_from.begin() + range.first;
+  const auto change = std::find_if(stance, stance_from.end(), [&](const auto& there) {
+    return there->contact_numbers != (*stance)->contact_numbers;
+  });
+  lead_wrenches(plan_, graph_,
+                {range.first, std::min(back, static_cast<int>(change - stance_from.begin()))});
+  const Motion led = motion_of(graph_, plan_, range.first, moved);
+  for (int i = range.first; i <= moved; ++i) {
+    const auto to = static_cast<std::size_t>(i), k = static_cast<std::size_t>(i - range.first);
+    planned_.configurations[to] = led.configurations[k];
+    if (!planned_.slopes.empty()) planned_.slopes[to] = led.slopes[k];
+    if (!planned_.wrenches.empty()) planned_.wrenches[to] = led.wrenches[k];
+  }
 }
 
 double OnlinePlan::behind_m(int index) const {

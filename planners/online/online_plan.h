@@ -9,6 +9,7 @@
 /// Configurations are known by their index in the plan.
 
 #include <locograph/planners/plan/plan.h>
+#include <locograph/planners/plan/slope_limits.h>
 
 #include <Eigen/Core>
 #include <span>
@@ -60,6 +61,15 @@ class OnlinePlan {
   /// plan's carried along (slope_limits.h), and wrenches with them (carried_wrenches.h).
   void follow_moved(int first, int last);
 
+  /// The steps from one configuration to another one take duration_s together, which is longer than
+  /// they do: both ends are passed as fast as planned, the middle slowest. What comes later comes
+  /// later by as much.
+  void slow_down(int from, int to, double duration_s);
+  /// On legs: the graph's configurations in the range are the plan from now on, with slopes and
+  /// wrenches that go with them; those of the plan as it was count more and more until `back`. The
+  /// configuration after them is, too, but for its wrenches.
+  void go_as_led(const PlanRange& range, int back);
+
   /// How far a configuration is behind its place in the plan as it came, along its heading [m].
   double behind_m(int index) const;
 
@@ -79,6 +89,8 @@ class OnlinePlan {
   Bindings bindings() const;
 
  private:
+  void follow_times();
+
   Graph& graph_;
   Plan plan_;
   std::shared_ptr<const WorldParameter> world_;

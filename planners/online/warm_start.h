@@ -13,15 +13,12 @@
 /// to the plan within one step.
 ///
 /// A robot that is elsewhere than its plan, by whatever pushed it, is led back: on wheels the
-/// window makes the steps that it made, from where the robot is; on legs it comes back within 1.6
-/// s, sooner if it is to be at rest before, at s(t) = 1 - 10 t^3 + 15 t^4 - 6 t^5 of what it is
-/// off, so that it begins and ends without another velocity or acceleration.
+/// window makes the steps that it made, from where the robot is; on legs see way_back.h.
 ///
 /// An unfinished window is one beside that of the graph: not better yet, but worth another cycle.
 /// It is extended in the same way until a cycle loads it or drops it.
 
-#include <locograph/planners/online/window.h>
-#include <locograph/planners/posture/contact_projection.h>
+#include <locograph/planners/online/way_back.h>
 
 #include <Eigen/Core>
 #include <vector>
@@ -32,7 +29,7 @@ class WarmStart {
  public:
   /// The plan must outlive it.
   explicit WarmStart(OnlinePlan& plan)
-      : plan_(plan), contacts_(plan.robot()), unfinished_(plan.planned().size()) {}
+      : plan_(plan), on_legs_(plan), unfinished_(plan.planned().size()) {}
 
   /// Initialises the configurations that have entered the window, but for fixed ones: those of the
   /// graph, and those of an unfinished window.
@@ -54,17 +51,12 @@ class WarmStart {
                                           const Eigen::VectorXd* before_that) const;
   void roll_on(int index, const Eigen::VectorXd& before, const Eigen::VectorXd& step,
                Eigen::VectorXd& q) const;
-  Eigen::VectorXd led_back(int index, const Eigen::VectorXd& q) const;
-  double time_to_lead_back(int executed) const;
-  void set_contacts(int index, int beside);
-  void close_before(const Window& window);
+  void roll_from(const Window& window, const Eigen::VectorXd& was);
 
   OnlinePlan& plan_;
-  ContactProjection contacts_;
+  WayBack on_legs_;
   std::vector<Eigen::VectorXd> unfinished_;  ///< by index in the plan
-  Eigen::VectorXd off_;                      ///< see lead_back(), tangent; empty: nothing
-  double off_since_s_ = 0.0, back_s_ = 1.0;
-  int unfinished_end_ = 0;  ///< index after its last configuration; 0: none
+  int unfinished_end_ = 0;                   ///< index after its last configuration; 0: none
 };
 
 }  // namespace locograph

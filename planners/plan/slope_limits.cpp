@@ -81,7 +81,8 @@ void carry_slopes(const Motion& before, const Plan& plan, Graph& graph) {
   carry_slopes(before, plan, graph, {0, static_cast<int>(plan.slots.size()) - 1});
 }
 
-void carry_slopes(const Motion& before, const Plan& plan, Graph& graph, const PlanRange& range) {
+void carry_slopes(const Motion& before, const Plan& plan, Graph& graph, const PlanRange& range,
+                  Rests rests) {
   const Robot& robot = *plan.robot->robot;
   const int end = static_cast<int>(plan.slots.size()) - 1;
   const PlanRange around = {std::max(range.first - 1, 0), std::min(range.last + 1, end)};
@@ -94,7 +95,8 @@ void carry_slopes(const Motion& before, const Plan& plan, Graph& graph, const Pl
     const auto at = static_cast<std::size_t>(vertex);
     Eigen::VectorXd& slope =
         graph.vertex(VertexId<VertexConfiguration>{plan.slots[static_cast<std::size_t>(i)]}).slopes;
-    if (slope.size() == 0 || slope.isZero() || !moved_around(before, plan, graph, i)) continue;
+    if (slope.size() == 0 || (rests == Rests::kStay && slope.isZero())) continue;
+    if (!moved_around(before, plan, graph, i)) continue;
     const std::vector<double>& time_s = rule_before.time_s;
     const double step_s = std::max(time_s[at] - time_s[at - 1], time_s[at + 1] - time_s[at]);
     if (!(step_s > 0.0)) continue;

@@ -45,10 +45,13 @@ bool moved_around(const Motion& before, const Plan& plan, const Graph& graph, in
 
 /// Gives a plan whose configurations were moved the slopes that go with them: at each configuration
 /// that moved, or has a neighbour that did, what a stored slope was away from the rule of the curve
-/// it stays away, within limits of joints. A configuration at rest stays at rest, as do both ends.
+/// it stays away, within limits of joints. A configuration at rest stays at rest, unless it is to
+/// move, as do both ends.
 /// Slopes by the rule follow by themselves. before: the plan's motion before, with the same times.
 /// range: of the configurations that are looked at.
-void carry_slopes(const Motion& before, const Plan& plan, Graph& graph, const PlanRange& range);
+enum class Rests { kStay, kMove };
+void carry_slopes(const Motion& before, const Plan& plan, Graph& graph, const PlanRange& range,
+                  Rests rests = Rests::kStay);
 void carry_slopes(const Motion& before, const Plan& plan, Graph& graph);  ///< of all
 
 /// Slows joints of a configuration within limits. slope as Motion::slopes; step_s > 0 is the longer

@@ -282,6 +282,47 @@ TEST_F(OffItsPlan, IsLedBack) {
   EXPECT_LT(left.lpNorm<Eigen::Infinity>(), 1e-3);
 }
 
+/// Contacts change too soon after it: the plan is slowed down, and its segments with it.
+TEST_F(OffItsPlan, ByCentimetresIsLedBackToo) {
+  put_off(0.01, 0.0);
+  ASSERT_GT((q_ - was()).lpNorm<Eigen::Infinity>(), 0.009);
+  const Motion before = planned();
+  WalkOptions options = walk_options_for(plan_of(graph_));
+  judging_ = judging_of(task_);
+  options.verify = step_check(judging_);
+  PlanWalk walk(graph_, {}, options, kAt);
+  walk.measure(q_);
+  while (walk.time_s(walk.executed()) < before.time_s[kAt] + 2.0) {
+    ASSERT_TRUE(walk.step()) << walk.report().reason;
+  }
+  const Motion now = walk.motion();
+  EXPECT_EQ(now.configurations[kAt], q_);
+  Eigen::VectorXd left(robot().tangent_size());
+  robot().difference(before.configurations[walk.executed()].data(),
+                     now.configurations[walk.executed()].data(), left.data());
+  EXPECT_LT(left.lpNorm<Eigen::Infinity>(), 2e-3);
+  plan_of(graph_);  // holds segments against configurations, or throws
+}
+
+TEST_F(OffItsPlan, IsPassedMoreSlowlyInTheMiddle) {
+  OnlinePlan plan(graph_);
+  const Motion before = planned();
+  constexpr int kTo = kAt + 20;
+  const double longer_s = 3.0 * (before.time_s[kTo] - before.time_s[kAt]);
+  plan.slow_down(kAt, kTo, longer_s);
+  const Motion now = motion_of(graph_, plan_of(graph_));
+  EXPECT_EQ(now.time_s[kAt], before.time_s[kAt]);
+  EXPECT_NEAR(now.time_s[kTo] - now.time_s[kAt], longer_s, 1e-9);
+  EXPECT_EQ(now.slopes[kAt], before.slopes[kAt]);
+  EXPECT_LT((now.slopes[kTo] - before.slopes[kTo]).norm(), 1e-12);
+  const auto step_s = [&](const Motion& of, int i) { return of.time_s[i + 1] - of.time_s[i]; };
+  for (int i = kAt; i < kTo; ++i) EXPECT_GE(step_s(now, i), step_s(before, i)) << i;
+  EXPECT_GT(step_s(now, kAt + 10), 2.0 * step_s(now, kAt));
+  for (int i = kTo; i + 1 < plan.size(); ++i) {
+    EXPECT_NEAR(step_s(now, i), step_s(before, i), 1e-9) << i;
+  }
+}
+
 TEST_F(OffItsPlan, HasItsContactsWhereTheyAre) {
   put_off(0.003, 0.01);
   LocalPlanner planner(graph_, walk_options_for(plan_of(graph_)).planner);

@@ -1,0 +1,176 @@
+#include <locograph/planners/online/led_wrenches.h>
+#include <locograph/planners/online/way_back.h>
+#include <locograph/plugins/configuration/contact_parameter.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace locograph {
+
+/// How long it takes, so that it asks for little acceleration [s]: of 10 t^3 - 15 t^4 +
+/// 6 t^5 the second derivative is at most 5.8.
+double WayBack::least_time_back(const Eigen::VectorXd& off) const {
+  constexpr double kAcceleration_m_s2 = 0.15, kTurn_m = 0.5, kJoint_m = 0.3;  // m for a radian
+  const int base = plan_.robot().base_tangent_size();
+  double off_m = kJoint_m * off.tail(off.size() - base).lpNorm<Eigen::Infinity>();
+  if (base > 0) {
+    off_m = std::max({off_m, off.head<3>().norm(), kTurn_m * off.segment<3>(3).norm()});
+  }
+  return std::sqrt(5.8 * off_m / kAcceleration_m_s2);
+}
+
+/// The configuration at which a robot that is off at the executed one is to be back: the last one
+/// before contacts change, or, where that is too near, before another contact closes.
+int WayBack::back_at(int executed) const {
+  constexpr int kFewestSteps = 8;
+  const auto& stance_from = plan_.plan().stance_from;
+  const auto numbers = [&](int i) -> const std::vector<int>& {
+    return stance_from[static_cast<std::size_t>(i)]->contact_numbers;
+  };
+  int at = executed;
+  do {
+    ++at;
+    if (at == plan_.last() || plan_.rolls(at)) break;
+    if (numbers(at) == numbers(executed)) continue;
+    const bool closes = !std::ranges::all_of(numbers(at), [&](int number) {
+      return std::ranges::find(numbers(at - 1), number) != numbers(at - 1).end();
+    });
+    if (closes || at - executed >= kFewestSteps) break;
+  } while (true);
+  return at;
+}
+
+/// The contacts that are closed at a configuration: at their places, balls where they have rolled
+/// to from another configuration beside it.
+void WayBack::set_contacts(int index, int beside) {
+  const auto& stance_from = plan_.plan().stance_from;
+  const std::vector<int> numbers = contacts_at(stance_from, static_cast<std::size_t>(index));
+  std::vector<Contact> contacts;
+  for (const int number : numbers) {
+    contacts.push_back(plan_.graph().parameters().get<ContactParameter>(number)->contact);
+  }
+  const auto& held =
+      stance_from[static_cast<std::size_t>(std::min(index, beside))]->contact_numbers;
+  RobotState state(plan_.robot());
+  state.update(plan_.configuration(beside).data());
+  contacts_.set(contacts, held_balls(state, contacts, [&](const Contact& contact) {
+                  const int number = numbers[static_cast<std::size_t>(&contact - contacts.data())];
+                  return std::ranges::find(held, number) != held.end();
+                }));
+}
+
+/// Brings a configuration to its contacts, balls where they have rolled to; planned: where
+/// it was planned.
+void WayBack::close(int index, const Eigen::VectorXd& planned) {
+  set_contacts(index, index - 1);
+  Eigen::VectorXd closed = plan_.configuration(index);
+  if (contacts_.project(closed)) plan_.configuration(index) = closed;
+  plan_.robot().difference(planned.data(), plan_.configuration(index).data(), off_.data());
+  end_ = index + 1;
+}
+
+/// The configuration at which the next contact closes, after one of the window's; -1: one opens
+/// before.
+int WayBack::closes_next(int index) const {
+  const auto& stance_from = plan_.plan().stance_from;
+  for (int i = index; i <= plan_.last(); ++i) {
+    const std::vector<int>& before = stance_from[static_cast<std::size_t>(i - 1)]->contact_numbers;
+    const std::vector<int>& here = stance_from[static_cast<std::size_t>(i)]->contact_numbers;
+    if (here == before) continue;
+    const bool opens = !std::ranges::all_of(
+        before, [&](int number) { return std::ranges::find(here, number) != here.end(); });
+    return opens ? -1 : i;
+  }
+  return -1;
+}
+
+/// On its contacts; what is off goes on as it does, and comes to where the next contact closes at
+/// its place by then, or else, critically damped, towards nothing.
+void WayBack::add(int index) {
+  constexpr double kDamped_per_s = 6.0;
+  const Eigen::VectorXd planned = plan_.configuration(index);
+  const double from_s = plan_.time_s(index - 1), step_s = plan_.time_s(index) - from_s;
+  Eigen::VectorXd here;
+  if (const int closes = closes_next(index); closes > 0) {
+    const double left_s = plan_.time_s(closes) - from_s, s = left_s > 0.0 ? step_s / left_s : 1.0;
+    const Eigen::VectorXd way = least_off(closes, index - 1) - off_;
+    here = off_ + s * (1.0 - s) * (1.0 - s) * left_s * off_rate_ + s * s * (3.0 - 2.0 * s) * way;
+    off_rate_ *= (1.0 - s) * (1.0 - 3.0 * s);
+    if (left_s > 0.0) off_rate_ += 6.0 * s * (1.0 - s) / left_s * way;
+  } else {
+    const double faster = std::exp(-kDamped_per_s * step_s);
+    const Eigen::VectorXd turned = off_rate_ + kDamped_per_s * off_;
+    here = faster * (off_ + step_s * turned);
+    off_rate_ = faster * (off_rate_ - kDamped_per_s * step_s * turned);
+  }
+  plan_.robot().integrate(planned.data(), here.data(), plan_.configuration(index).data());
+  close(index, planned);
+}
+
+/// What a configuration further on is off at least, on its contacts; balls roll there from where
+/// another configuration has them.
+Eigen::VectorXd WayBack::least_off(int index, int from) {
+  const Robot& robot = plan_.robot();
+  Eigen::VectorXd q = plan_.configuration(index), off = off_;
+  set_contacts(index, from);
+  if (contacts_.project(q))
+    robot.difference(plan_.configuration(index).data(), q.data(), off.data());
+  return off;
+}
+
+/// Configurations that came before the executed one: on their contacts.
+void WayBack::close_before(const Window& window) {
+  for (int i = window.executed() - 1; i >= window.first_held() && !plan_.rolls(i); --i) {
+    set_contacts(i, i + 1);
+    Eigen::VectorXd closed = plan_.configuration(i);
+    if (contacts_.project(closed)) plan_.configuration(i) = closed;
+  }
+}
+
+void WayBack::begin(const Window& window, const Eigen::VectorXd& was) {
+  constexpr double kBack_s = 1.6;
+  close_before(window);
+  const Robot& robot = plan_.robot();
+  const int executed = window.executed(), back = back_at(executed);
+  Eigen::VectorXd off(robot.tangent_size());
+  robot.difference(was.data(), plan_.configuration(executed).data(), off.data());
+  const double from_s = plan_.time_s(executed), least_s = std::min(kBack_s, least_time_back(off));
+  if (plan_.time_s(back) - from_s < least_s) plan_.slow_down(executed, back, least_s);
+  const double duration_s = std::min(kBack_s, plan_.time_s(back) - from_s);
+  off_ = off_rate_ = Eigen::VectorXd::Zero(robot.tangent_size());
+  const Eigen::VectorXd there = least_off(back, executed);
+  for (int i = window.first(); i < window.end(); ++i) {
+    if (plan_.is_fixed(i)) continue;
+    const Eigen::VectorXd planned = plan_.configuration(i);
+    const double share = (plan_.time_s(i) - from_s) / duration_s;
+    constexpr double kSame = 1e-9;
+    if (share > 1.0 + kSame) {
+      add(i);
+      continue;
+    }
+    const Eigen::VectorXd left = there + share_left(share) * (off - there);
+    robot.integrate(planned.data(), left.data(), plan_.configuration(i).data());
+    close(i, planned);
+  }
+  int is_back = executed + 1;
+  while (is_back < window.last() && plan_.time_s(is_back) < from_s + duration_s) ++is_back;
+  follow(window, executed, is_back);
+}
+
+void WayBack::go_on(const Window& window) {
+  follow(window, window.first_entering(), window.first_entering());
+}
+
+/// From one configuration on. One after the window comes nearer, too: how fast the last
+/// one of the window is passed goes with it.
+void WayBack::follow(const Window& window, int first, int back) {
+  if (end_ != window.end() || first >= window.end()) return;
+  const int after = window.end();
+  if (after <= plan_.last() && !plan_.is_fixed(after) && !plan_.rolls(after - 1)) {
+    add(after);
+  }
+  plan_.go_as_led({first, window.last()}, back);
+}
+
+}  // namespace locograph
