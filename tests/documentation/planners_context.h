@@ -615,6 +615,22 @@ struct Context : DriveContext {
 namespace online_warm_start_h {
 using Context = WindowContext;
 }
+namespace online_way_back_h {
+struct Context : DriveContext {
+  OnlinePlan online_plan{graph};
+  Window window{online_plan, {.steps = 3}};
+  const Eigen::VectorXd was = online_plan.configuration(0);
+  const int executed = 1, entered = 4;
+  Context() { window.move_to(0); }
+};
+}  // namespace online_way_back_h
+namespace online_led_wrenches_h {
+struct Context : DriveContext {
+  const Motion before = motion_of(graph, plan);
+  const PlanRange range = {0, 3};
+  const int from = 0, back = 3;
+};
+}  // namespace online_led_wrenches_h
 namespace online_window_h {
 struct Context : DriveContext {
   const OnlinePlan online{graph};
