@@ -194,8 +194,7 @@ double end_of(const Graph& graph) {
 }
 
 /// Throws UsageError where `--replan` makes no sense.
-void check_replan(const PlanFile& file, const Judging& judging, const PerceptionChoice& eyes) {
-  if (eyes.given()) throw UsageError("--replan: not with --cameras or --clouds");
+void check_replan(const PlanFile& file, const Judging& judging) {
   if (!judging.task || judging.task->drive) {
     throw UsageError("--replan: " + file.name + " is no plan of a scenario's contact task");
   }
@@ -204,12 +203,15 @@ void check_replan(const PlanFile& file, const Judging& judging, const Perception
 /// What a robot on legs does where it has had to stop: it waits, or plans on.
 class GoingOn {
  public:
-  GoingOn(const PlanFile& file, const Judging& judging, const CommandOptions& options)
+  /// eyes: what is known of the world; null: all of it.
+  GoingOn(const PlanFile& file, const Judging& judging, const CommandOptions& options,
+          const RefinePerception* eyes)
       : judging_(judging),
+        eyes_(eyes),
         options_(options),
         planned_(motion_of(file.graph, file.plan)),
         segments_(file.plan.segments) {
-    waits_ = judging.task && !judging.task->drive && !options.perception.given() &&
+    waits_ = judging.task && !judging.task->drive && eyes == nullptr &&
              ChangingObstacles(*file.plan.robot, judging.world->world()).any();
   }
 
@@ -232,9 +234,7 @@ class GoingOn {
     }
     if (!resumed.success() && options_.replan) {
       resumed =
-          resume_plan(stopped, *judging_.task,
-                      std::make_shared<const WorldSnapshot>(
-                          world_at_rest(judging_.world->world(), end_of(stopped))),
+          resume_plan(stopped, *judging_.task, world_now(stopped),
                       {.termination = {.deadline = Deadline::of_limit(options_.replan_timeout_s),
                                        .stop = &stop_flag()},
                        .threads = options_.threads});
@@ -260,7 +260,14 @@ class GoingOn {
   }
 
  private:
+  std::shared_ptr<const WorldSnapshot> world_now(const Graph& stopped) const {
+    return std::make_shared<const WorldSnapshot>(
+        eyes_ != nullptr ? eyes_->walk().seen()
+                         : world_at_rest(judging_.world->world(), end_of(stopped)));
+  }
+
   const Judging& judging_;
+  const RefinePerception* eyes_;
   const CommandOptions& options_;
   Motion planned_;
   std::vector<PlanSegment> segments_;
@@ -289,7 +296,7 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
   if (!file.plan.world) throw Error(file.name, 0, "the plan has no world", "a PARAMS_WORLD line");
   check_not_input(options.output, files_of(file));
   const Judging judging = judging_of(file, options.world);
-  if (options.replan) check_replan(file, judging, options.perception);
+  if (options.replan) check_replan(file, judging);
   if (!options.replan && parser.given("--replan-timeout")) {
     throw UsageError("--replan-timeout: not without --replan");
   }
@@ -311,7 +318,7 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
   const double field_s = watch.seconds();
   if (options.world.given()) replace_world(file, options.world, judging.world->world());
 
-  GoingOn going_on(file, judging, options);
+  GoingOn going_on(file, judging, options, eyes ? &*eyes : nullptr);
   if (going_on.can()) {
     walk_options.resume = [&](const Graph& stopped) {
       progress.emplace("planning on");

@@ -48,12 +48,21 @@ const VertexConfiguration& CameraWalk::vertex(int i) const {
 }
 
 std::shared_ptr<const WorldSnapshot> CameraWalk::world_at(int executed) {
+  if (executed == shown_to_) {
+    plan_ = plan_of(graph_);  // it was planned on from here
+    return perception_.newest();
+  }
+  shown_to_ = executed;
   if (executed == 0) {
     stand();
   } else {
     step_to(executed);
   }
   return perception_.newest();
+}
+
+World CameraWalk::seen() const {
+  return perception_.seen_near(perception_.field()->window().bounds());
 }
 
 std::shared_ptr<const WorldSnapshot> CameraWalk::world_from(double time_s,

@@ -45,11 +45,14 @@ class CameraWalk {
              ImageSource& images, const CameraWalkOptions& options = {});
 
   /// For walk_plan(): shows all images until the robot is at this configuration. To be called for
-  /// one after the other, from the first. Throws Error for images that cannot be read.
+  /// one after the other, from the first; once more for the same one where the graph has been
+  /// planned on from there. Throws Error for images that cannot be read.
   std::shared_ptr<const WorldSnapshot> world_at(int executed);
   /// The same for a robot that is carried out in simulated time: it is there at that time of the
   /// plan's clock, which ascends from call to call.
   std::shared_ptr<const WorldSnapshot> world_from(double time_s, const Eigen::VectorXd& q);
+  /// What was known beforehand, and as its map all of the window that is seen now: for planners.
+  World seen() const;
   /// For WalkOptions::verify: of the motion everything in the world that was known beforehand, and
   /// of its last step that it keeps away from what is seen now. (Where the robot was earlier,
   /// things may be now.)
@@ -73,13 +76,14 @@ class CameraWalk {
   bool touches_unknown(const RobotState& state) const;
 
   const Graph& graph_;
-  const Plan plan_;
+  Plan plan_;
   Judging judging_;  // in the world known beforehand
   Perception& perception_;
   ImageSource& images_;
   CameraWalkOptions options_;
   std::function<CheckReport(const Motion&)> check_known_;
   RobotState state_;
+  int shown_to_ = -1;              ///< of world_at(); not yet
   double is_at_s_ = std::nan("");  ///< of world_from(); not yet
   Eigen::VectorXd is_at_;
   std::vector<double> perception_s_;

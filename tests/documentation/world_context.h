@@ -242,6 +242,14 @@ struct PerceptionContext : in_world::Context {
 namespace perception_image_source_h {
 using Context = PerceptionContext;
 }
+namespace perception_known_shapes_h {
+struct Context : in_world::Context {
+  World world;
+  LocalMap map;
+  const VoxelWindow& window = map.window();
+  Context() { world.solids.push_back({.name = "step"}); }
+};
+}  // namespace perception_known_shapes_h
 namespace perception_perception_h {
 using Context = PerceptionContext;
 }

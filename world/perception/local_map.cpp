@@ -350,6 +350,17 @@ void LocalMap::clear(const Eigen::AlignedBox3d& box) {
   stale_ = true;
 }
 
+void LocalMap::clear(std::span<const Eigen::Vector3i> voxels) {
+  for (const Eigen::Vector3i& index : voxels) {
+    const Eigen::Array3i at = (index - window_.first).array();
+    if ((at < 0).any() || (at >= window_.size.array()).any()) continue;
+    const std::size_t stored = window_.stored(index);
+    if (!obstacle_.holds(log_odds_[stored]) || log_odds_[stored] == kNeverSeen) continue;
+    set_log_odds(stored, static_cast<std::int8_t>(options_.log_odds.least));
+    stale_ = true;
+  }
+}
+
 std::shared_ptr<const LocalField> LocalMap::field() {
   if (!stale_) return field_;
   transform_.update(window_, log_odds_);

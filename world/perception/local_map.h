@@ -27,6 +27,7 @@
 #include <locograph/world/perception/window_transform.h>
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,9 @@ class LocalMap {
               const DepthImage& image);
   /// Voxels whose centres are in the box are free, known by other means: the robot stands there.
   void clear(const Eigen::AlignedBox3d& box);
+  /// Of these voxels, by their indices in the world, those that are occupied are free: what is
+  /// there is known by other means. Those outside of the window do not count.
+  void clear(std::span<const Eigen::Vector3i> voxels);
 
   /// The newest; the same one until something changes.
   std::shared_ptr<const LocalField> field();

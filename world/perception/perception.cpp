@@ -1,5 +1,6 @@
 #include <locograph/common/error.h>
 #include <locograph/robots/covering_capsules.h>
+#include <locograph/world/perception/known_shapes.h>
 #include <locograph/world/perception/perception.h>
 
 #include <cmath>
@@ -59,22 +60,6 @@ octomap::OcTreeKey key_of(const Eigen::Vector3i& index) {
   return {key(index.x()), key(index.y()), key(index.z())};
 }
 
-/// Of the window's voxels those that a box meets, within OctoMap's range.
-template <class Visit>
-void each_voxel(const VoxelWindow& window, const Eigen::AlignedBox3d& box, Visit&& visit) {
-  const Eigen::AlignedBox3d within = box.intersection(window.bounds());
-  if (within.isEmpty()) return;
-  const Eigen::Vector3i last = window.first + window.size - Eigen::Vector3i::Ones();
-  const Eigen::Vector3i from =
-      window.index_at(within.min()).cwiseMax(window.first).cwiseMax(-kKeyOffset);
-  const Eigen::Vector3i to = window.index_at(within.max()).cwiseMin(last).cwiseMin(kKeyOffset - 1);
-  for (int k = from.z(); k <= to.z(); ++k) {
-    for (int j = from.y(); j <= to.y(); ++j) {
-      for (int i = from.x(); i <= to.x(); ++i) visit(Eigen::Vector3i(i, j, k));
-    }
-  }
-}
-
 }  // namespace
 
 void PerceptionOptions::validate() const {
@@ -98,7 +83,7 @@ Perception::Perception(std::shared_ptr<const Robot> robot, std::vector<DepthCame
       state_(*robot_),
       last_stamp_s_(cameras_.size(), -std::numeric_limits<double>::infinity()) {
   known_.map = nullptr;
-  if (beforehand_) map_.load(*beforehand_);
+  fill_window();
   if (options_.keeps_map) kept_ = copy_of(beforehand_, options_.map.resolution_m);
   publish();
 }
@@ -117,10 +102,10 @@ void Perception::stand(const Eigen::VectorXd& q) {
     Eigen::AlignedBox3d box(capsule.from);
     box.extend(capsule.to);
     const double around_m = capsule.radius + options_.around_m;
-    each_voxel(map_.window(), {box.min().array() - around_m, box.max().array() + around_m},
-               [&](const Eigen::Vector3i& index) {
-                 here.setNodeValue(key_of(index), here.getClampingThresMinLog(), true);
-               });
+    map_.window().each_in({box.min().array() - around_m, box.max().array() + around_m},
+                          [&](const Eigen::Vector3i& index) {
+                            here.setNodeValue(key_of(index), here.getClampingThresMinLog(), true);
+                          });
   }
   here.updateInnerOccupancy();
   map_.load(here);
@@ -173,6 +158,7 @@ std::shared_ptr<const WorldSnapshot> Perception::image(DepthImage image) {
   const Eigen::Isometry3d world_from_optical =
       state_.world_from_link(camera.link) * camera.link_from_optical;
   map_.insert(camera, world_from_optical, image);
+  map_.clear(shapes_);
   publish();
   if (options_.on_image) options_.on_image({camera, world_from_optical, image, taken_});
   return newest_;
@@ -183,7 +169,14 @@ void Perception::follow_robot() {
   map_.move_to(state_.world_from_link(robot_->root_link()).translation());
   if (map_.window().first == before) return;
   if (kept_ && field_) field_->merge_into(*kept_);
+  fill_window();
+}
+
+/// What is known beforehand of a window that is new.
+void Perception::fill_window() {
   if (beforehand_) map_.load(*beforehand_);
+  shapes_ = voxels_of_shapes(known_, map_.window(), options_.map.floor_band_m);
+  map_.clear(shapes_);
 }
 
 void Perception::publish() {
@@ -197,7 +190,7 @@ void Perception::publish() {
 World Perception::seen_near(const Eigen::AlignedBox3d& box) const {
   auto voxels = std::make_shared<octomap::OcTree>(options_.map.resolution_m);
   const bool unknown_counts = options_.map.unknown == UnknownSpace::kOccupied;
-  each_voxel(field_->window(), box, [&](const Eigen::Vector3i& index) {
+  field_->window().each_in(box, [&](const Eigen::Vector3i& index) {
     if (!field_->is_occupied(index) && !(unknown_counts && !field_->is_known(index))) return;
     voxels->setNodeValue(key_of(index), voxels->getClampingThresMaxLog(), true);
   });

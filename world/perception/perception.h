@@ -10,9 +10,10 @@
 ///
 /// Of an image, what shows the robot is taken out (self_filter.h) by the configuration at the
 /// image's stamp, the window of voxels follows the robot's base, and what is left is inserted
-/// (local_map.h). A snapshot's distance() is to the window's obstacles and to those that are known
-/// beforehand; its map is none, so that solids() are what was known beforehand alone:
-/// seen_near() makes those of the window for a judge.
+/// (local_map.h). Voxels at surfaces, bars and solids that are known beforehand are free then:
+/// others know these by their shapes. A snapshot's distance() is to the window's obstacles and to
+/// those that are known beforehand; its map is none, so that solids() are what was known beforehand
+/// alone: seen_near() makes those of the window for a judge.
 ///
 /// A call that throws changes nothing: images of an unknown camera or of another size, stamps of
 /// which the configuration is not known (the buffer holds the last kept_s), and stamps that are not
@@ -96,6 +97,7 @@ class Perception {
  private:
   void require(const DepthImage& image) const;
   void follow_robot();
+  void fill_window();
   void publish();
 
   std::shared_ptr<const Robot> robot_;
@@ -107,6 +109,7 @@ class Perception {
   ConfigurationBuffer configurations_;
   SelfFilter filter_;
   LocalMap map_;
+  std::vector<Eigen::Vector3i> shapes_;  // see voxels_of_shapes()
   RobotState state_;
   std::vector<double> last_stamp_s_;  // of each camera
   DepthImage taken_;                  // of the newest image, if anyone wants it

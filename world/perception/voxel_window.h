@@ -48,6 +48,21 @@ struct VoxelWindow {
     return {first.cast<double>() * resolution_m, (first + size).cast<double>() * resolution_m};
   }
 
+  /// Calls visit with the world indices of its voxels that a box meets.
+  template <class Visit>
+  void each_in(const Eigen::AlignedBox3d& box, Visit&& visit) const {
+    const Eigen::AlignedBox3d within = box.intersection(bounds());
+    if (within.isEmpty()) return;
+    const Eigen::Vector3i last = first + size - Eigen::Vector3i::Ones(),
+                          from = index_at(within.min()).cwiseMax(first),
+                          to = index_at(within.max()).cwiseMin(last);
+    for (int k = from.z(); k <= to.z(); ++k) {
+      for (int j = from.y(); j <= to.y(); ++j) {
+        for (int i = from.x(); i <= to.x(); ++i) visit(Eigen::Vector3i(i, j, k));
+      }
+    }
+  }
+
   /// So that its lowest voxel is the one with this world index.
   void place(const Eigen::Vector3i& lowest) {
     first = lowest;

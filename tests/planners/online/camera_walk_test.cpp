@@ -161,6 +161,20 @@ class StopsWithAnImage final : public ImageSource {
   int left_;
 };
 
+TEST(CameraWalk, IsAskedAgainWhereItWasPlannedOn) {
+  Drive drive({box("wall", {2.6, 0.0, 0.75}, {0.2, 8.0, 1.5})});
+  drive.eyes->world_at(0);
+  const auto seen = drive.eyes->world_at(1);
+  const int images = drive.perception->images();
+  EXPECT_EQ(drive.eyes->world_at(1), seen);
+  EXPECT_EQ(drive.perception->images(), images);
+  drive.eyes->world_at(2);
+  const World now = drive.eyes->seen();
+  ASSERT_TRUE(now.map);
+  EXPECT_GT(now.map->size(), 0u) << "the wall";
+  EXPECT_EQ(now.surfaces.size(), 1u) << "the ground";
+}
+
 TEST(CameraWalk, StopsBetweenTwoImages) {
   for (const int images : {3, 40}) {  // standing, and on the way to a configuration
     Drive drive({});

@@ -77,6 +77,33 @@ TEST(Perception, SeesAWallAndForgetsItWhenItIsGone) {
   EXPECT_EQ(seeing.perception.images(), 10);
 }
 
+/// A wall that is known by its shape: what is seen of it is in nobody's way, what stands before it
+/// is.
+TEST(Perception, KnownShapesAreNoObstacles) {
+  const Eigen::Vector3d at_wall(1.52, 0.0, 1.0), before(1.22, 0.0, 1.0);
+  World solid, plate, bar;
+  solid.solids.push_back({.name = "wall", .size_m = {0.2, 3.0, 3.0}});
+  solid.solids[0].world_from_box.translation() << 1.62, 0.0, 1.0;
+  plate.surfaces.push_back({.name = "wall"});
+  plate.surfaces[0].world_from_surface.translation() = at_wall;
+  plate.surfaces[0].world_from_surface.linear() =
+      Eigen::AngleAxisd(-0.5 * M_PI, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  bar.bars.push_back(
+      {.name = "pole", .from = {1.55, 0.0, 0.0}, .to = {1.55, 0.0, 2.0}, .radius_m = 0.03});
+  for (const auto& [known, beside] :
+       {std::pair(solid, false), std::pair(plate, false), std::pair(bar, true)}) {
+    Seeing seeing(known);
+    for (int k = 0; k < 5; ++k) seeing.perception.image(wall_image(0.1 * k, 1.52));
+    EXPECT_FALSE(seeing.perception.field()->is_occupied(
+        seeing.perception.field()->window().index_at(at_wall)));
+    EXPECT_EQ(seeing.distance({1.52, 0.5, 1.0}) < 0.0, beside) << "nobody knows of a wall there";
+    for (int k = 0; k < 10; ++k) {
+      seeing.perception.image(wall_image(0.5 + 0.04 * k, 1.22));
+    }
+    EXPECT_LT(seeing.distance(before), 0.0);
+  }
+}
+
 TEST(Perception, UsesTheConfigurationAtTheStampOfTheImage) {
   const std::shared_ptr<const Robot> robot = camera_robot();
   Perception perception(robot, {small_camera(*robot)}, {});
