@@ -182,7 +182,11 @@ void OnlinePlan::slow_down(int from, int to, double duration_s) {
 
 /// Segments begin and end with their configurations.
 void OnlinePlan::follow_times() {
+  std::vector<int> numbers;  // a copy: parameters are replaced
   for (const int number : graph_.parameters().numbers_of<SegmentParameter>()) {
+    numbers.push_back(number);
+  }
+  for (const int number : numbers) {
     const auto given = graph_.parameters().get<SegmentParameter>(number);
     PlanSegment& segment = plan_.segments.at(static_cast<std::size_t>(given->segment));
     const auto moved = std::make_shared<SegmentParameter>(*given);

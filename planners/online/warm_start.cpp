@@ -46,11 +46,11 @@ void WarmStart::lead_back(const Window& window, const Eigen::VectorXd& was) {
   }
 }
 
-/// On wheels: the window makes the steps that it made.
+/// On wheels: the window makes the steps that it made, as long as it rolls.
 void WarmStart::roll_from(const Window& window, const Eigen::VectorXd& was) {
   const Robot& robot = plan_.robot();
   Eigen::VectorXd was_before = was, step(robot.tangent_size());
-  for (int i = window.first(); i < window.end(); ++i) {
+  for (int i = window.first(); i < window.end() && plan_.rolls(i - 1); ++i) {
     const Eigen::VectorXd was_here = plan_.configuration(i);
     if (!plan_.is_fixed(i)) {
       robot.difference(was_before.data(), was_here.data(), step.data());

@@ -1,3 +1,4 @@
+#include <locograph/common/ranges.h>
 #include <locograph/planners/online/led_wrenches.h>
 #include <locograph/planners/online/way_back.h>
 #include <locograph/plugins/configuration/contact_parameter.h>
@@ -136,14 +137,15 @@ void WayBack::begin(const Window& window, const Eigen::VectorXd& was) {
   Eigen::VectorXd off(robot.tangent_size());
   robot.difference(was.data(), plan_.configuration(executed).data(), off.data());
   const double from_s = plan_.time_s(executed), least_s = std::min(kBack_s, least_time_back(off));
-  if (plan_.time_s(back) - from_s < least_s) plan_.slow_down(executed, back, least_s);
+  const bool in_time = plan_.time_s(plan_.last()) + least_s <= ranges::kTime_s;
+  if (plan_.time_s(back) - from_s < least_s && in_time) plan_.slow_down(executed, back, least_s);
   const double duration_s = std::min(kBack_s, plan_.time_s(back) - from_s);
   off_ = off_rate_ = Eigen::VectorXd::Zero(robot.tangent_size());
   const Eigen::VectorXd there = least_off(back, executed);
-  for (int i = window.first(); i < window.end(); ++i) {
+  for (int i = window.first(); i < window.end() && !plan_.rolls(i - 1); ++i) {
     if (plan_.is_fixed(i)) continue;
     const Eigen::VectorXd planned = plan_.configuration(i);
-    const double share = (plan_.time_s(i) - from_s) / duration_s;
+    const double share = duration_s > 0.0 ? (plan_.time_s(i) - from_s) / duration_s : 1.0;
     constexpr double kSame = 1e-9;
     if (share > 1.0 + kSame) {
       add(i);
