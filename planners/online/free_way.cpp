@@ -5,6 +5,7 @@
 #include <locograph/planners/online/changing_obstacles.h>
 #include <locograph/planners/online/continuation.h>
 #include <locograph/planners/online/free_way.h>
+#include <locograph/planners/online/led_wrenches.h>
 #include <locograph/planners/plan/carried_wrenches.h>
 #include <locograph/planners/plan/slope_limits.h>
 #include <locograph/planners/posture/contact_projection.h>
@@ -167,8 +168,7 @@ std::vector<Eigen::VectorXd> way_back(const Motion& planned, int steps,
   robot.difference(planned.configurations.front().data(), configuration.data(), off.data());
   std::vector<Eigen::VectorXd> way = {configuration};
   for (int step = 1; step < steps; ++step) {
-    const double x = static_cast<double>(step) / steps;
-    const Eigen::VectorXd here = (1.0 - (10.0 - 15.0 * x + 6.0 * x * x) * x * x * x) * off;
+    const Eigen::VectorXd here = share_left(static_cast<double>(step) / steps) * off;
     Eigen::VectorXd q = planned.configurations[static_cast<std::size_t>(step)];
     robot.integrate(Eigen::VectorXd(q).data(), here.data(), q.data());
     state.update(way.back().data());

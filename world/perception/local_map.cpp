@@ -352,8 +352,7 @@ void LocalMap::clear(const Eigen::AlignedBox3d& box) {
 
 void LocalMap::clear(std::span<const Eigen::Vector3i> voxels) {
   for (const Eigen::Vector3i& index : voxels) {
-    const Eigen::Array3i at = (index - window_.first).array();
-    if ((at < 0).any() || (at >= window_.size.array()).any()) continue;
+    if (!window_.contains(index)) continue;
     const std::size_t stored = window_.stored(index);
     if (!obstacle_.holds(log_odds_[stored]) || log_odds_[stored] == kNeverSeen) continue;
     set_log_odds(stored, static_cast<std::int8_t>(options_.log_odds.least));
