@@ -37,17 +37,13 @@ std::vector<Eigen::VectorXd> torques_along(const Robot& robot, const Motion& mot
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(robot.tangent_size());
   Eigen::VectorXd torques(robot.tangent_size()), borne(robot.tangent_size());
   const std::size_t last = motion.configurations.size() - 1;
-  CurvePoint before{{}, still, still}, after = before;
   for (std::size_t i = 0; i <= last; ++i) {
+    CurvePoint point{{}, still, still};
     if (i > 0 && i < last && !motion.stances_only) {
-      curve.step(static_cast<int>(i) - 1).at(1.0, before);
-      curve.step(static_cast<int>(i)).at(0.0, after);
-      after.acceleration = 0.5 * (after.acceleration + before.acceleration);
-    } else {
-      after.velocity = after.acceleration = still;
+      point = curve.through_vertex(static_cast<int>(i));
     }
     state.update(motion.configurations[i].data());
-    dynamics.inverse_dynamics(state, after.velocity, after.acceleration, {}, torques);
+    dynamics.inverse_dynamics(state, point.velocity, point.acceleration, {}, torques);
     borne.setZero();
     for (std::size_t c = 0; c < motion.wrenches[i].size(); ++c) {
       const LoadedContact contact = loaded_contact(state, stance_at(motion, i).contacts[c]);

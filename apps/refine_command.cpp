@@ -11,6 +11,7 @@
 #include <locograph/common/parse_number.h>
 #include <locograph/common/stop_signals.h>
 #include <locograph/planners/online/changing_obstacles.h>
+#include <locograph/planners/online/free_drive.h>
 #include <locograph/planners/online/free_way.h>
 #include <locograph/planners/online/resumed_plan.h>
 #include <locograph/planners/online/walk_plan.h>
@@ -200,7 +201,7 @@ void check_replan(const PlanFile& file, const Judging& judging) {
   }
 }
 
-/// What a robot on legs does where it has had to stop: it waits, or plans on.
+/// What a robot does where it has had to stop: it waits, or plans on.
 class GoingOn {
  public:
   /// eyes: what is known of the world; null: all of it.
@@ -211,7 +212,7 @@ class GoingOn {
         options_(options),
         planned_(motion_of(file.graph, file.plan)),
         segments_(file.plan.segments) {
-    waits_ = judging.task && !judging.task->drive && eyes == nullptr &&
+    waits_ = judging.task && eyes == nullptr &&
              ChangingObstacles(*file.plan.robot, judging.world->world()).any();
   }
 
@@ -224,7 +225,9 @@ class GoingOn {
     resumed.status = PlannerStatus::kNotFound;
     why_not_.clear();
     if (waits_) {
-      resumed = wait_for_free_way(stopped, planned_, segments_, *judging_.task, judging_.world);
+      const Task& task = *judging_.task;
+      resumed = task.drive ? wait_for_free_drive(stopped, planned_, task, judging_.world)
+                           : wait_for_free_way(stopped, planned_, segments_, task, judging_.world);
       if (resumed.success()) {
         ++waited_;
         waited_s_ += resumed.waits_s;

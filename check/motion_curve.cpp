@@ -281,6 +281,15 @@ CurvePoint MotionCurve::at_vertex(int vertex) const {
   return point;
 }
 
+CurvePoint MotionCurve::through_vertex(int vertex) const {
+  CurvePoint point = at_vertex(vertex);
+  if (vertex == 0 || vertex + 1 == static_cast<int>(motion_->configurations.size())) return point;
+  CurvePoint before;
+  step(vertex - 1).at(1.0, before);
+  point.acceleration = 0.5 * (point.acceleration + before.acceleration);
+  return point;
+}
+
 double MotionCurve::time_s(int vertex, double fraction) const {
   const std::vector<double>& times = motion_->time_s;
   const std::size_t i = static_cast<std::size_t>(vertex);

@@ -94,6 +94,8 @@ class MotionCurve {
   /// How it moves at a vertex: as the step from there begins, at the last one as the last step
   /// ends; a single vertex is at rest.
   CurvePoint at_vertex(int vertex) const;
+  /// The same, with the mean of the accelerations before and after a vertex that has both.
+  CurvePoint through_vertex(int vertex) const;
 
  private:
   Eigen::VectorXd three_point_slope(int vertex) const;

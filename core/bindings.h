@@ -23,6 +23,8 @@ namespace locograph {
 
 class Bindings {
  public:
+  /// Keeps its memory.
+  void clear() { all_.clear(); }
   void set(int number, std::shared_ptr<const Parameter> parameter) {
     const auto found = std::ranges::find(all_, number, &Binding::number);
     if (found == all_.end()) {

@@ -73,19 +73,20 @@ class Parameters {
     return typed;
   }
 
-  /// Of the parameters of type P, ascending; does not look at others.
+  /// Of the parameters of type P, ascending; does not look at others. A copy: they may be replaced
+  /// and removed while it is gone through.
   template <class P>
-  const std::set<int>& numbers_of() const {
+  std::set<int> numbers_of() const {
     static_assert(std::is_final_v<P>, "a type that others derive from has no list of its own");
-    static const std::set<int> none;
     const auto found = numbers_.find(typeid(P));
-    return found == numbers_.end() ? none : found->second;
+    return found == numbers_.end() ? std::set<int>() : found->second;
   }
   /// The lowest of them, if there is any.
   template <class P>
   std::optional<int> number_of() const {
-    const std::set<int>& numbers = numbers_of<P>();
-    return numbers.empty() ? std::nullopt : std::optional(*numbers.begin());
+    const auto found = numbers_.find(typeid(P));
+    if (found == numbers_.end() || found->second.empty()) return std::nullopt;
+    return *found->second.begin();
   }
   /// That parameter, null when there is none.
   template <class P>

@@ -2,6 +2,7 @@
 #include <locograph/core/problem.h>
 
 #include <algorithm>
+#include <array>
 
 namespace locograph {
 
@@ -17,47 +18,40 @@ double edge_work(double rows, double columns) {
   return 1e-9 * (40.0 + rows * columns * (1.5 + 0.15 * columns));
 }
 
-/// Gives each chunk that sums into a place a destination of its own, the first one the place.
-class Destinations {
- public:
-  Destinations(std::int64_t places, std::int64_t size) : last_(places), size_(size) {}
-
-  std::int64_t of(std::int64_t place, std::int64_t own, int size, int chunk) {
-    Last& last = last_[place];
-    if (last.chunk < 0) last = {chunk, own};
-    if (last.chunk != chunk) {
-      reductions_.push_back({size_, own, size});
-      last = {chunk, size_};
-      size_ += size;
-    }
-    return last.offset;
-  }
-
-  void finish(Problem::Reductions& out) {
-    std::stable_sort(reductions_.begin(), reductions_.end(),
-                     [](const auto& a, const auto& b) { return a.to < b.to; });
-    out.size = size_;
-    out.part_begin.assign(1, 0);
-    const int count = static_cast<int>(reductions_.size());
-    for (int part = 1; part <= kChunks && out.part_begin.back() < count; ++part) {
-      int end = std::max(out.part_begin.back() + 1, count * part / kChunks);
-      while (end < count && reductions_[end].to == reductions_[end - 1].to) ++end;
-      out.part_begin.push_back(end);
-    }
-    out.all = std::move(reductions_);
-  }
-
- private:
-  struct Last {
-    int chunk = -1;
-    std::int64_t offset = 0;
-  };
-  std::vector<Last> last_;
-  std::vector<Problem::Reduction> reductions_;
-  std::int64_t size_;
-};
-
 }  // namespace
+
+void Problem::Destinations::start(std::int64_t places, std::int64_t size) {
+  last_.assign(static_cast<std::size_t>(places), {});
+  reductions_.clear();
+  size_ = size;
+}
+
+std::int64_t Problem::Destinations::of(std::int64_t place, std::int64_t own, int size, int chunk) {
+  Last& last = last_[place];
+  if (last.chunk < 0) last = {chunk, own};
+  if (last.chunk != chunk) {
+    reductions_.push_back({size_, own, size});
+    last = {chunk, size_};
+    size_ += size;
+  }
+  return last.offset;
+}
+
+void Problem::Destinations::finish(Reductions& out) {
+  // Those of one destination in the order of the chunks, in which they were made.
+  std::sort(reductions_.begin(), reductions_.end(), [](const auto& a, const auto& b) {
+    return a.to != b.to ? a.to < b.to : a.from < b.from;
+  });
+  out.size = size_;
+  out.part_begin.assign(1, 0);
+  const int count = static_cast<int>(reductions_.size());
+  for (int part = 1; part <= kChunks && out.part_begin.back() < count; ++part) {
+    int end = std::max(out.part_begin.back() + 1, count * part / kChunks);
+    while (end < count && reductions_[end].to == reductions_[end - 1].to) ++end;
+    out.part_begin.push_back(end);
+  }
+  out.all.swap(reductions_);
+}
 
 int BlockPattern::block_of(int r, int c) const {
   const auto begin = row.begin() + column_begin[c];
@@ -72,6 +66,7 @@ void Problem::begin(Graph& graph) {
     if (slot < static_cast<int>(place_.size())) place_[slot] = {};
   }
   touched_.clear();
+  compiled_slots_.clear();
   place_.resize(graph.vertex_slots());
   free_.clear();
   active_.resize(graph.vertex_pools().size());
@@ -119,12 +114,11 @@ void Problem::compile(Graph& graph) {
     }
     if (!eliminated) pattern_.kept = static_cast<int>(free_.size());
   }
-  std::vector<int> all;
-  all.reserve(graph.edge_count());
+  compiled_slots_.reserve(graph.edge_count());
   for (int e = 0; e < graph.edge_slots(); ++e) {
-    if (graph.edge_alive(e)) all.push_back(e);
+    if (graph.edge_alive(e)) compiled_slots_.push_back(e);
   }
-  compile_edges(all);
+  compile_edges();
 }
 
 void Problem::compile(Graph& graph, std::span<const int> free_vertex_slots) {
@@ -150,7 +144,8 @@ void Problem::compile_on(Graph& graph, std::span<const int> edge_slots) {
     }
     if (!eliminated) pattern_.kept = static_cast<int>(free_.size());
   }
-  compile_edges({edge_slots.begin(), edge_slots.end()});
+  compiled_slots_.assign(edge_slots.begin(), edge_slots.end());
+  compile_edges();
 }
 
 void Problem::compile_window(std::span<const int> free_vertex_slots,
@@ -164,7 +159,7 @@ void Problem::compile_window(std::span<const int> free_vertex_slots,
     }
     if (!eliminated) pattern_.kept = static_cast<int>(free_.size());
   }
-  std::vector<int> touching;
+  std::vector<int>& touching = compiled_slots_;
   const auto touch = [&](int slot) {
     const std::vector<int>& incident = graph_->incident_edges(slot);
     touching.insert(touching.end(), incident.begin(), incident.end());
@@ -193,7 +188,7 @@ void Problem::compile_window(std::span<const int> free_vertex_slots,
       if (place_[v].state_offset < 0) add_vertex(v, -1);
     }
   }
-  compile_edges(touching);
+  compile_edges();
 }
 
 void Problem::analyse(LinearSolver& solver) const {
@@ -206,8 +201,8 @@ void Problem::analyse(LinearSolver& solver) const {
   }
 }
 
-void Problem::compile_edges(const std::vector<int>& edge_slots) {
-  for (const int e : edge_slots) {
+void Problem::compile_edges() {
+  for (const int e : compiled_slots_) {
     const Graph::EdgeRecord& record = graph_->edge_record(e);
     edges_[record.pool].edges.push_back(record.index);
     const int dimension = graph_->edge_pools()[record.pool]->dimension(record.index);
@@ -218,7 +213,7 @@ void Problem::compile_edges(const std::vector<int>& edge_slots) {
       constraint_rows_ += dimension;
     }
   }
-  edge_count_ = static_cast<int>(edge_slots.size());
+  edge_count_ = static_cast<int>(compiled_slots_.size());
   for (CompiledEdges& compiled : edges_) std::sort(compiled.edges.begin(), compiled.edges.end());
   divide_into_chunks();
   scratch_bytes_ = 0;
@@ -278,26 +273,27 @@ void Problem::divide_into_chunks() {
     compiled.chunk_begin[0] = 0;
   }
   if (chunks_ == 1) return;
-  std::vector<int> chunk_of(work_.size());
+  chunk_of_.resize(work_.size());
   double sum = 0.0;
   for (std::size_t b = 0; b < work_.size(); ++b) {
-    chunk_of[b] = std::min(chunks_ - 1, static_cast<int>(chunks_ * (sum + 0.5 * work_[b]) / total));
+    chunk_of_[b] =
+        std::min(chunks_ - 1, static_cast<int>(chunks_ * (sum + 0.5 * work_[b]) / total));
     sum += work_[b];
   }
-  std::vector<int> sorted;
   for (std::size_t p = 0; p < edges_.size(); ++p) {
     CompiledEdges& compiled = edges_[p];
     const EdgePool& pool = *graph_->edge_pools()[p];
     std::vector<int>& begin = compiled.chunk_begin;
     begin.assign(chunks_ + 1, 0);
-    for (const int index : compiled.edges) ++begin[chunk_of[last_block(pool, index) + 1] + 1];
+    for (const int index : compiled.edges) ++begin[chunk_of_[last_block(pool, index) + 1] + 1];
     for (int c = 0; c < chunks_; ++c) begin[c + 1] += begin[c];
-    sorted.resize(compiled.edges.size());
-    std::vector<int> next(begin.begin(), begin.end() - 1);
+    sorted_.resize(compiled.edges.size());
+    std::array<int, kChunks> next;
+    std::copy(begin.begin(), begin.end() - 1, next.begin());
     for (const int index : compiled.edges) {
-      sorted[next[chunk_of[last_block(pool, index) + 1]]++] = index;
+      sorted_[next[chunk_of_[last_block(pool, index) + 1]]++] = index;
     }
-    compiled.edges.swap(sorted);
+    std::copy(sorted_.begin(), sorted_.end(), compiled.edges.begin());
   }
 }
 
@@ -355,8 +351,9 @@ void Problem::build_pattern() {
 }
 
 void Problem::build_offsets() {
-  Destinations hessian(pattern_.blocks(), pattern_.values());
-  Destinations gradient(pattern_.size(), pattern_.scalar_size());
+  Destinations &hessian = hessian_destinations_, &gradient = gradient_destinations_;
+  hessian.start(pattern_.blocks(), pattern_.values());
+  gradient.start(pattern_.size(), pattern_.scalar_size());
   for (CompiledEdges& compiled : edges_) {
     compiled.blocks.clear();
     compiled.block_begin.assign(1, 0);

@@ -92,11 +92,28 @@ class Problem {
   void begin(Graph& graph);
   void add_vertex(int slot, int tangent_offset);
   void compile_window(std::span<const int> free_vertex_slots, const std::span<const int>* held);
-  void compile_edges(const std::vector<int>& edge_slots);
+  void compile_edges();
   void divide_into_chunks();
   void compile_constraints();
   void build_pattern();
   void build_offsets();
+
+  /// Gives each chunk that sums into a place a destination of its own, the first one the place.
+  class Destinations {
+   public:
+    void start(std::int64_t places, std::int64_t size);
+    std::int64_t of(std::int64_t place, std::int64_t own, int size, int chunk);
+    void finish(Reductions& out);
+
+   private:
+    struct Last {
+      int chunk = -1;
+      std::int64_t offset = 0;
+    };
+    std::vector<Last> last_;
+    std::vector<Reduction> reductions_;
+    std::int64_t size_ = 0;
+  };
 
   struct Place {
     int block = -1;  ///< block row, -1 when fixed
@@ -112,7 +129,10 @@ class Problem {
   std::vector<CompiledEdges> edges_;
   BlockPattern pattern_;
   std::vector<std::uint64_t> pairs_;
-  std::vector<double> work_;  ///< of the edges that end in each block row
+  std::vector<int> compiled_slots_;  ///< of all edges
+  std::vector<double> work_;         ///< of the edges that end in each block row
+  std::vector<int> chunk_of_, sorted_;
+  Destinations hessian_destinations_, gradient_destinations_;
   int chunks_ = 1;
   Reductions hessian_reductions_, gradient_reductions_;
   std::vector<CompiledConstraint> constraints_;

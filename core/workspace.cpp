@@ -7,7 +7,7 @@ namespace locograph {
 
 void Workspace::allocate(const Problem& problem) {
   problem_ = &problem;
-  bindings_ = {};
+  bindings_.clear();
   state_.resize(problem.state_size());
   trial_.resize(problem.state_size());
   hessian_.resize(problem.hessian_reductions().size);
@@ -29,7 +29,7 @@ void Workspace::allocate(const Problem& problem) {
   for (std::size_t p = 0; p < pools; ++p) {
     const VertexPool& pool = *problem.graph().vertex_pools()[p];
     const std::vector<ActiveVertex>& active = problem.active()[p];
-    // A store whose places have the same sizes serves a window that slid.
+    // A store whose places have the same sizes serves a window that slid or got shorter.
     if (derived_[p] && derived_for_[p].fits(pool, active)) continue;
     derived_[p] = pool.make_derived(active);
     if (derived_[p]) derived_for_[p].assign(pool, active);
@@ -42,9 +42,10 @@ void Workspace::allocate(const Problem& problem) {
 bool Workspace::DerivedFor::fits(const VertexPool& other,
                                  std::span<const ActiveVertex> active) const {
   if (pool != &other || type != other.type()) return false;
-  return std::equal(
-      active.begin(), active.end(), state_sizes.begin(), state_sizes.end(),
-      [&](const ActiveVertex& v, int size) { return other.state_size(v.index) == size; });
+  return active.size() <= state_sizes.size() &&
+         std::equal(
+             active.begin(), active.end(), state_sizes.begin(),
+             [&](const ActiveVertex& v, int size) { return other.state_size(v.index) == size; });
 }
 
 void Workspace::DerivedFor::assign(const VertexPool& other, std::span<const ActiveVertex> active) {

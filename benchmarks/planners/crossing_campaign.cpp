@@ -1,11 +1,13 @@
-// A person walks across the way of the CENTAURO drive at 0.5 m/s, again and again: of the windows
-// that the local planner calls feasible, how many does the judge refuse; of those that the judge
-// accepts, how many does the planner call feasible.
+// A person walks across the way of the CENTAURO drive at 0.5 m/s, again and again: how often does
+// the robot arrive, waiting where it has to, and how long does it take; of the windows that the
+// local planner calls feasible, how many does the judge refuse; of those that the judge accepts,
+// how many does the planner call feasible.
 //
-//     crossing_campaign [CASES] [EVERY] [DEADLINE_MS]
+//     crossing_campaign [CASES] [--every N] [--rate HZ] [--iterations N]
 //
-// Every EVERY-th window is judged. Prints one JSON object: a row for each crossing, then the
-// totals.
+// The window of every N-th cycle is judged. Prints one JSON object: a row for each crossing, then
+// the totals.
+#include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -19,7 +21,8 @@ void run(int cases, const CrossingOptions& options) {
   const Scenario scenario = load_scenario(
       LOCOGRAPH_SOURCE_DIR "/planners/scenarios/centauro_drive.xml", LOCOGRAPH_SOURCE_DIR);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  int windows = 0, called = 0, judged = 0, agreed = 0, wrong = 0, arrived = 0;
+  int windows = 0, called = 0, judged = 0, agreed = 0, wrong = 0, arrived = 0, stopped = 0;
+  std::vector<double> times;
   for (const Crossing& crossing : crossings(cases)) {
     const CrossingResult result = run_crossing(scenario, crossing, options);
     rows.push_back({{"x_m", crossing.x_m},
@@ -31,8 +34,12 @@ void run(int cases, const CrossingOptions& options) {
                     {"agreed_feasible", result.agreed_feasible},
                     {"wrongly_feasible", result.wrongly_feasible},
                     {"refused", result.refused},
-                    {"steps", result.steps},
-                    {"arrived", result.arrived}});
+                    {"arrived", result.arrived},
+                    {"stopped_safely", result.stopped_safely},
+                    {"waits", result.waits},
+                    {"times_planned", result.times_planned},
+                    {"reason", result.reason},
+                    {"not_waited", result.not_waited}});
     std::cerr << rows.size() << " of " << cases << '\n';
     windows += result.windows;
     called += result.called_feasible;
@@ -40,7 +47,10 @@ void run(int cases, const CrossingOptions& options) {
     agreed += result.agreed_feasible;
     wrong += result.wrongly_feasible;
     arrived += result.arrived ? 1 : 0;
+    stopped += result.stopped_safely ? 1 : 0;
+    if (result.arrived) times.push_back(result.times_planned);
   }
+  std::ranges::sort(times);
   const nlohmann::ordered_json json = {
       {"crossings", cases},
       {"windows", windows},
@@ -49,6 +59,10 @@ void run(int cases, const CrossingOptions& options) {
       {"wrongly_feasible", wrong},
       {"accepted_called_feasible", judged > 0 ? 1.0 * agreed / judged : 1.0},
       {"arrived", arrived},
+      {"stopped_safely", stopped},
+      {"times_planned",
+       {{"median", times.empty() ? 0.0 : times[times.size() / 2]},
+        {"most", times.empty() ? 0.0 : times.back()}}},
       {"rows", rows}};
   std::cout << json.dump(2) << '\n';
 }
@@ -58,14 +72,13 @@ void run(int cases, const CrossingOptions& options) {
 
 int main(int argc, char** argv) {
   int cases = 24;
-  double deadline_ms = 0.0;
   locograph::CrossingOptions options;
   locograph::OptionParser app("A person crosses the way of a drive", "crossing_campaign");
   app.add_option("CASES", cases, "How many crossings").positive();
-  app.add_option("EVERY", options.every, "Judge every n-th window").positive();
-  app.add_option("DEADLINE_MS", deadline_ms, "Of a cycle; 0: none").not_negative();
-  return locograph::run_benchmark(app, argc, argv, [&] {
-    options.cycle_deadline_s = 1e-3 * deadline_ms;
-    locograph::run(cases, options);
-  });
+  app.add_option("--every", options.every, "Judge the window of every n-th cycle").positive();
+  app.add_option("--rate", options.rate_hz, "Cycles in a second of the plan; 0: one a step")
+      .not_negative();
+  app.add_option("--iterations", options.cycle_iterations, "Of a cycle at most; 0: any number")
+      .not_negative();
+  return locograph::run_benchmark(app, argc, argv, [&] { locograph::run(cases, options); });
 }

@@ -4,6 +4,8 @@
 #include <locograph/check/motion_curve.h>
 #include <locograph/planners/offline/drive/drive_graph.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
+#include <locograph/planners/online/free_drive.h>
+#include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/slope_limits.h>
 
 namespace locograph {
@@ -79,39 +81,55 @@ std::vector<Crossing> crossings(int count) {
 
 CrossingResult run_crossing(const Scenario& scenario, const Crossing& crossing,
                             const CrossingOptions& options) {
-  const Task task = task_of(scenario);
-  Graph graph = *drive_graph(task, plan_wheeled_drive(task).motion);
-  LocalPlanner planner(graph, options.planner);
-  const Plan& plan = planner.plan();
+  const auto task = std::make_shared<const Task>(task_of(scenario));
+  Motion planned = plan_wheeled_drive(*task).motion;
+  const double planned_s = planned.time_s.back();
+  Graph graph = *drive_graph(*task, planned);
   const double meets_at_s = crossing.x_m / scenario.drive->speed_m_s + crossing.delay_s;
-  const std::vector<Obstacle> obstacles = {person(crossing, meets_at_s)};
-  World seen;
-  seen.obstacles = obstacles;
-  planner.show(std::make_shared<const WorldSnapshot>(seen));
-  World world = task.world->world();
-  world.obstacles = obstacles;
-  const Judge judge(plan.robot->robot, world);
-  const CheckOptions check = window_options(task);
+  World known = plan_of(graph).world->snapshot->world();
+  known.obstacles = {person(crossing, meets_at_s)};
+  const auto seen = std::make_shared<const WorldSnapshot>(known);
+  Judging judging = judging_of(task);
+  World truth = judging.world->world();
+  truth.obstacles = known.obstacles;
+  judging.world = std::make_shared<const WorldSnapshot>(truth);
+  const Judge judge(judging.robot, judging.world);
+  const CheckOptions check = window_options(*task);
 
   CrossingResult result;
-  for (int executed = 0; executed + 1 < planner.plan_size(); ++executed) {
-    const CycleReport cycle =
-        planner.cycle(executed, {.deadline = Deadline::of_limit(options.cycle_deadline_s)});
-    if (executed % options.every == 0) {
-      const CheckReport judged = judge.check(window_of(graph, plan, cycle), check);
-      ++result.windows;
-      result.called_feasible += cycle.success() ? 1 : 0;
-      result.judged_feasible += judged.feasible ? 1 : 0;
-      result.agreed_feasible += cycle.success() && judged.feasible ? 1 : 0;
-      if (cycle.success() && !judged.feasible) {
-        ++result.wrongly_feasible;
-        if (result.refused.empty()) result.refused = first_refusal(judged);
-      }
-    }
-    if (!cycle.next_feasible) return result;
-    ++result.steps;
-  }
-  result.arrived = true;
+  WalkOptions walk = walk_options_for(plan_of(graph));
+  walk.rate_hz = options.rate_hz;
+  walk.cycle_iterations = options.cycle_iterations;
+  walk.verify = step_check(judging);
+  walk.resume = [&](const Graph& stopped) -> std::optional<Graph> {
+    ResumedPlan waited = wait_for_free_drive(stopped, planned, *task, seen);
+    result.not_waited = waited.success() ? "" : waited.reason;
+    if (!waited.success()) return {};
+    ++result.waits;
+    planned = motion_of(*waited.graph, plan_of(*waited.graph));
+    return std::move(waited.graph);
+  };
+  int cycles = 0;
+  walk.on_cycle = [&](const CycleReport& cycle) {
+    if (cycles++ % options.every != 0) return;
+    const CheckReport judged = judge.check(window_of(graph, plan_of(graph), cycle), check);
+    ++result.windows;
+    result.called_feasible += cycle.success() ? 1 : 0;
+    result.judged_feasible += judged.feasible ? 1 : 0;
+    result.agreed_feasible += cycle.success() && judged.feasible ? 1 : 0;
+    if (!cycle.success() || judged.feasible) return;
+    ++result.wrongly_feasible;
+    if (result.refused.empty()) result.refused = first_refusal(judged);
+  };
+  const WalkReport report = walk_plan(
+      graph, [&seen](int executed) { return executed == 0 ? seen : nullptr; }, walk);
+  const Plan walked = plan_of(graph);
+  judging.incomplete = walked.incomplete;
+  const bool feasible = judged(graph, walked, judging).feasible;
+  result.arrived = report.success() && feasible;
+  result.stopped_safely = !report.success() && feasible;
+  result.times_planned = motion_of(graph, walked).time_s.back() / planned_s;
+  result.reason = report.reason;
   return result;
 }
 

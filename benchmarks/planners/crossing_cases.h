@@ -1,6 +1,6 @@
 #pragma once
-/// A person walks across the way of the CENTAURO drive: what the local planner says of its windows,
-/// beside what the judge says of them.
+/// A person walks across the way of the CENTAURO drive, which is refined and waits where it has to:
+/// whether it arrives, and what the local planner says of its windows, beside what the judge says.
 ///
 ///     for (const Crossing& crossing : crossings(24)) {
 ///       const CrossingResult result = run_crossing(scenario, crossing, {});
@@ -9,7 +9,7 @@
 ///
 /// Shared by a benchmark and a test.
 
-#include <locograph/planners/online/local_planner.h>
+#include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/scenario/scenario.h>
 
 #include <string>
@@ -28,20 +28,23 @@ struct Crossing {
 std::vector<Crossing> crossings(int count);
 
 struct CrossingResult {
-  int windows = 0;           ///< judged
-  int called_feasible = 0;   ///< by the planner
-  int judged_feasible = 0;   ///< by the judge
-  int agreed_feasible = 0;   ///< by both
-  int wrongly_feasible = 0;  ///< by the planner alone
-  int steps = 0;             ///< executed
-  bool arrived = false;      ///< all of them
-  std::string refused;       ///< what the judge said of the first window wrongly called feasible
+  int windows = 0;              ///< judged
+  int called_feasible = 0;      ///< by the planner
+  int judged_feasible = 0;      ///< by the judge
+  int agreed_feasible = 0;      ///< by both
+  int wrongly_feasible = 0;     ///< by the planner alone
+  std::string refused;          ///< what the judge said of the first window wrongly called feasible
+  bool arrived = false;         ///< and all of the motion is feasible for the judge
+  bool stopped_safely = false;  ///< it is feasible, but does not arrive
+  int waits = 0;
+  double times_planned = 0.0;  ///< how many times as long as planned it took
+  std::string reason, not_waited;
 };
 
 struct CrossingOptions {
-  LocalPlannerOptions planner;
-  double cycle_deadline_s = 0.0;  ///< 0: none
-  int every = 1;                  ///< how many cycles from one window that is judged to the next
+  double rate_hz = 50.0;     ///< see WalkOptions
+  int cycle_iterations = 1;  ///< likewise
+  int every = 10;            ///< how many cycles from one window that is judged to the next
 };
 
 CrossingResult run_crossing(const Scenario& scenario, const Crossing& crossing,

@@ -6,14 +6,16 @@
 //
 // Each case draws a time of the plan and a displacement: the base by up to `--push` and `--turn`,
 // each joint by up to `--joints`. The robot is put on the contacts that it has there, balls where
-// they have rolled to, others by up to `--contacts` beside where they are planned; what is off by
-// more, or is refused by the judge as it stands, is drawn again. It is measured there, at the
-// velocity of the plan, and walked on for 2 s of the plan, each step judged. It is back when its
-// base is within 1 cm and 0.01 rad of the plan then. Prints one JSON object.
+// they have rolled to, others by up to `--contacts` beside where they are planned, wheels that
+// stand as the plan has turned them; what is off by more, or is refused by the judge as it stands,
+// is drawn again. It is measured there, at the velocity of the plan, and walked on for 2 s of the
+// plan, each step judged. It is back when its base is within 1 cm and 0.01 rad of the plan then.
+// Prints one JSON object.
 #include <locograph/check/judge.h>
 #include <locograph/common/data_folder.h>
 #include <locograph/common/uniform.h>
 #include <locograph/core/graph_file.h>
+#include <locograph/planners/offline/drive/wheel_motion.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
@@ -156,7 +158,30 @@ class Campaign {
     }
     ContactProjection closed(robot());
     closed.set(contacts, balls);
-    return closed.project(q);
+    const Stance& stance = plan.stance_from[static_cast<std::size_t>(at)]->stance;
+    constexpr int kTries = 20;
+    for (int k = 0; k < kTries; ++k) {
+      if (!closed.project(q)) return false;
+      if (turn_back(planned, stance, q)) return true;
+    }
+    return false;
+  }
+
+  /// Turns wheels that stand as the plan has them; whether they all were.
+  bool turn_back(const RobotState& planned, const Stance& stance, Eigen::VectorXd& q) {
+    constexpr double kTurned_rad = 1e-7;
+    WheelMotion wheels(robot(), stance);
+    bool as_planned = true;
+    for (int w = 0; w < wheels.wheels(); ++w) {
+      const StanceParameter::StandingWheel& standing = wheels.wheel(w);
+      if (!standing.locked) continue;
+      const Eigen::Vector3d heading = WheelPose(planned, standing.wheel).heading(standing.normal);
+      const Eigen::Vector3d now = wheels.pose(q, w).heading(standing.normal);
+      if (heading.cross(now).norm() <= kTurned_rad) continue;
+      as_planned = false;
+      wheels.steer(q, w, heading);
+    }
+    return as_planned;
   }
 
   Json walk(const std::string& file, int at, const Eigen::VectorXd& pushed) {

@@ -28,6 +28,9 @@ enum class PlannerStatus {
   kStopped,
 };
 
+/// What people are told of a job that a termination has ended so.
+const char* end_text(PlannerStatus ended);
+
 /// "solved", "infeasible", "not_found", "deadline", "stopped"
 const std::string& planner_status_name(PlannerStatus status);
 
@@ -47,6 +50,8 @@ struct PlannerStatistics {
 };
 
 /// How a termination ends a job that has made some iterations; nothing: it does not.
+std::optional<PlannerStatus> ended_as(const Termination& termination, int iterations = 0);
+/// The same as an answer, with what people are told.
 std::optional<PlannerAnswer> end_by(const Termination& termination, int iterations = 0);
 
 }  // namespace locograph

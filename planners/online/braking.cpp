@@ -1,6 +1,5 @@
 #include <locograph/common/ranges.h>
 #include <locograph/planners/online/braking.h>
-#include <locograph/planners/online/changing_obstacles.h>
 #include <locograph/planners/plan/carried_wrenches.h>
 
 #include <algorithm>

@@ -12,6 +12,7 @@
 /// is known comes to it within kStands_s, if there is such a place.
 
 #include <locograph/check/check_report.h>
+#include <locograph/planners/online/changing_obstacles.h>
 #include <locograph/planners/online/online_plan.h>
 
 #include <Eigen/Core>
@@ -20,9 +21,6 @@
 #include <vector>
 
 namespace locograph {
-
-/// For so long a place of rest stays free.
-constexpr double kStands_s = 10.0;
 
 class Braking {
  public:

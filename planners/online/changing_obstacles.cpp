@@ -23,6 +23,23 @@ std::vector<Eigen::Vector3d> ChangingObstacles::centres(const Eigen::VectorXd& c
   return centres;
 }
 
+std::optional<double> ChangingObstacles::free_after(const Motion& motion, double begin_s) {
+  constexpr double kStep_s = 0.25, kApart_m = 0.02, kStillApart_m = 5e-3;
+  std::vector<std::vector<Eigen::Vector3d>> all;
+  for (const Eigen::VectorXd& q : motion.configurations) all.push_back(centres(q));
+  const auto is_free = [&](double after_s) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (!keep_away(all[i], begin_s + after_s + motion.time_s[i], kApart_m)) return false;
+    }
+    return true;
+  };
+  for (double after_s = 0.0; after_s <= kWaits_s; after_s += kStep_s) {
+    if (is_free(after_s)) return after_s;
+    if (!keep_away(all.front(), begin_s + after_s, kStillApart_m)) break;
+  }
+  return {};
+}
+
 bool ChangingObstacles::keep_away(const std::vector<Eigen::Vector3d>& centres, double time_s,
                                   double apart_m) const {
   return std::ranges::all_of(obstacles_, [&](const Obstacle* obstacle) {

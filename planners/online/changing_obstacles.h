@@ -6,14 +6,20 @@
 ///     const std::vector<Eigen::Vector3d> centres = obstacles.centres(planned.front());
 ///     const bool is_free = obstacles.keep_away(centres, 12.5, 0.02);
 
+#include <locograph/check/motion.h>
 #include <locograph/plugins/configuration/robot_parameters.h>
 #include <locograph/robots/robot_state.h>
 #include <locograph/world/world.h>
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 namespace locograph {
+
+/// For so long a place of rest stays free if there is such a place, and so long a robot waits at
+/// most, as long as where it stands is free.
+constexpr double kStands_s = 10.0, kWaits_s = 20.0;
 
 class ChangingObstacles {
  public:
@@ -25,6 +31,10 @@ class ChangingObstacles {
   std::vector<Eigen::Vector3d> centres(const Eigen::VectorXd& configuration);
   /// Whether spheres with these centres are further away than apart_m from all that is there then.
   bool keep_away(const std::vector<Eigen::Vector3d>& centres, double time_s, double apart_m) const;
+  /// The least time, in steps of 0.25 s, by which a motion has to begin later than at begin_s, to
+  /// which its own times are added, so that it keeps 2 cm away. nullopt: that is more than
+  /// kWaits_s, or its first configuration does not stay free until then.
+  std::optional<double> free_after(const Motion& motion, double begin_s);
 
  private:
   const RobotParameter& robot_;

@@ -18,17 +18,19 @@ struct WindowStatistics : PlannerStatistics {
   double linearise_s = 0.0, solve_s = 0.0, evaluate_s = 0.0;  ///< parts of optimise_s
 };
 
-/// Solved: the whole window is feasible.
+/// Solved: the whole window is feasible. A cycle does not put a failure into words, which would
+/// allocate memory: LocalPlanner::explain() does.
 struct CycleReport : PlannerAnswer {
   int executed = 0;
   int window = 0;              ///< configurations freed
   bool next_feasible = false;  ///< the configuration that is executed next, and the way to it
   int feasible_steps = 0;      ///< of the window, before the first violation
   /// The worst one of the first step that violates any, and the configuration that this leads to.
-  std::optional<ConstraintViolation> violation;
-  int violated_at = -1;  ///< index in the plan
-  bool detour = false;   ///< proposals were asked
+  std::optional<ConstraintViolation> violation;  ///< by explain()
+  int violated_at = -1;                          ///< index in the plan
+  bool detour = false;                           ///< proposals were asked
   bool deadline_missed = false;
+  bool cut_short = false;  ///< the termination ended the cycle before its search was over
   WindowStatistics statistics;
 };
 

@@ -42,14 +42,15 @@ double DetourSearch::obstacle_cost(const WorldDistance& world, double time_s,
 }
 
 void DetourSearch::forget() {
-  obstacle_.clear();
+  for (Costs& costs : obstacle_) costs.index = -1;
   progress_.first = -1;
 }
 
 /// A configuration with its base turned.
 void DetourSearch::place(const double* planned, int yaw) {
-  const Eigen::Map<const Eigen::VectorXd> q(planned, robot_->robot->configuration_size());
-  state_.update(turned(q, yaw * options_.yaw_grid_rad).data());
+  turned_ = Eigen::Map<const Eigen::VectorXd>(planned, robot_->robot->configuration_size());
+  turn_base(yaw * options_.yaw_grid_rad, turned_.data());
+  state_.update(turned_.data());
   for (std::size_t s = 0; s < centres_.size(); ++s) {
     const CollisionSphere& sphere = robot_->spheres[s];
     centres_[s] = state_.world_from_link(sphere.link) * sphere.center;
@@ -63,7 +64,11 @@ void DetourSearch::place(const double* planned, int yaw) {
 /// Whether the costs of a configuration are there.
 bool DetourSearch::fill_obstacle_costs(int index, const double* planned, const WorldDistance& world,
                                        double time_s, Slice& slice) {
-  Costs& costs = obstacle_[index];
+  Costs& costs = costs_of(index);
+  if (costs.index != index) {
+    costs.index = index;
+    costs.done = 0;
+  }
   const int in_row = half_ + 1, all = yaws() * in_row;  // of every other offset
   if (costs.of.empty()) costs.of.resize(static_cast<std::size_t>(yaws() * offsets()));
   const Eigen::Vector3d side = left_of(planned);
@@ -100,7 +105,7 @@ void DetourSearch::go_on(int step, int y) {
   const int steepest = options_.steepest, most_yaw = options_.most_yaw;
   const double grid2 = options_.grid_m * options_.grid_m;
   const double yaw_grid2 = options_.yaw_grid_rad * options_.yaw_grid_rad;
-  const std::vector<double>& obstacle = obstacle_.at(progress_.first + step).of;
+  const std::vector<double>& obstacle = costs_of(progress_.first + step).of;
   std::int8_t* choice = choice_.data() + static_cast<std::size_t>(step) * cost_.size();
   for (int o = 0; o < offsets(); ++o) {
     const double here = obstacle[y * offsets() + o] +
@@ -145,33 +150,37 @@ bool DetourSearch::find_ways(Slice& slice) {
   return true;
 }
 
-std::vector<Detour> DetourSearch::best_way() const {
+void DetourSearch::read_best_way() {
   const int steepest = options_.steepest, most_yaw = options_.most_yaw;
   int state = static_cast<int>(std::min_element(cost_.begin(), cost_.end()) - cost_.begin());
-  std::vector<Detour> result(static_cast<std::size_t>(progress_.steps));
+  found_.resize(static_cast<std::size_t>(progress_.steps));
   for (int k = progress_.steps - 1; k >= 0; --k) {
     const int s = state % slopes_ - steepest, o = state / slopes_ % offsets(),
               y = state / slopes_ / offsets();
-    result[static_cast<std::size_t>(k)] = {(o - half_) * options_.grid_m,
+    found_[static_cast<std::size_t>(k)] = {(o - half_) * options_.grid_m,
                                            (y - most_yaw) * options_.yaw_grid_rad};
     const int choice = choice_[static_cast<std::size_t>(k) * cost_.size() + state];
     const int turning = choice > 1 ? 1 : choice < -1 ? -1 : 0;
     state = state_of(y - turning, o - s, s - (choice - 3 * turning));
   }
-  return result;
 }
 
-std::vector<Detour> DetourSearch::find(int first, const std::vector<const double*>& plan,
-                                       const std::vector<double>& time_s,
-                                       const WorldDistance& world, const Detour& start,
-                                       double start_slope_m, const Termination& termination) {
+const std::vector<Detour>& DetourSearch::find(int first, const std::vector<const double*>& plan,
+                                              const std::vector<double>& time_s,
+                                              const WorldDistance& world, const Detour& start,
+                                              double start_slope_m,
+                                              const Termination& termination) & {
   const int steps = static_cast<int>(plan.size());
   Slice slice{termination};
-  obstacle_.erase(obstacle_.begin(), obstacle_.lower_bound(first));
+  found_.clear();
+  if (obstacle_.size() < plan.size()) {
+    obstacle_.resize(plan.size());
+    forget();
+  }
   for (int k = 0; k < steps; ++k) {
     if (!fill_obstacle_costs(first + k, plan[static_cast<std::size_t>(k)], world,
                              time_s[static_cast<std::size_t>(k)], slice)) {
-      return {};
+      return found_;
     }
   }
   const bool goes_on = progress_.first == first && progress_.steps == steps &&
@@ -179,9 +188,10 @@ std::vector<Detour> DetourSearch::find(int first, const std::vector<const double
                        progress_.start.yaw_rad == start.yaw_rad &&
                        progress_.start_slope_m == start_slope_m;
   if (!goes_on) begin_ways({first, steps, start, start_slope_m});
-  if (!find_ways(slice)) return {};
+  if (!find_ways(slice)) return found_;
   progress_.first = -1;
-  return best_way();
+  read_best_way();
+  return found_;
 }
 
 }  // namespace locograph

@@ -23,7 +23,6 @@
 #include <locograph/robots/robot_state.h>
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <vector>
 
@@ -57,11 +56,11 @@ class DetourSearch {
   /// termination ends it. What has been worked out by then is kept for the next call, the costs of
   /// obstacles by index in the plan, and every call works out some more. Iterations of the
   /// termination: the costs of one configuration with one offset, or a fifth of a row of the
-  /// dynamic programming.
-  std::vector<Detour> find(int first, const std::vector<const double*>& plan,
-                           const std::vector<double>& time_s, const WorldDistance& world,
-                           const Detour& start = {}, double start_slope_m = 0.0,
-                           const Termination& termination = {});
+  /// dynamic programming. Does not allocate once plans of that size have been seen.
+  const std::vector<Detour>& find(int first, const std::vector<const double*>& plan,
+                                  const std::vector<double>& time_s, const WorldDistance& world,
+                                  const Detour& start = {}, double start_slope_m = 0.0,
+                                  const Termination& termination = {}) &;
 
   /// The world or the plan has changed: the costs that were kept do not hold any more.
   void forget();
@@ -71,6 +70,7 @@ class DetourSearch {
   /// every other offset.
   struct Costs {
     std::vector<double> of;
+    int index = -1;  ///< of the configuration in the plan
     int done = 0;
   };
   /// What the dynamic programming is about, and how far it has come.
@@ -96,7 +96,10 @@ class DetourSearch {
   void begin_ways(const Progress& from);
   bool find_ways(Slice& slice);
   void go_on(int step, int yaw);
-  std::vector<Detour> best_way() const;
+  void read_best_way();
+  Costs& costs_of(int index) {
+    return obstacle_[static_cast<std::size_t>(index) % obstacle_.size()];
+  }
   int state_of(int yaw, int offset, int slope) const {
     return (yaw * offsets() + offset) * slopes_ + slope + options_.steepest;
   }
@@ -110,12 +113,14 @@ class DetourSearch {
   int half_ = 0;    ///< offsets run from −half_ to half_ grid steps
   int slopes_ = 0;  ///< 2 · steepest + 1
   std::vector<Eigen::Vector3d> centres_, bound_centres_;
-  std::map<int, Costs> obstacle_;  ///< by index in the plan
+  Eigen::VectorXd turned_;
+  std::vector<Costs> obstacle_;  ///< as many as configurations: each has its place, by its index
   Progress progress_;
   /// [yaw, offset, slope]: of the best way from the start to there, a step further, and how it came
   /// there, by step: how the slope changed + 3 · how the yaw did.
   std::vector<double> cost_, next_;
   std::vector<std::int8_t> choice_;
+  std::vector<Detour> found_;
 };
 
 }  // namespace locograph

@@ -179,24 +179,6 @@ std::vector<Eigen::VectorXd> way_back(const Motion& planned, int steps,
   return way;
 }
 
-/// The least time, in steps, after which a motion keeps away from obstacles that change.
-std::optional<double> free_after(const Motion& rest, double begin_s, ChangingObstacles& obstacles) {
-  constexpr double kStep_s = 0.25, kApart_m = 0.02;
-  std::vector<std::vector<Eigen::Vector3d>> centres;
-  for (const Eigen::VectorXd& q : rest.configurations) centres.push_back(obstacles.centres(q));
-  const auto is_free = [&](double after_s) {
-    for (std::size_t i = 0; i < centres.size(); ++i) {
-      const double time_s = begin_s + after_s + rest.time_s[i];
-      if (!obstacles.keep_away(centres[i], time_s, kApart_m)) return false;
-    }
-    return true;
-  };
-  for (double after_s = 0.0; after_s <= kStands_s; after_s += kStep_s) {
-    if (is_free(after_s)) return after_s;
-  }
-  return {};
-}
-
 }  // namespace
 
 ResumedPlan wait_for_free_way(const Graph& stopped, const Motion& planned,
@@ -230,7 +212,7 @@ ResumedPlan wait_for_free_way(const Graph& stopped, const Motion& planned,
   if (off && most < kFewestSteps) return refused("the robot is beside the way that was planned");
   const Judge judge(task.robot->robot, world);
   std::string why =
-      "the way is not free within " + std::to_string(static_cast<int>(kStands_s)) + " s";
+      "the way is not free within " + std::to_string(static_cast<int>(kWaits_s)) + " s";
   for (int steps = std::min(most, kFewestSteps);; steps = std::min(2 * steps, most)) {
     int slow = 0;
     MotionPlan rest = later.motion(steps, slow);
@@ -240,7 +222,7 @@ ResumedPlan wait_for_free_way(const Graph& stopped, const Motion& planned,
       if (back.empty()) return refused("no way leads back to the planned one");
       std::ranges::move(back, moves.configurations.begin());
     }
-    const auto after_s = free_after(moves, executed.time_s.back(), obstacles);
+    const auto after_s = obstacles.free_after(moves, executed.time_s.back());
     if (!after_s) break;
     const int left = static_cast<int>(moves.configurations.size()) - 1;
     // What moves and bears the robot in the slow steps, and the edges for that.

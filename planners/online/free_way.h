@@ -17,9 +17,9 @@
 namespace locograph {
 
 /// The rest of a plan, whose motion and segments are given as they were before `stopped` ended:
-/// begun as soon as nothing that moves, appears or vanishes is in its way, within kStands_s of
-/// braking.h. It begins slowly, as a robot brakes. Not where the robot has left the planned way,
-/// nor where nothing in the world changes. Throws Error as plan_of() does.
+/// begun as soon as nothing that moves, appears or vanishes is in its way, within kWaits_s of
+/// changing_obstacles.h. It begins slowly, as a robot brakes. Not where the robot has left the
+/// planned way, nor where nothing in the world changes. Throws Error as plan_of() does.
 ResumedPlan wait_for_free_way(const Graph& stopped, const Motion& planned,
                               const std::vector<PlanSegment>& segments, const Task& task,
                               std::shared_ptr<const WorldSnapshot> world);

@@ -11,13 +11,11 @@ Eigen::Vector3d left_of(const double* configuration) {
   return side.normalized();
 }
 
-Eigen::VectorXd turned(const Eigen::VectorXd& configuration, double yaw_rad) {
-  Eigen::VectorXd result = configuration;
-  if (yaw_rad == 0.0) return result;
-  const Eigen::Quaterniond rotation(configuration.data() + 3);
+void turn_base(double yaw_rad, double* configuration) {
+  if (yaw_rad == 0.0) return;
+  Eigen::Map<Eigen::Quaterniond> rotation(configuration + 3);
   const Eigen::AngleAxisd yaw(yaw_rad, Eigen::Vector3d::UnitZ());
-  Eigen::Map<Eigen::Quaterniond>(result.data() + 3) = (yaw * rotation).normalized();
-  return result;
+  rotation = (yaw * rotation).normalized();
 }
 
 }  // namespace locograph

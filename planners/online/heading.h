@@ -10,7 +10,7 @@ namespace locograph {
 /// Horizontal unit vector to the left of a configuration's heading, in the world.
 Eigen::Vector3d left_of(const double* configuration);
 
-/// The configuration with its base turned about the vertical, counter-clockwise.
-Eigen::VectorXd turned(const Eigen::VectorXd& configuration, double yaw_rad);
+/// Turns a configuration's base about the vertical, counter-clockwise.
+void turn_base(double yaw_rad, double* configuration);
 
 }  // namespace locograph

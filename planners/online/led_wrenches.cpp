@@ -80,17 +80,12 @@ void lead_wrenches(const Plan& plan, Graph& graph, const PlanRange& range) {
   Least least(robot, stance.stance);
   RobotState state(robot);
   RobotDynamics dynamics(robot);
-  CurvePoint before, after;
   Eigen::VectorXd asked(robot.tangent_size());
   for (int k = 0; k < range.last - range.first; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    curve.step(k).at(0.0, after);
-    if (k > 0) {
-      curve.step(k - 1).at(1.0, before);
-      after.acceleration = 0.5 * (after.acceleration + before.acceleration);
-    }
+    const CurvePoint point = curve.through_vertex(k);
     state.update(motion.configurations[i].data());
-    dynamics.inverse_dynamics(state, after.velocity, after.acceleration, {}, asked);
+    dynamics.inverse_dynamics(state, point.velocity, point.acceleration, {}, asked);
     const StanceWrenches* wrenches = least.solve(state, asked);
     if (wrenches == nullptr) continue;
     const double share = share_left((motion.time_s[i] - begin_s) / duration_s);

@@ -45,13 +45,14 @@ LocalPlanner::LocalPlanner(Graph& graph, const LocalPlannerOptions& options)
 
 void LocalPlanner::show(std::shared_ptr<const WorldSnapshot> world) {
   world->distance();
+  auto shown = std::make_shared<const WorldParameter>(world, plan_.plan().world->ground_z_m);
   const std::lock_guard lock(showing_);
   if (world->stamp_s() < shown_stamp_s_) {
     throw Error("a snapshot of " + std::to_string(world->stamp_s()) + " s",
                 std::to_string(shown_stamp_s_) + " s or later, as the last one that was shown");
   }
   shown_stamp_s_ = world->stamp_s();
-  shown_ = std::move(world);
+  shown_ = std::move(shown);
 }
 
 void LocalPlanner::measure(const Eigen::VectorXd& configuration) {
@@ -83,7 +84,7 @@ Eigen::VectorXd LocalPlanner::take_measured() {
 
 /// Whether there was something new.
 bool LocalPlanner::take_shown() {
-  std::shared_ptr<const WorldSnapshot> world;
+  std::shared_ptr<const WorldParameter> world;
   {
     const std::lock_guard lock(showing_);
     world = std::move(shown_);
@@ -135,10 +136,10 @@ CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
   const int cut_short_after = improve(report, termination);
   hand_out_best();
   describe_best(report);
-  const auto end = end_by(termination, cut_short_after);
+  const auto end = ended_as(termination, cut_short_after);
   if (cut_short_after > 0 && end && !report.success()) {
-    report.status = end->status;
-    report.reason += "; " + end->reason;
+    report.status = *end;
+    report.cut_short = true;
   }
   report.statistics.total_s = watch.seconds();
   report.deadline_missed = termination.deadline.passed();
@@ -445,10 +446,15 @@ void LocalPlanner::describe_best(CycleReport& report) const {
     report.reason = "feasible";
     return;
   }
-  report.violation = solver_.describe(best.first);
   report.violated_at = report.executed + best.feasible_steps + 1;
-  const int slot = plan_.slot(report.violated_at);
-  report.reason = violated_text(*report.violation, plan_.graph().vertex_record(slot).id);
+}
+
+void LocalPlanner::explain(CycleReport& last) const {
+  if (last.success()) return;
+  last.violation = solver_.describe(incumbent_.best().quality.first);
+  const int slot = plan_.slot(last.violated_at);
+  last.reason = violated_text(*last.violation, plan_.graph().vertex_record(slot).id);
+  if (last.cut_short) last.reason += std::string("; ") + end_text(last.status);
 }
 
 }  // namespace locograph

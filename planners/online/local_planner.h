@@ -85,7 +85,11 @@ class LocalPlanner {
   bool begin_window(int executed);
 
   /// executed: index in the plan of the configuration the robot is at.
+  /// Allocates nothing on wheels after the first cycles, as long as the window has as many
+  /// configurations and the stance is the same.
   CycleReport cycle(int executed, const Termination& termination = {});
+  /// Puts the last cycle's answer into words, where its window is not feasible: reason, violation.
+  void explain(CycleReport& last) const;
 
   /// Something of the graph is different that no vertex's state says, such as times.
   void plan_changed() { changed_ = true; }
@@ -156,7 +160,7 @@ class LocalPlanner {
   CycleReport answer_;                      ///< of the last cycle
   WindowQuality tried_;                     ///< what the last search at this configuration led to
   std::mutex showing_;
-  std::shared_ptr<const WorldSnapshot> shown_;  ///< since the last cycle began; null: none
+  std::shared_ptr<const WorldParameter> shown_;  ///< since the last cycle began; null: none
   double shown_stamp_s_ = -std::numeric_limits<double>::infinity();  ///< of the last one
   Eigen::VectorXd measured_;                                         ///< likewise; empty: none
 };

@@ -24,7 +24,7 @@ OnlinePlan::OnlinePlan(Graph& graph) : graph_(graph), plan_(plan_of(graph)) {
     rolls_.push_back(rolls_on_wheels(*stance));
   }
   if (!plan_.world) throw Error("the plan has no world", "a PARAMS_WORLD line");
-  world_ = plan_.world;
+  show(plan_.world);
   planned_ = motion_of(graph, plan_);
   borne_at_.assign(plan_.index.configuration.size(), -1);
   for (int i = 0; i < size(); ++i) {
@@ -34,14 +34,9 @@ OnlinePlan::OnlinePlan(Graph& graph) : graph_(graph), plan_(plan_of(graph)) {
   }
 }
 
-void OnlinePlan::show(std::shared_ptr<const WorldSnapshot> world) {
-  world_ = std::make_shared<const WorldParameter>(std::move(world), plan_.world->ground_z_m);
-}
-
-Bindings OnlinePlan::bindings() const {
-  Bindings bindings;
-  bindings.set(plan_.world_number, world_);
-  return bindings;
+void OnlinePlan::show(std::shared_ptr<const WorldParameter> world) {
+  world_ = std::move(world);
+  bindings_.set(plan_.world_number, world_);
 }
 
 Eigen::Map<Eigen::VectorXd> OnlinePlan::configuration(int index) {
@@ -182,11 +177,7 @@ void OnlinePlan::slow_down(int from, int to, double duration_s) {
 
 /// Segments begin and end with their configurations.
 void OnlinePlan::follow_times() {
-  std::vector<int> numbers;  // a copy: parameters are replaced
   for (const int number : graph_.parameters().numbers_of<SegmentParameter>()) {
-    numbers.push_back(number);
-  }
-  for (const int number : numbers) {
     const auto given = graph_.parameters().get<SegmentParameter>(number);
     PlanSegment& segment = plan_.segments.at(static_cast<std::size_t>(given->segment));
     const auto moved = std::make_shared<SegmentParameter>(*given);

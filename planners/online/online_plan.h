@@ -84,9 +84,9 @@ class OnlinePlan {
 
   /// The world as it is known now: that of the plan until another one is shown.
   const WorldSnapshot& world() const { return *world_->snapshot; }
-  void show(std::shared_ptr<const WorldSnapshot> world);
+  void show(std::shared_ptr<const WorldParameter> world);
   /// For evaluations of the graph: edges see that world.
-  Bindings bindings() const;
+  const Bindings& bindings() const { return bindings_; }
 
  private:
   void follow_times();
@@ -94,6 +94,7 @@ class OnlinePlan {
   Graph& graph_;
   Plan plan_;
   std::shared_ptr<const WorldParameter> world_;
+  Bindings bindings_;
   Motion planned_;
   std::vector<bool> rolls_;    ///< by configuration
   std::vector<int> borne_at_;  ///< by slot

@@ -23,7 +23,7 @@
 namespace locograph {
 
 /// A world as it stands at a time: what moves stays where it is then, what is not there within
-/// kStands_s of braking.h is left out, and what appears meanwhile is where it appears.
+/// kStands_s of changing_obstacles.h is left out, and what appears meanwhile is where it appears.
 World world_at_rest(const World& world, double time_s);
 
 struct ResumedPlan : PlannerAnswer {

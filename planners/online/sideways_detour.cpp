@@ -1,5 +1,5 @@
-#include <locograph/planners/offline/drive/wheel_motion.h>
 #include <locograph/planners/online/heading.h>
+#include <locograph/planners/online/plan_wheels.h>
 #include <locograph/planners/online/sideways_detour.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ class SidewaysDetour final : public Proposal {
     }
     Detour start = detour_of(plan, window.executed());
     if (!turns_) start.yaw_rad = 0.0;
-    const std::vector<Detour> detours = find_detours(plan, window, start, termination);
+    const std::vector<Detour>& detours = find_detours(plan, window, start, termination);
     if (detours.empty()) return Answer::kUnfinished;
     move(plan, window, detours, candidate);
     roll_wheels(plan, window, start, detours, candidate);
@@ -33,24 +33,24 @@ class SidewaysDetour final : public Proposal {
   /// Where a configuration is, beside its place in the plan.
   static Detour detour_of(const OnlinePlan& plan, int i) {
     const Eigen::VectorXd& planned = plan.planned()[static_cast<std::size_t>(i)];
-    const Eigen::VectorXd now = plan.configuration(i);
+    const Eigen::Map<const Eigen::VectorXd> now = plan.configuration(i);
     const Eigen::Vector3d left = left_of(planned.data()), left_now = left_of(now.data());
     return {(now.head<3>() - planned.head<3>()).dot(left),
             std::atan2(left.cross(left_now).z(), left.dot(left_now))};
   }
 
-  std::vector<Detour> find_detours(const OnlinePlan& plan, const Window& window,
-                                   const Detour& start, const Termination& termination) {
-    std::vector<const double*> planned;
-    std::vector<double> times;
+  const std::vector<Detour>& find_detours(const OnlinePlan& plan, const Window& window,
+                                          const Detour& start, const Termination& termination) {
+    planned_.clear();
+    times_.clear();
     for (int i = window.first(); i < window.end(); ++i) {
-      planned.push_back(plan.planned()[static_cast<std::size_t>(i)].data());
-      times.push_back(plan.time_s(i));
+      planned_.push_back(plan.planned()[static_cast<std::size_t>(i)].data());
+      times_.push_back(plan.time_s(i));
     }
     const int executed = window.executed();
     const double slope =
         executed > 0 ? start.offset_m - detour_of(plan, executed - 1).offset_m : 0.0;
-    return search_.find(window.first(), planned, times, plan.world().distance(), start, slope,
+    return search_.find(window.first(), planned_, times_, plan.world().distance(), start, slope,
                         termination);
   }
 
@@ -64,38 +64,35 @@ class SidewaysDetour final : public Proposal {
         continue;
       }
       const Eigen::VectorXd& planned = plan.planned()[static_cast<std::size_t>(i)];
-      candidate[k] = turned(planned, detours[k].yaw_rad);
+      candidate[k] = planned;
+      turn_base(detours[k].yaw_rad, candidate[k].data());
       candidate[k].head<3>() += detours[k].offset_m * left_of(planned.data());
     }
   }
 
-  static void roll_wheels(const OnlinePlan& plan, const Window& window, const Detour& start,
-                          const std::vector<Detour>& detours,
-                          std::vector<Eigen::VectorXd>& candidate) {
-    const auto executed = static_cast<std::size_t>(window.executed());
-    WheelMotion wheels(plan.robot(), plan.plan().stance_from[executed]->stance);
-    Eigen::VectorXd before = plan.configuration(window.executed());
+  void roll_wheels(const OnlinePlan& plan, const Window& window, const Detour& start,
+                   const std::vector<Detour>& detours, std::vector<Eigen::VectorXd>& candidate) {
+    WheelMotion& wheels = wheels_.at(plan, window.executed());
+    before_ = plan.configuration(window.executed());
     double yaw_before = start.yaw_rad;
     for (std::size_t k = 0; k < candidate.size(); ++k) {
-      Eigen::VectorXd q = candidate[k];
+      here_ = candidate[k];
       const std::size_t next = std::min(k + 1, candidate.size() - 1);
-      const Eigen::Vector3d way = (candidate[next] - before).head<3>();
+      const Eigen::Vector3d way = (candidate[next] - before_).head<3>();
       const double turn = detours[next].yaw_rad - yaw_before;
-      if (way.norm() > 1e-3) {
-        for (int w = 0; w < wheels.wheels(); ++w) {
-          const Eigen::Vector3d arm = wheels.pose(q, w).centre - q.head<3>();
-          wheels.steer(q, w, way + turn * Eigen::Vector3d::UnitZ().cross(arm));
-        }
-      }
-      wheels.roll(before, q);
-      if (!plan.is_fixed(window.first() + static_cast<int>(k))) candidate[k] = q;
-      before = candidate[k];
+      wheels.drive(before_, way, turn, here_);
+      if (!plan.is_fixed(window.first() + static_cast<int>(k))) candidate[k] = here_;
+      before_ = candidate[k];
       yaw_before = detours[k].yaw_rad;
     }
   }
 
   DetourSearch search_;
   bool turns_;
+  PlanWheels wheels_;
+  std::vector<const double*> planned_;
+  std::vector<double> times_;
+  Eigen::VectorXd before_, here_;
 };
 
 }  // namespace

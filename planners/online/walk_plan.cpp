@@ -3,6 +3,8 @@
 #include <locograph/common/check_option.h>
 #include <locograph/common/ranges.h>
 #include <locograph/planners/online/braking.h>
+#include <locograph/planners/online/changing_obstacles.h>
+#include <locograph/planners/online/heading.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/online/window_cause.h>
 #include <locograph/planners/plan/plan_edges.h>
@@ -143,6 +145,11 @@ class Walk {
       stop(executed, executed, refused);
       return false;
     }
+    if (options_.resume && rolls(executed) && is_led_off(executed)) {
+      braking_.restore(executed, before);
+      stop(executed, executed, "the way beside the plan");
+      return false;
+    }
     if (rolls(executed) || cycle.success()) return true;
     if (vertex(cycle.violated_at).time_s - vertex(executed).time_s > kDecide_s) return true;
     if (braking_.rests(executed)) braking_.restore(executed, before);
@@ -161,6 +168,7 @@ class Walk {
         planner_.cycle(executed, {.deadline = Deadline::of_limit(options_.cycle_deadline_s),
                                   .max_iterations = options_.cycle_iterations});
     if (rolls(executed) || cycle.statistics.iterations > 0) verified_to_ = executed;
+    planner_.explain(cycle);
     report_.cycles.push_back(cycle);
     report_.feasible_cycles += cycle.success() ? 1 : 0;
     report_.deadline_misses += cycle.deadline_missed ? 1 : 0;
@@ -208,6 +216,25 @@ class Walk {
   }
 
   bool rolls(int i) const { return planner_.online_plan().rolls(i); }
+
+  /// Whether the window leads far from the plan, where something that moves meets it, and is to be
+  /// waited for.
+  bool is_led_off(int executed) const {
+    constexpr double kFar_m = 0.3, kApart_m = 0.02;
+    const OnlinePlan& plan = planner_.online_plan();
+    const auto off_m = [&](int i) {
+      const Eigen::VectorXd& planned = plan.planned()[static_cast<std::size_t>(i)];
+      return (plan.configuration(i) - planned).head<3>().dot(left_of(planned.data()));
+    };
+    const int last = planner_.last_of_window(executed);
+    if (std::abs(off_m(last)) <= std::abs(off_m(executed)) + kFar_m) return false;
+    ChangingObstacles obstacles(*planner_.plan().robot, plan.world().world());
+    for (int i = executed + 1; i <= last && obstacles.any(); ++i) {
+      const auto centres = obstacles.centres(plan.planned()[static_cast<std::size_t>(i)]);
+      if (!obstacles.keep_away(centres, plan.time_s(i), kApart_m)) return true;
+    }
+    return false;
+  }
 
   /// The configuration from which the robot has gone the stretch within which slip of wheels
   /// counts.
@@ -401,6 +428,7 @@ struct PlanWalk::Own {
   WalkReport before = {};  ///< until it was planned on
   std::shared_ptr<const WorldSnapshot> newest = {};
   bool goes_on = false;  ///< planned on, and nothing shown since
+  int resumed_at = -1;   ///< where it was planned on last: it goes on from there no second time
 
   std::shared_ptr<const WorldSnapshot> world(int executed) {
     std::shared_ptr<const WorldSnapshot> shown = world_at ? world_at(executed) : nullptr;
@@ -413,12 +441,14 @@ struct PlanWalk::Own {
   bool plan_on() {
     const WalkReport& stopped = walk->report();
     if (!options.resume || !stopped.stopped_at || !stopped.at_rest ||
-        before.resumed >= options.most_resumed || options.termination.stopped()) {
+        *stopped.stopped_at <= resumed_at || before.resumed >= options.most_resumed ||
+        options.termination.stopped()) {
       return false;
     }
     std::optional<Graph> resumed = options.resume(graph);
     if (!resumed) return false;
     const int at = *stopped.stopped_at;
+    resumed_at = at;
     put_before(before, walk->report());
     before = std::move(walk->report());
     ++before.resumed;

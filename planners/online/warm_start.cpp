@@ -1,4 +1,3 @@
-#include <locograph/planners/offline/drive/wheel_motion.h>
 #include <locograph/planners/online/warm_start.h>
 
 #include <algorithm>
@@ -7,34 +6,31 @@ namespace locograph {
 
 /// A configuration from the two before it. The drift counts along the ground: forward, sideways and
 /// in yaw; the wheels roll. Without before_that there is no drift.
-Eigen::VectorXd WarmStart::planned_step_with_drift(int index, const Eigen::VectorXd& before,
-                                                   const Eigen::VectorXd* before_that) const {
+void WarmStart::planned_step_with_drift(int index, const Configuration& before,
+                                        const double* before_that, Eigen::Ref<Eigen::VectorXd> q) {
   const Robot& robot = plan_.robot();
   const std::vector<Eigen::VectorXd>& planned = plan_.planned();
   const auto i = static_cast<std::size_t>(index);
-  if (!plan_.rolls(index - 1)) return planned[i];
-  Eigen::VectorXd step(robot.tangent_size()), planned_before(robot.tangent_size());
-  robot.difference(planned[i - 1].data(), planned[i].data(), step.data());
+  if (!plan_.rolls(index - 1)) {
+    q = planned[i];
+    return;
+  }
+  robot.difference(planned[i - 1].data(), planned[i].data(), step_.data());
   if (before_that != nullptr) {
-    Eigen::VectorXd made(robot.tangent_size());
-    robot.difference(planned[i - 2].data(), planned[i - 1].data(), planned_before.data());
-    robot.difference(before_that->data(), before.data(), made.data());
+    robot.difference(planned[i - 2].data(), planned[i - 1].data(), planned_before_.data());
+    robot.difference(before_that, before.data(), made_.data());
     for (const int along_the_ground : {0, 1, 5}) {
-      step[along_the_ground] += made[along_the_ground] - planned_before[along_the_ground];
+      step_[along_the_ground] += made_[along_the_ground] - planned_before_[along_the_ground];
     }
   }
-  Eigen::VectorXd q(before.size());
-  roll_on(index, before, step, q);
-  return q;
+  roll_on(index, before, step_, q);
 }
 
 /// One step on wheels from the configuration before it.
-void WarmStart::roll_on(int index, const Eigen::VectorXd& before, const Eigen::VectorXd& step,
-                        Eigen::VectorXd& q) const {
-  const Robot& robot = plan_.robot();
-  robot.integrate(before.data(), step.data(), q.data());
-  const auto from = static_cast<std::size_t>(index - 1);
-  WheelMotion(robot, plan_.plan().stance_from[from]->stance).roll(before, q);
+void WarmStart::roll_on(int index, const Configuration& before, const Eigen::VectorXd& step,
+                        Eigen::Ref<Eigen::VectorXd> q) {
+  plan_.robot().integrate(before.data(), step.data(), q.data());
+  wheels_.at(plan_, index - 1).roll(before, q);
 }
 
 void WarmStart::lead_back(const Window& window, const Eigen::VectorXd& was) {
@@ -67,10 +63,9 @@ void WarmStart::roll_from(const Window& window, const Eigen::VectorXd& was) {
 void WarmStart::enter(const Window& window) {
   for (int i = std::max(window.first_entering(), on_legs_.end()); i < window.end(); ++i) {
     if (plan_.is_fixed(i)) continue;
-    const Eigen::VectorXd before = plan_.configuration(i - 1);
-    const Eigen::VectorXd before_that = plan_.configuration(std::max(0, i - 2));
-    const Eigen::VectorXd q = planned_step_with_drift(i, before, i > 1 ? &before_that : nullptr);
-    plan_.configuration(i) = q;
+    planned_step_with_drift(i, plan_.configuration(i - 1),
+                            i > 1 ? plan_.configuration(i - 2).data() : nullptr,
+                            plan_.configuration(i));
     if (on_legs_.end() == i && !plan_.rolls(i - 1)) on_legs_.add(i);
   }
   on_legs_.go_on(window);
@@ -78,13 +73,16 @@ void WarmStart::enter(const Window& window) {
   for (; unfinished_end_ > 0 && unfinished_end_ < window.end(); ++unfinished_end_) {
     const int index = unfinished_end_;
     const auto i = static_cast<std::size_t>(index);
-    const Eigen::VectorXd before_that = window.contains(index - 2)
-                                            ? unfinished_[i - 2]
-                                            : plan_.configuration(std::max(0, index - 2));
-    unfinished_[i] = plan_.is_fixed(index)
-                         ? plan_.planned()[i]
-                         : planned_step_with_drift(index, unfinished_[i - 1],
-                                                   index > 1 ? &before_that : nullptr);
+    if (plan_.is_fixed(index)) {
+      unfinished_[i] = plan_.planned()[i];
+      continue;
+    }
+    const double* before_that = nullptr;
+    if (index > 1) {
+      before_that = window.contains(index - 2) ? unfinished_[i - 2].data()
+                                               : plan_.configuration(index - 2).data();
+    }
+    planned_step_with_drift(index, unfinished_[i - 1], before_that, unfinished_[i]);
   }
 }
 

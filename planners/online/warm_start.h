@@ -18,6 +18,7 @@
 /// An unfinished window is one beside that of the graph: not better yet, but worth another cycle.
 /// It is extended in the same way until a cycle loads it or drops it.
 
+#include <locograph/planners/online/plan_wheels.h>
 #include <locograph/planners/online/way_back.h>
 
 #include <Eigen/Core>
@@ -29,7 +30,12 @@ class WarmStart {
  public:
   /// The plan must outlive it.
   explicit WarmStart(OnlinePlan& plan)
-      : plan_(plan), on_legs_(plan), unfinished_(plan.planned().size()) {}
+      : plan_(plan),
+        on_legs_(plan),
+        step_(plan.robot().tangent_size()),
+        unfinished_(plan.planned()) {
+    made_ = planned_before_ = step_;
+  }
 
   /// Initialises the configurations that have entered the window, but for fixed ones: those of the
   /// graph, and those of an unfinished window.
@@ -47,14 +53,17 @@ class WarmStart {
   void drop_unfinished() { unfinished_end_ = 0; }
 
  private:
-  Eigen::VectorXd planned_step_with_drift(int index, const Eigen::VectorXd& before,
-                                          const Eigen::VectorXd* before_that) const;
-  void roll_on(int index, const Eigen::VectorXd& before, const Eigen::VectorXd& step,
-               Eigen::VectorXd& q) const;
+  using Configuration = Eigen::Ref<const Eigen::VectorXd>;
+  void planned_step_with_drift(int index, const Configuration& before, const double* before_that,
+                               Eigen::Ref<Eigen::VectorXd> q);
+  void roll_on(int index, const Configuration& before, const Eigen::VectorXd& step,
+               Eigen::Ref<Eigen::VectorXd> q);
   void roll_from(const Window& window, const Eigen::VectorXd& was);
 
   OnlinePlan& plan_;
   WayBack on_legs_;
+  PlanWheels wheels_;
+  Eigen::VectorXd step_, made_, planned_before_;
   std::vector<Eigen::VectorXd> unfinished_;  ///< by index in the plan
   int unfinished_end_ = 0;                   ///< index after its last configuration; 0: none
 };

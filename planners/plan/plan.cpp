@@ -21,7 +21,7 @@ const VertexConfiguration& configuration(const Graph& graph, int slot) {
 /// The only parameter of its type, null if there is none.
 template <class P>
 std::shared_ptr<const P> only(const Parameters& parameters) {
-  const std::set<int>& numbers = parameters.numbers_of<P>();
+  const std::set<int> numbers = parameters.numbers_of<P>();
   auto found = parameters.find<P>();
   if (numbers.size() > 1) {
     throw Error(

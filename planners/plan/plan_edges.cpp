@@ -530,11 +530,7 @@ void cut_plan(Graph& graph, const Plan& plan, int last) {
     for (const int slot : plan.index.wrenches[i]) graph.remove_vertex(slot);
     graph.remove_vertex(plan.slots[i]);
   }
-  std::vector<int> numbers;
   for (const int number : graph.parameters().numbers_of<SegmentParameter>()) {
-    numbers.push_back(number);
-  }
-  for (const int number : numbers) {
     const auto given = graph.parameters().get<SegmentParameter>(number);
     const PlanSegment& segment = plan.segments.at(static_cast<std::size_t>(given->segment));
     if (segment.first >= last) {

@@ -14,7 +14,7 @@ EdgeCom::EdgeCom(const Eigen::Vector3d& target_, const Eigen::Vector3d& weights_
 void EdgeCom::bind(const Parameters& parameters) const {
   if (!target.allFinite())
     throw locograph::Error("EDGE_COM with a target that is not finite", "a point");
-  const std::set<int>& robots = parameters.numbers_of<RobotParameter>();
+  const std::set<int> robots = parameters.numbers_of<RobotParameter>();
   for (const int number : robots) {
     if (parameters.get<RobotParameter>(number)->robot->total_mass() > 0.0) return;
   }

@@ -45,26 +45,18 @@ cmake --build "$work/custom_edge"
 (cd "$work" && custom_edge/custom_edge out.g2o) || fail "custom_edge"
 grep -q '^RANGE_SE2_XY 0 1 ' "$work/out.g2o" || fail "the custom edge is not in the file"
 
-# A plug-in built out of the tree, with other flags than the command was, is loaded by it.
-for flags in "" "-march=native -O1 -fno-inline"; do
-  rm -rf "$work/plugin"
-  configure plugin "${nothing_else[@]}" "-DCMAKE_CXX_FLAGS=$flags"
-  cmake --build "$work/plugin"
-  (cd "$work" && prefix/bin/locograph optimize "$source/examples/plugin/beacons.g2o" \
-    --plugin plugin/range.so -o ranges.g2o) || fail "optimize with the plug-in '$flags'"
-  grep -Eq '^VERTEX_RANGE_BIAS 2 0\.2(5000|4999)' "$work/ranges.g2o" || fail "wrong bias"
-done
+# A plug-in built out of the tree, with other flags than the command was, is loaded by it; the pages
+# of doc/ build it, and a constraint on a robot, with the same flags (documented_commands_test.sh).
+configure plugin "${nothing_else[@]}" "-DCMAKE_CXX_FLAGS=-march=native -O1 -fno-inline"
+cmake --build "$work/plugin"
+(cd "$work" && prefix/bin/locograph optimize "$source/examples/plugin/beacons.g2o" \
+  --plugin plugin/range.so -o ranges.g2o) || fail "optimize with the plug-in"
+grep -Eq '^VERTEX_RANGE_BIAS 2 0\.2(5000|4999)' "$work/ranges.g2o" || fail "wrong bias"
 # Installed beside the command, it is found by its name.
 mkdir -p "$work/prefix/lib/locograph"
 cp "$work/plugin/range.so" "$work/prefix/lib/locograph/"
 "$work/prefix/bin/locograph" list types --plugin range | grep -qx EDGE_BIASED_RANGE ||
   fail "the plug-in is not found by its name"
-
-# So is a constraint on a robot.
-configure custom_constraint
-cmake --build "$work/custom_constraint"
-"$work/prefix/bin/locograph" list types --plugin "$work/custom_constraint/level_cup.so" |
-  grep -qx EDGE_CUP_TILT || fail "the constraint is not loaded"
 
 # A component whose libraries are missing is refused by name, one whose libraries are there works.
 configure make_map "${nothing_else[@]}" >"$work/log" 2>&1 && fail "world was found without octomap"

@@ -32,6 +32,7 @@
 #include <locograph/planners/offline/timing/path_timing.h>
 #include <locograph/planners/online/braking.h>
 #include <locograph/planners/online/camera_walk.h>
+#include <locograph/planners/online/free_drive.h>
 #include <locograph/planners/online/free_way.h>
 #include <locograph/planners/online/resumed_plan.h>
 #include <locograph/planners/online/sideways_detour.h>
@@ -542,6 +543,24 @@ struct Context : WindowContext {
   std::vector<Eigen::VectorXd> candidate;
 };
 }  // namespace online_proposal_schedule_h
+namespace online_plan_wheels_h {
+struct Context : DriveContext {
+  const OnlinePlan online{graph};
+  const int index = 0;
+  const Eigen::VectorXd before = planned[0];
+  Eigen::VectorXd q = planned[1];
+};
+}  // namespace online_plan_wheels_h
+namespace online_free_drive_h {
+/// The drive, stopped after its first step.
+struct Context : in_planners::Context {
+  const Task task = drive_task(0.32, 5);
+  const Motion planned = plan_wheeled_drive(task).motion;
+  Graph graph = *drive_graph(task, planned), stopped_graph = *drive_graph(task, planned);
+  const std::shared_ptr<const WorldSnapshot> world = task.world;
+  Context() { cut_plan(stopped_graph, plan_of(stopped_graph), 1); }
+};
+}  // namespace online_free_drive_h
 namespace online_sideways_detour_h {
 struct Context {
   LocalPlannerOptions options;

@@ -47,7 +47,20 @@ bool WheelMotion::steer(Eigen::VectorXd& q, int number, const Eigen::Vector3d& d
   return false;
 }
 
-void WheelMotion::roll(const Eigen::VectorXd& from, Eigen::VectorXd& to) {
+void WheelMotion::drive(const Eigen::Ref<const Eigen::VectorXd>& from, const Eigen::Vector3d& way,
+                        double turn, Eigen::VectorXd& to) {
+  constexpr double kLeast_m = 1e-3;
+  if (way.norm() > kLeast_m) {
+    for (int w = 0; w < wheels(); ++w) {
+      const Eigen::Vector3d arm = pose(to, w).centre - to.head<3>();
+      steer(to, w, way + turn * Eigen::Vector3d::UnitZ().cross(arm));
+    }
+  }
+  roll(from, to);
+}
+
+void WheelMotion::roll(const Eigen::Ref<const Eigen::VectorXd>& from,
+                       Eigen::Ref<Eigen::VectorXd> to) {
   const int base = robot_.base_configuration_size();
   state_.update(from.data());
   for (int w = 0; w < wheels(); ++w) {

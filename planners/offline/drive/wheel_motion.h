@@ -31,7 +31,12 @@ class WheelMotion {
 
   /// Sets the wheel joints of `to`: where they were in `from`, plus the way of the wheel's centre
   /// along its mean heading over its radius. A locked wheel's stays.
-  void roll(const Eigen::VectorXd& from, Eigen::VectorXd& to);
+  void roll(const Eigen::Ref<const Eigen::VectorXd>& from, Eigen::Ref<Eigen::VectorXd> to);
+
+  /// Steers the wheels that can be along a way of the base, which turns by an angle about the
+  /// vertical meanwhile, and rolls them from the configuration before: `to` is on that way.
+  void drive(const Eigen::Ref<const Eigen::VectorXd>& from, const Eigen::Vector3d& way, double turn,
+             Eigen::VectorXd& to);
 
   WheelPose pose(const Eigen::VectorXd& q, int wheel);
 

@@ -21,17 +21,11 @@ std::optional<SegmentLoads> MotionLoads::along(std::span<const BearingContact> c
   const MotionCurve curve(robot_, motion);
   const int last = static_cast<int>(motion.configurations.size()) - 1;
   SegmentLoads loads;
-  CurvePoint before{{}, still_, still_}, after = before;
   for (int i = 0; i <= last; ++i) {
-    if (i > 0 && i < last) {
-      curve.step(i - 1).at(1.0, before);
-      curve.step(i).at(0.0, after);
-      after.acceleration = 0.5 * (after.acceleration + before.acceleration);
-    } else {
-      after.velocity = after.acceleration = still_;
-    }
+    const bool moves = i > 0 && i < last;
+    const CurvePoint point = moves ? curve.through_vertex(i) : CurvePoint{{}, still_, still_};
     state_.update(motion.configurations[static_cast<std::size_t>(i)].data());
-    dynamics_.inverse_dynamics(state_, after.velocity, after.acceleration, {}, asked_);
+    dynamics_.inverse_dynamics(state_, point.velocity, point.acceleration, {}, asked_);
     if (!least.solve(state_, asked_)) return std::nullopt;
     loads.wrenches.push_back(least.wrenches());
     if (i == 0) continue;

@@ -175,7 +175,9 @@ TEST(PlannerAnswer, OfWindows) {
     Graph graph = drive();
     LocalPlanner planner(graph, {});
     planner.show(seeing({box("rock", {0.5, 0.0, 0.5}, {3.0, 3.0, 1.0})}));  // nowhere to go
-    return planner.cycle(0, termination);
+    CycleReport report = planner.cycle(0, termination);
+    planner.explain(report);
+    return report;
   };
   expect_ends(cycle);
   expect_counts(cycle);

@@ -123,7 +123,8 @@ double deepest(const Plan& plan, const std::vector<const double*>& window,
   for (std::size_t k = 0; k < window.size(); ++k) {
     const Eigen::Map<const Eigen::VectorXd> planned(window[k],
                                                     plan.robot->robot->configuration_size());
-    Eigen::VectorXd q = turned(planned, detours[k].yaw_rad);
+    Eigen::VectorXd q = planned;
+    turn_base(detours[k].yaw_rad, q.data());
     q.head<3>() += detours[k].offset_m * left_of(window[k]);
     state.update(q.data());
     for (const CollisionSphere& sphere : plan.robot->spheres) {
@@ -142,7 +143,8 @@ TEST_F(Search, TurnsBetweenObstaclesThatItDoesNotGetBetweenHeadOn) {
                      box("right wall", {2.5, -0.85, 0.5}, {9.0, 0.1, 1.0}),
                      box("left wall", {2.5, 0.85, 0.5}, {9.0, 0.1, 1.0})};
   const auto find = [&] {
-    return DetourSearch(plan_.robot, options_).find(0, window_, times_, world, {.yaw_rad = 0.06});
+    DetourSearch search(plan_.robot, options_);
+    return search.find(0, window_, times_, world, {.yaw_rad = 0.06});
   };
   const double head_on = deepest(plan_, window_, find(), world);
   options_.most_yaw = 8;
@@ -162,10 +164,11 @@ TEST_F(Search, KeepsItsHeadingUnlessItIsTold) {
   take(1, 45);
   WorldDistance world;
   world.obstacles = {box("b", {2.0, 0.3, 0.4}, {0.4, 0.8, 0.8})};
+  DetourSearch search(plan_.robot, options_);
   for (const Detour& detour :
-       DetourSearch(plan_.robot, options_)
-           .find(0, window_, times_, world, {.offset_m = 0.1, .yaw_rad = 0.3}))
+       search.find(0, window_, times_, world, {.offset_m = 0.1, .yaw_rad = 0.3})) {
     EXPECT_EQ(detour.yaw_rad, 0.0);
+  }
 }
 
 /// Every path over the grid, costed as the header says.

@@ -324,21 +324,24 @@ TEST(LocalPlanner, DoesNothingWhereNothingHasChanged) {
   EXPECT_GT(planner.cycle(0).statistics.iterations, 0) << "back to the plan";
 }
 
-// crossing_campaign counts every window of 24 crossings.
-TEST(LocalPlanner, CallsFeasibleWhatTheJudgeAccepts) {
+// crossing_campaign counts those of 24 crossings.
+TEST(LocalPlanner, WaitsForPersonsAndCallsFeasibleWhatTheJudgeAccepts) {
   if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
   CrossingOptions options;
-  options.every = 6;
-  int called = 0, wrongly = 0, judged = 0, agreed = 0;
+  options.every = 60;
+  int arrived = 0, called = 0, wrongly = 0, judged = 0, agreed = 0;
   std::string refused;
   for (const Crossing& crossing : crossings(6)) {
     const CrossingResult result = run_crossing(centauro_drive(), crossing, options);
+    arrived += result.arrived ? 1 : 0;
+    EXPECT_TRUE(result.arrived || result.stopped_safely) << result.reason;
     called += result.called_feasible;
     wrongly += result.wrongly_feasible;
     judged += result.judged_feasible;
     agreed += result.agreed_feasible;
     if (!result.refused.empty()) refused += result.refused + "; ";
   }
+  EXPECT_GE(arrived, 5);
   EXPECT_GT(judged, 20);
   EXPECT_GE(agreed, 0.95 * judged);
   EXPECT_LE(wrongly, 0.05 * called) << refused;

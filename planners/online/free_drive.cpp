@@ -1,0 +1,241 @@
+#include <locograph/planners/offline/drive/drive_graph.h>
+#include <locograph/planners/offline/drive/wheel_motion.h>
+#include <locograph/planners/online/changing_obstacles.h>
+#include <locograph/planners/online/free_drive.h>
+#include <locograph/planners/online/heading.h>
+#include <locograph/planners/online/led_wrenches.h>
+#include <locograph/planners/plan/plan.h>
+#include <locograph/planners/posture/contact_projection.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace locograph {
+namespace {
+
+/// Of the base while it speeds up, at most.
+constexpr double kAcceleration_m_s2 = 0.3;
+
+/// Counter-clockwise, from the heading of one configuration to that of another one.
+double turn_between(const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
+  const Eigen::Vector3d left = left_of(from.data()), left_then = left_of(to.data());
+  return std::atan2(left.cross(left_then).z(), left.dot(left_then));
+}
+
+/// The wheels of a stance, kept on the ground and steered along their way.
+struct Wheels {
+  Wheels(const Robot& robot, const Stance& stance)
+      : contacts_(stance.contacts), motion_(robot, stance), state_(robot), closed_(robot) {}
+
+  /// Over a way on which the robot is placed already, but for its wheels, which are as they are in
+  /// its first configuration. Whether they can be put on the ground.
+  bool drive(std::vector<Eigen::VectorXd>& way) {
+    for (std::size_t k = 1; k < way.size(); ++k) {
+      if (!put_down(way[k])) return false;
+    }
+    // Steering hardly moves a wheel's centre.
+    std::vector<std::vector<Eigen::Vector3d>> centres;
+    for (const Eigen::VectorXd& q : way) {
+      std::vector<Eigen::Vector3d>& here = centres.emplace_back();
+      for (int w = 0; w < motion_.wheels(); ++w) here.push_back(motion_.pose(q, w).centre);
+    }
+    for (std::size_t k = 1; k < way.size(); ++k) {
+      if (!steer(way[k], centres[k - 1], centres[std::min(k + 1, way.size() - 1)])) return false;
+      motion_.roll(way[k - 1], way[k]);
+    }
+    return true;
+  }
+
+  /// As it begins; false: it cannot be done.
+  bool steer_along(const std::vector<Eigen::VectorXd>& way, Eigen::VectorXd& steered) {
+    std::vector<Eigen::Vector3d> from, to;
+    for (int w = 0; w < motion_.wheels(); ++w) {
+      from.push_back(motion_.pose(way[0], w).centre);
+      to.push_back(motion_.pose(way[1], w).centre);
+    }
+    steered = way.front();
+    if (!steer(steered, from, to)) return false;
+    motion_.roll(way.front(), steered);
+    return true;
+  }
+
+ private:
+  /// Steering axes are not quite upright: some times over.
+  bool steer(Eigen::VectorXd& q, const std::vector<Eigen::Vector3d>& from,
+             const std::vector<Eigen::Vector3d>& to) {
+    constexpr int kTimes = 3;
+    constexpr double kLeast_m = 1e-3;
+    for (int time = 0; time < kTimes; ++time) {
+      for (int w = 0; w < motion_.wheels(); ++w) {
+        const auto k = static_cast<std::size_t>(w);
+        const Eigen::Vector3d way = to[k] - from[k];
+        if (way.norm() > kLeast_m) motion_.steer(q, w, way);
+      }
+      if (!put_down(q)) return false;
+    }
+    return true;
+  }
+
+  bool put_down(Eigen::VectorXd& q) {
+    state_.update(q.data());
+    closed_.set(contacts_, held_balls(state_, contacts_, [](const Contact&) { return true; }));
+    return closed_.project(q);
+  }
+
+  const std::vector<Contact>& contacts_;
+  WheelMotion motion_;
+  RobotState state_;
+  ContactProjection closed_;
+};
+
+/// Way and times from 0 on, from where the robot stands at rest.
+struct Rest {
+  Motion motion;
+  std::vector<double> gone_m = {0.0};
+
+  void add(const Eigen::VectorXd& q) {
+    if (!motion.configurations.empty()) {
+      const Eigen::VectorXd& before = motion.configurations.back();
+      gone_m.push_back(gone_m.back() + (q - before).head<3>().norm());
+    }
+    motion.configurations.push_back(q);
+  }
+
+  /// Moves what was planned to where the robot stands, less and less.
+  void lead_back(const Eigen::VectorXd& stands) {
+    std::vector<Eigen::VectorXd>& way = motion.configurations;
+    const Eigen::Vector3d off = (stands - way.front()).head<3>();
+    const double turned = turn_between(way.front(), stands);
+    const double back_m = std::min(kBack_m, gone_m.back());
+    for (std::size_t k = 1; k < way.size(); ++k) {
+      const double left = share_left(gone_m[k] / back_m);
+      way[k].head<3>() += left * off;
+      turn_base(left * turned, way[k].data());
+    }
+    way.front() = stands;
+  }
+};
+
+/// Along the rest of what was planned, in its time but for the beginning.
+std::optional<Rest> along_the_plan(const Motion& planned, int at, const Eigen::VectorXd& stands,
+                                   Wheels& wheels, double ramp_m) {
+  Rest rest;
+  const auto from = static_cast<std::size_t>(at);
+  for (std::size_t i = from; i < planned.configurations.size(); ++i) {
+    rest.add(planned.configurations[i]);
+  }
+  rest.lead_back(stands);
+  if (!wheels.drive(rest.motion.configurations)) return {};
+  rest.motion.time_s = {0.0};
+  double before = 0.0;
+  for (std::size_t k = 1; k < rest.gone_m.size(); ++k) {
+    const double planned_s = planned.time_s[from + k] - planned.time_s[from + k - 1];
+    if (rest.gone_m[k] == 0.0) {
+      rest.motion.time_s.push_back(rest.motion.time_s.back() + planned_s);
+      continue;
+    }
+    // As the root of the way at first.
+    constexpr double kLeast = 0.1;
+    const double share = std::clamp(std::sqrt(rest.gone_m[k] / ramp_m), kLeast, 1.0);
+    rest.motion.time_s.push_back(rest.motion.time_s.back() + 2.0 / (before + share) * planned_s);
+    before = share;
+  }
+  return rest;
+}
+
+/// Wheels steered along the first step, from rest to rest, at half of the velocity that joints
+/// allow at most; seconds that it takes.
+double steer_first(const Task& task, const Rest& rest, Wheels& wheels, Eigen::VectorXd& steered) {
+  constexpr double kAcceleration_rad_s2 = 5.0, kShareOfLimit = 0.8;
+  const Robot& robot = *task.robot->robot;
+  const double limit = task.check.joint_acceleration_rad_s2;
+  const double acceleration =
+      limit > 0.0 ? std::min(kAcceleration_rad_s2, kShareOfLimit * limit) : kAcceleration_rad_s2;
+  const std::vector<Eigen::VectorXd>& way = rest.motion.configurations;
+  if (!wheels.steer_along(way, steered)) steered = way.front();
+  double needs_s = 0.0;
+  const int base = robot.base_configuration_size();
+  for (int j = 0; j < robot.active_joint_count(); ++j) {
+    const double moves = std::abs(steered[base + j] - way.front()[base + j]);
+    const double most = robot.active_joint(j).max_velocity;
+    needs_s = std::max(needs_s, std::sqrt(6.0 * moves / acceleration));
+    if (std::isfinite(most) && most > 0.0) needs_s = std::max(needs_s, 3.0 * moves / most);
+  }
+  return needs_s;
+}
+
+}  // namespace
+
+ResumedPlan wait_for_free_drive(const Graph& stopped, const Motion& planned, const Task& task,
+                                std::shared_ptr<const WorldSnapshot> world) {
+  const Stopwatch watch;
+  ResumedPlan waited;
+  waited.status = PlannerStatus::kNotFound;
+  const auto refused = [&](std::string why) {
+    waited.reason = std::move(why);
+    waited.total_s = watch.seconds();
+    return std::move(waited);
+  };
+  const Plan plan = plan_of(stopped);
+  const int at = static_cast<int>(plan.slots.size()) - 1;
+  ChangingObstacles obstacles(*task.robot, world->world());
+  if (!obstacles.any()) return refused("nothing is known to move or to vanish");
+  Motion whole = motion_of(stopped, plan);
+  const Robot& robot = *task.robot->robot;
+  const int stance = whole.stance_from.back();
+  const Eigen::VectorXd stands = whole.configurations.back();
+  Wheels wheels(robot, whole.stances[static_cast<std::size_t>(stance)]);
+  const int last = static_cast<int>(planned.configurations.size()) - 1;
+  if (at >= last) return refused("nothing is left of the plan");
+  double left_m = 0.0;
+  for (int i = at; i < last; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    left_m += (planned.configurations[k + 1] - planned.configurations[k]).head<3>().norm();
+  }
+  constexpr double kSlant = 0.3;  // beside the plan over the way that is left
+  const double off_m =
+      (planned.configurations[static_cast<std::size_t>(at)] - stands).head<3>().norm();
+  if (off_m > kSlant * std::min(kBack_m, left_m)) {
+    return refused("the robot is too far beside the way that was planned");
+  }
+  const double speed_m_s = task.drive->speed_m_s;
+  const std::optional<Rest> driven = along_the_plan(
+      planned, at, stands, wheels, speed_m_s * speed_m_s / (2.0 * kAcceleration_m_s2));
+  if (!driven) return refused("wheels do not stay on the ground on the way back to the plan");
+  const Rest& rest = *driven;
+  Eigen::VectorXd steered;
+  const double steers_s = steer_first(task, rest, wheels, steered);
+  const double begin_s = whole.time_s.back();
+  const auto after_s = obstacles.free_after(rest.motion, begin_s + steers_s);
+  if (!after_s) {
+    return refused("the way is not free within " + std::to_string(static_cast<int>(kWaits_s)) +
+                   " s");
+  }
+  whole.slopes.resize(whole.configurations.size());
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(robot.tangent_size());
+  const auto add = [&](const Eigen::VectorXd& q, double time_s, const Eigen::VectorXd& slope) {
+    whole.configurations.push_back(q);
+    whole.time_s.push_back(time_s);
+    whole.slopes.push_back(slope);
+    whole.stance_from.push_back(stance);
+  };
+  whole.slopes.back() = still;
+  const double moves_s = begin_s + steers_s + *after_s;
+  const std::vector<Eigen::VectorXd>& way = rest.motion.configurations;
+  if (moves_s > begin_s) add(steered, moves_s, still);
+  for (std::size_t k = 1; k < way.size(); ++k) {
+    const bool ends = k + 1 == way.size();
+    add(way[k], moves_s + rest.motion.time_s[k], ends ? still : Eigen::VectorXd());
+  }
+  waited.graph = drive_graph(task, whole);
+  if (plan.world) waited.graph->replace_parameter(kWorldNumber, plan.world);
+  waited.waits_s = *after_s;
+  waited.status = PlannerStatus::kSolved;
+  waited.reason = "the way is free";
+  waited.total_s = watch.seconds();
+  return waited;
+}
+
+}  // namespace locograph
