@@ -15,8 +15,8 @@
 namespace locograph {
 namespace {
 
-/// Of the base while it speeds up, at most.
-constexpr double kAcceleration_m_s2 = 0.3;
+/// Of the base while it speeds up, at most; the way on which it is led back to its plan.
+constexpr double kAcceleration_m_s2 = 0.3, kBack_m = 1.5;
 
 /// Counter-clockwise, from the heading of one configuration to that of another one.
 double turn_between(const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
