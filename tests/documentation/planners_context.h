@@ -40,6 +40,7 @@
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/judging.h>
 #include <locograph/planners/plan/plan.h>
+#include <locograph/planners/plan/plan_edges.h>
 #include <locograph/planners/plan/record.h>
 #include <locograph/planners/posture/posture_solver.h>
 #include <locograph/planners/posture/transition_rows.h>
