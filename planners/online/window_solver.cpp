@@ -84,6 +84,7 @@ void WindowSolver::compile(const Window& window) {
   workspace_.allocate(problem_);
   workspace_.bind(window.plan().bindings());
   restore_multipliers();
+  multipliers_.reserve(static_cast<std::size_t>(problem_.constraint_rows()));
   step_of_.clear();
   for (const CompiledConstraint& c : problem_.constraints()) {
     step_of_.push_back(window.step_of(c.edge));
