@@ -217,8 +217,8 @@ class Walk {
 
   bool rolls(int i) const { return planner_.online_plan().rolls(i); }
 
-  /// Whether the window leads far from the plan, where something that moves meets it, and is to be
-  /// waited for.
+  /// Whether the window leads far from the plan, where something that moves meets it, and will have
+  /// left it while the robot waits.
   bool is_led_off(int executed) const {
     constexpr double kFar_m = 0.3, kApart_m = 0.02;
     const OnlinePlan& plan = planner_.online_plan();
@@ -229,11 +229,21 @@ class Walk {
     const int last = planner_.last_of_window(executed);
     if (std::abs(off_m(last)) <= std::abs(off_m(executed)) + kFar_m) return false;
     ChangingObstacles obstacles(*planner_.plan().robot, plan.world().world());
-    for (int i = executed + 1; i <= last && obstacles.any(); ++i) {
+    bool met = false;
+    for (int i = executed + 1; i <= last && obstacles.any() && !met; ++i) {
       const auto centres = obstacles.centres(plan.planned()[static_cast<std::size_t>(i)]);
-      if (!obstacles.keep_away(centres, plan.time_s(i), kApart_m)) return true;
+      met = !obstacles.keep_away(centres, plan.time_s(i), kApart_m);
     }
-    return false;
+    if (!met) return false;
+    constexpr int kMost = 100;  // configurations
+    Motion rest;
+    for (int i = executed; i < planner_.plan_size() && i <= executed + kMost; ++i) {
+      const bool here = i == executed;
+      rest.configurations.push_back(here ? Eigen::VectorXd(plan.configuration(i))
+                                         : plan.planned()[static_cast<std::size_t>(i)]);
+      rest.time_s.push_back(plan.time_s(i) - plan.time_s(executed));
+    }
+    return obstacles.free_after(rest, plan.time_s(executed)).has_value();
   }
 
   /// The configuration from which the robot has gone the stretch within which slip of wheels
