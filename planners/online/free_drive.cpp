@@ -18,12 +18,6 @@ namespace {
 /// Of the base while it speeds up, at most; the way on which it is led back to its plan.
 constexpr double kAcceleration_m_s2 = 0.3, kBack_m = 1.5;
 
-/// Counter-clockwise, from the heading of one configuration to that of another one.
-double turn_between(const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
-  const Eigen::Vector3d left = left_of(from.data()), left_then = left_of(to.data());
-  return std::atan2(left.cross(left_then).z(), left.dot(left_then));
-}
-
 /// The wheels of a stance, kept on the ground and steered along their way.
 struct Wheels {
   Wheels(const Robot& robot, const Stance& stance)
@@ -107,7 +101,7 @@ struct Rest {
   void lead_back(const Eigen::VectorXd& stands) {
     std::vector<Eigen::VectorXd>& way = motion.configurations;
     const Eigen::Vector3d off = (stands - way.front()).head<3>();
-    const double turned = turn_between(way.front(), stands);
+    const double turned = turn_between(way.front().data(), stands.data());
     const double back_m = std::min(kBack_m, gone_m.back());
     for (std::size_t k = 1; k < way.size(); ++k) {
       const double left = share_left(gone_m[k] / back_m);

@@ -34,9 +34,8 @@ class SidewaysDetour final : public Proposal {
   static Detour detour_of(const OnlinePlan& plan, int i) {
     const Eigen::VectorXd& planned = plan.planned()[static_cast<std::size_t>(i)];
     const Eigen::Map<const Eigen::VectorXd> now = plan.configuration(i);
-    const Eigen::Vector3d left = left_of(planned.data()), left_now = left_of(now.data());
-    return {(now.head<3>() - planned.head<3>()).dot(left),
-            std::atan2(left.cross(left_now).z(), left.dot(left_now))};
+    return {(now.head<3>() - planned.head<3>()).dot(left_of(planned.data())),
+            turn_between(planned.data(), now.data())};
   }
 
   const std::vector<Detour>& find_detours(const OnlinePlan& plan, const Window& window,
