@@ -34,6 +34,9 @@ class Bindings {
     }
   }
 
+  /// The same parameters for the same numbers.
+  bool operator==(const Bindings&) const = default;
+
   /// What stands in for the graph's parameter of that number; `own`, where nothing does.
   template <class P>
   const P& get(int number, const P& own) const {
@@ -61,6 +64,7 @@ class Bindings {
   struct Binding {
     int number;
     std::shared_ptr<const Parameter> parameter;
+    bool operator==(const Binding&) const = default;
   };
 
   std::vector<Binding> all_;

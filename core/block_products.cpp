@@ -1,9 +1,10 @@
+#include <locograph/core/all_zero.h>
 #include <locograph/core/block_products.h>
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <cstring>
+#include <limits>
 
 namespace locograph::detail {
 namespace {
@@ -16,15 +17,6 @@ constexpr int kNarrow = 12;  // rows of fewer entries are added one by one
 
 using Word = std::uint64_t;  // a bit for each column
 constexpr int kBits = 64;
-
-/// Of 8 numbers; -0 counts as a number.
-bool all_zero(const double* from) {
-  Word bits[8];
-  std::memcpy(bits, from, sizeof bits);
-  Word any = 0;
-  for (const Word one : bits) any |= one;
-  return any == 0;
-}
 
 /// sum (n) += Σ factor_r · row_r (n)
 template <int Rows>
@@ -42,13 +34,15 @@ constexpr AddRows kAddRows[kGroup + 1] = {nullptr,        add_rows_to<1>, add_ro
                                           add_rows_to<3>, add_rows_to<4>, add_rows_to<5>,
                                           add_rows_to<6>, add_rows_to<7>, add_rows_to<8>};
 
-/// Adds the rows of one edge to H and b. Rows with few entries one by one; others, one after the
-/// other with mostly the same columns, as vectors.
+/// Adds the rows of one edge to H and b, with their entries in the first columns of each slot. Rows
+/// with few entries one by one; others, one after the other with mostly the same columns, as
+/// vectors.
 class RowSum {
  public:
-  RowSum(const CompiledEdges& compiled, int k, double* const* jacobians, Scratch& scratch,
-         double* hessian, double* gradient)
-      : slots_(compiled.slots.data() + compiled.slot_begin[k]),
+  RowSum(const CompiledEdges& compiled, int k, int columns, double* const* jacobians,
+         Scratch& scratch, double* hessian, double* gradient)
+      : columns_(columns),
+        slots_(compiled.slots.data() + compiled.slot_begin[k]),
         count_(compiled.slot_begin[k + 1] - compiled.slot_begin[k]),
         blocks_(compiled.blocks.data() + compiled.block_begin[k]),
         jacobians_(jacobians),
@@ -61,7 +55,7 @@ class RowSum {
     for (int s = 0; s < count_; ++s) {
       width_[s] = slots_[s].pool->dimension(slots_[s].vertex_index);
       widest = std::max(widest, width_[s]);
-      const int words = jacobians_[s] == nullptr ? 0 : (width_[s] + kBits - 1) / kBits;
+      const int words = jacobians_[s] == nullptr ? 0 : (searched(s) + kBits - 1) / kBits;
       word_[s + 1] = word_[s] + words;
     }
     for (Word** mask : {&of_row_, &of_group_})
@@ -91,6 +85,7 @@ class RowSum {
 
  private:
   int words() const { return word_[count_]; }
+  int searched(int s) const { return std::min(width_[s], columns_); }
   const double* row(int s, int r) const {
     return jacobians_[s] + static_cast<std::ptrdiff_t>(r) * width_[s];
   }
@@ -100,10 +95,10 @@ class RowSum {
     for (int s = 0; s < count_; ++s) {
       const double* from = word_[s + 1] > word_[s] ? row(s, r) : nullptr;
       for (int w = word_[s], c = 0; w < word_[s + 1]; ++w, c += kBits) {
-        const int end = std::min(width_[s] - c, kBits);
+        const int end = std::min(searched(s) - c, kBits);
         Word mask = 0;
         for (int i = 0; i < end; ++i) {
-          if (i % 8 == 0 && end - i >= 8 && all_zero(from + c + i)) {
+          if (i % 8 == 0 && end - i >= 8 && all_zero(from + c + i, 8)) {
             i += 7;
             continue;
           }
@@ -199,6 +194,7 @@ class RowSum {
     }
   }
 
+  int columns_;
   const CompiledEdges::Slot* slots_;
   int count_;  ///< of slots
   const CompiledEdges::Block* blocks_;
@@ -212,6 +208,37 @@ class RowSum {
   int rows_ = 0, row_[kGroup] = {};
   double weight_[kGroup] = {}, error_[kGroup] = {};
 };
+
+/// Rows [begin, end), which have an entry in their own column alone.
+void add_diagonal(const CompiledEdges& compiled, int k, int begin, int end, const double* error,
+                  const double* weights, double w, double* const* jacobians, double* hessian,
+                  double* gradient) {
+  const CompiledEdges::Slot* slots = compiled.slots.data() + compiled.slot_begin[k];
+  const int count = compiled.slot_begin[k + 1] - compiled.slot_begin[k];
+  const CompiledEdges::Block* block = compiled.blocks.data() + compiled.block_begin[k];
+  const auto stride = [&](int s) {
+    return static_cast<std::ptrdiff_t>(slots[s].pool->dimension(slots[s].vertex_index)) + 1;
+  };
+  for (int i = 0; i < count; ++i) {
+    const double* own = jacobians[i];
+    if (own == nullptr) {
+      block += count - i;
+      continue;
+    }
+    const std::ptrdiff_t step = stride(i);
+    double* g = gradient + slots[i].gradient_offset;
+    for (int r = begin; r < end; ++r) g[r] += w * weights[r] * error[r] * own[r * step];
+    for (int j = i; j < count; ++j, ++block) {
+      const double* other = jacobians[j];
+      if (other == nullptr) continue;
+      const std::ptrdiff_t other_step = stride(j), h_step = (*block & 1) != 0 ? other_step : step;
+      double* h = hessian + (*block >> 1);
+      for (int r = begin; r < end; ++r) {
+        h[r * h_step] += w * weights[r] * own[r * step] * other[r * other_step];
+      }
+    }
+  }
+}
 }  // namespace
 
 void weight_jacobian(int n, int d, const double* jacobian, const double* information, double w,
@@ -243,15 +270,19 @@ void add_product(int n, int a, int b, const double* weighted, const double* jaco
   }
 }
 
-void add_rows(const CompiledEdges& compiled, int k, int n, const double* error,
+void add_rows(const CompiledEdges& compiled, int k, int n, int diagonal, const double* error,
               const double* weights, double w, bool one_sided, double* const* jacobians,
               Scratch& scratch, double* hessian, double* gradient) {
-  RowSum sum(compiled, k, jacobians, scratch, hessian, gradient);
-  for (int r = 0; r < n; ++r) {
+  constexpr int kAll = std::numeric_limits<int>::max();
+  RowSum sum(compiled, k, diagonal < n ? diagonal : kAll, jacobians, scratch, hessian, gradient);
+  for (int r = 0; r < diagonal; ++r) {
     const double weight = w * weights[r];
     if (weight != 0.0 && !(one_sided && error[r] == 0.0)) sum.add(r, weight, error[r]);
   }
   sum.flush();
+  if (diagonal < n) {
+    add_diagonal(compiled, k, diagonal, n, error, weights, w, jacobians, hessian, gradient);
+  }
 }
 
 }  // namespace locograph::detail

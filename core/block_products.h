@@ -18,8 +18,10 @@ void add_product(int n, int a, int b, const double* weighted, const double* jaco
                  bool transposed, double* block);
 /// The same of edge k with diagonal Ω, over the entries that are not zero: H += w Ω_r gᵀg,
 /// b += w Ω_r e_r g, of the rows g of its Jacobians (n × d, stored row by row). Rows one after the
-/// other that have nearly the same columns, as those of one foot, are added together.
-void add_rows(const CompiledEdges& compiled, int k, int n, const double* error,
+/// other that have nearly the same columns, as those of one foot, are added together. Rows from
+/// `diagonal` on have an entry in their own column alone, those before it in columns before it; of
+/// the Jacobians nothing else is read then. n: they are as they like.
+void add_rows(const CompiledEdges& compiled, int k, int n, int diagonal, const double* error,
               const double* weights, double w, bool one_sided, double* const* jacobians,
               Scratch& scratch, double* hessian, double* gradient);
 

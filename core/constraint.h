@@ -35,6 +35,8 @@ struct ConstraintRow {
   double shift = 0.0;  ///< in the unit of the error
   double scale = 1.0;  ///< square root of the penalty
   bool one_sided = false;
+
+  bool operator==(const ConstraintRow&) const = default;
 };
 
 /// e ← scale·(e + shift) of n rows, hinged where the row is one-sided.

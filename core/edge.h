@@ -78,7 +78,11 @@
 /// A WeightedEdge has a diagonal Ω, a vector of weights, and a row-major Jacobian that is zero
 /// before jacobians() is called; only entries other than zero cost time. It suits errors of many
 /// rows that each touch a few coordinates (limits, distances). With kOneSided = true its rows are
-/// hinges max(0, …): a row whose error is zero has no derivative and is skipped.
+/// hinges max(0, …): a row whose error is zero has no derivative and is skipped. One whose joints
+/// do not concern each other may say so: from row int diagonal_from(view) const on, the view that
+/// of its first vertex, a row has one entry in each Jacobian, in its own column, which jacobians()
+/// sets, and the rows before it have entries in the columns before it only. It has to have its
+/// jacobians() by hand. What is zero by that costs nothing.
 
 #include <locograph/core/constraint.h>
 #include <locograph/core/robust_kernel.h>

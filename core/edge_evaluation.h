@@ -92,11 +92,25 @@ class EdgeEvaluator {
          FixedSequence());
   }
 
+  /// The row from which on rows have an entry in their own column alone, those before it in columns
+  /// before it; dimension() where the type does not say (see edge.h).
+  int diagonal_from() const {
+    if constexpr (has_diagonal()) {
+      return edge_.diagonal_from(view_of<FixedVertex<E, 0>>(slots_[0], x_));
+    } else {
+      return dimension();
+    }
+  }
+
   /// jacobians: one data pointer for each slot; null for the slots nobody asks for. Given `active`,
-  /// one number for each row, the rows with a zero there may be left as they are.
+  /// one number for each row, the rows with a zero there may be left as they are. Given that rows
+  /// are diagonal from one on, what is zero by that may be, too.
   void jacobians(double* const* jacobians, const double* active = nullptr) const {
+    this->jacobians(jacobians, active, dimension());
+  }
+  void jacobians(double* const* jacobians, const double* active, int diagonal) const {
     if constexpr (has_analytic()) {
-      call_analytic(jacobians, active, FixedSequence());
+      call_analytic(jacobians, active, diagonal, FixedSequence());
     } else {
       each_slot([&]<class V>(std::type_identity<V>, int slot) {
         if (jacobians[slot] == nullptr) return;
@@ -237,6 +251,15 @@ class EdgeEvaluator {
   }
 
  public:
+  static constexpr bool has_diagonal() {
+    if constexpr (kHasWeights<E> && kFixed > 0 && !E::kDynamicArity) {
+      return requires(const E& edge, ViewOf<FixedVertex<E, 0>> view) {
+        { edge.diagonal_from(view) } -> std::same_as<int>;
+      };
+    } else {
+      return false;
+    }
+  }
   static constexpr bool has_analytic() {
     constexpr bool with = test_analytic<const Bindings&>(FixedSequence());
     constexpr bool without = test_analytic(FixedSequence());
@@ -248,7 +271,7 @@ class EdgeEvaluator {
  private:
   template <int I>
   Eigen::Map<JacobianMatrix<E, FixedVertex<E, I>::kDimension>> fixed_map(
-      double* const* jacobians, const double* active) const {
+      double* const* jacobians, const double* active, [[maybe_unused]] int diagonal) const {
     using M = JacobianMatrix<E, FixedVertex<E, I>::kDimension>;
     const int d = vertex_of<FixedVertex<E, I>>(slots_[I]).dimension();
     double* data = jacobians[I];
@@ -257,8 +280,9 @@ class EdgeEvaluator {
     Eigen::Map<M> map(data, dimension(), d);
     if constexpr (kHasWeights<E>) {
       // Of hundreds of limits few are reached.
-      for (int r = 0; r < dimension(); ++r) {
-        if (active == nullptr || active[r] != 0.0) map.row(r).setZero();
+      const int columns = diagonal < dimension() ? std::min(diagonal, d) : d;
+      for (int r = 0; r < diagonal; ++r) {
+        if (active == nullptr || active[r] != 0.0) map.row(r).head(columns).setZero();
       }
     }
     return map;
@@ -266,6 +290,7 @@ class EdgeEvaluator {
 
   template <int... I>
   void call_analytic(double* const* jacobians, [[maybe_unused]] const double* active,
+                     [[maybe_unused]] int diagonal,
                      std::integer_sequence<int, I...> sequence) const {
     if constexpr (E::kDynamicArity) {
       JacobianMap* maps = static_cast<JacobianMap*>(
@@ -288,7 +313,7 @@ class EdgeEvaluator {
       call(
           [&](auto&&... views) {
             call_jacobians(std::forward<decltype(views)>(views)...,
-                           FixedJacobian<I>(fixed_map<I>(jacobians, active))...);
+                           FixedJacobian<I>(fixed_map<I>(jacobians, active, diagonal))...);
           },
           slots_, sequence);
     }

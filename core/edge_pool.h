@@ -96,8 +96,9 @@ class EdgePool {
   /// The type of vertex in a given slot, and an empty pool of it; void and null where any will do.
   virtual std::type_index slot_type(int slot) const = 0;
   virtual std::unique_ptr<VertexPool> make_slot_pool(int slot) const = 0;
-  virtual bool has_weights() const = 0;  ///< Ω is diagonal
-  virtual bool one_sided() const = 0;    ///< the error is hinged: never negative
+  virtual bool has_weights() const = 0;                  ///< Ω is diagonal
+  virtual bool one_sided() const = 0;                    ///< the error is hinged: never negative
+  virtual bool reads_bindings() const { return false; }  ///< the error depends on them
   /// What its edges are unless the graph says otherwise.
   virtual ConstraintKind constraint() const { return ConstraintKind::kNone; }
   virtual double weight(int index, int row) const = 0;  ///< on the diagonal of Ω

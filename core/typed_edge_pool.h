@@ -1,6 +1,7 @@
 #pragma once
 /// The edge pool of one concrete type: include it where a type is registered or added to a graph.
 
+#include <locograph/core/all_zero.h>
 #include <locograph/core/block_products.h>
 #include <locograph/core/edge_evaluation.h>
 #include <locograph/core/edge_line.h>
@@ -36,6 +37,7 @@ class TypedEdgePool final : public EdgePool {
   }
 
   bool has_weights() const override { return kHasWeights<E>; }
+  bool reads_bindings() const override { return Evaluator::reads_bindings(); }
   bool one_sided() const override { return kHinged; }
   ConstraintKind constraint() const override { return constraint_of<E>(); }
   double weight(int index, int row) const override {
@@ -87,6 +89,7 @@ class TypedEdgePool final : public EdgePool {
       const ConstraintRow* rows = constraint_rows(compiled, k, x);
       if (rows != nullptr) {
         std::copy_n(e.data(), edge.dimension(), x.constraint_errors + compiled.constraint_row[k]);
+        // Inside all of its limits: it has no shifts (constraint.h), and its cost is 0.
         if (kHinged && all_zero(e.data(), edge.dimension())) continue;
         constrain_error(rows, edge.dimension(), e.data());
       }
@@ -306,12 +309,6 @@ class TypedEdgePool final : public EdgePool {
     return doubles * sizeof(double) + own.size() * (sizeof(CompiledEdges::Slot) + 512) + 8192;
   }
 
-  /// Of a hinged type: inside all of its limits. It has no shifts (constraint.h), and its cost is
-  /// 0.
-  static bool all_zero(const double* e, int n) {
-    return std::all_of(e, e + n, [](double row) { return row == 0.0; });
-  }
-
   static double weighted_square(const E& edge, const double* e) {
     const int n = edge.dimension();
     double sum = 0.0;
@@ -367,7 +364,9 @@ class TypedEdgePool final : public EdgePool {
                     ? nullptr
                     : x.scratch->array<double>(static_cast<std::size_t>(n) * d);
     });
-    evaluator.jacobians(data, kHinged ? e.data() : nullptr);
+    // What a shift or a scale is applied to has to be there.
+    const int diagonal = rows == nullptr ? evaluator.diagonal_from() : n;
+    evaluator.jacobians(data, kHinged ? e.data() : nullptr, diagonal);
     if (rows != nullptr) {
       evaluator.each_slot([&]<class V>(std::type_identity<V>, int s) {
         if (data[s] == nullptr) return;
@@ -376,8 +375,8 @@ class TypedEdgePool final : public EdgePool {
       });
     }
     if constexpr (kHasWeights<E>) {
-      detail::add_rows(compiled, k, n, e.data(), edge.weights.data(), weight.first, kHinged, data,
-                       *x.scratch, hessian, gradient);
+      detail::add_rows(compiled, k, n, diagonal, e.data(), edge.weights.data(), weight.first,
+                       kHinged, data, *x.scratch, hessian, gradient);
     } else {
       accumulate(compiled, k, evaluator, e.data(), weight, data, x, hessian, gradient);
     }

@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 #include <typeindex>
+#include <utility>
 #include <vector>
 
 namespace locograph {
@@ -27,11 +28,27 @@ struct ActiveVertex {
 class DerivedStore {
  public:
   virtual ~DerivedStore() = default;
+  virtual int size() const = 0;
+  /// What stands at i afterwards stood at from[i], a permutation of size() numbers, which is used
+  /// up.
+  virtual void arrange(std::span<int> from) = 0;
 };
 template <HasDerived V>
 class TypedDerivedStore final : public DerivedStore {
  public:
   std::vector<typename V::Derived> values;
+
+  int size() const override { return static_cast<int>(values.size()); }
+  void arrange(std::span<int> from) override {
+    for (int i = 0; i < static_cast<int>(from.size()); ++i) {
+      int at = i;
+      while (from[at] != i) {
+        std::swap(values[at], values[from[at]]);
+        at = std::exchange(from[at], at);
+      }
+      from[at] = at;
+    }
+  }
 };
 
 class VertexPool {

@@ -16,6 +16,7 @@
 ///
 /// Amounts of different units are compared by their tolerances.
 
+#include <locograph/core/all_zero.h>
 #include <locograph/core/workspace.h>
 
 #include <cmath>
@@ -82,6 +83,7 @@ class ConstraintReader {
     const std::vector<double>& errors = workspace_->constraint_errors();
     for (std::size_t i = 0; i < problem.constraints().size(); ++i) {
       const CompiledConstraint& c = problem.constraints()[i];
+      if (all_zero(errors.data() + c.row, c.count)) continue;
       const EdgePool& pool = *problem.graph().edge_pools()[c.pool];
       const bool one_sided = c.kind == ConstraintKind::kInequality || pool.one_sided();
       for (int r = 0; r < c.count; ++r) {

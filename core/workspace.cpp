@@ -2,6 +2,8 @@
 #include <locograph/core/workspace.h>
 
 #include <algorithm>
+#include <cstring>
+#include <utility>
 
 namespace locograph {
 
@@ -15,14 +17,8 @@ void Workspace::allocate(const Problem& problem) {
   gradient_.resize(problem.gradient_reductions().size);
   step_.resize(n);
   damping_.assign(n, 0.0);
-  constraint_rows_.assign(problem.constraint_rows(), {});
-  constraint_errors_.assign(problem.constraint_rows(), 0.0);
-  evaluated_ = derived_from_ = nullptr;
-  for (const CompiledConstraint& c : problem.constraints()) {
-    for (int r = c.row; r < c.row + c.count; ++r) {
-      constraint_rows_[r].one_sided = c.kind == ConstraintKind::kInequality;
-    }
-  }
+  allocate_rows();
+  evaluated_ = derived_from_ = summed_ = partly_ = nullptr;
   const std::size_t pools = problem.active().size();
   derived_.resize(pools);
   derived_for_.resize(pools);
@@ -37,6 +33,148 @@ void Workspace::allocate(const Problem& problem) {
   if (static_cast<int>(scratch_.size()) < problem.chunks()) scratch_.resize(problem.chunks());
   for (Scratch& scratch : scratch_) scratch.reserve(problem.scratch_bytes());
   chunk_costs_.resize(problem.chunks());
+  if (!by_edge_) return;
+  edge_costs_.resize(problem.edges().size());
+  for (std::size_t p = 0; p < edge_costs_.size(); ++p) {
+    edge_costs_[p].resize(problem.edges()[p].edges.size());
+  }
+}
+
+/// Rows that nobody has written into serve another problem with the same constraints.
+void Workspace::allocate_rows() {
+  constraint_errors_.resize(problem_->constraint_rows());
+  const std::span<const CompiledConstraint> constraints = problem_->constraints();
+  const auto same = [](const CompiledConstraint& a, const CompiledConstraint& b) {
+    return a.row == b.row && a.count == b.count && a.kind == b.kind;
+  };
+  if (rows_as_allocated_ && std::ranges::equal(constraints, rows_for_, same)) return;
+  rows_as_allocated_ = true;
+  rows_for_.assign(constraints.begin(), constraints.end());
+  constraint_rows_.assign(problem_->constraint_rows(), {});
+  for (const CompiledConstraint& c : constraints) {
+    for (int r = c.row; r < c.row + c.count; ++r) {
+      constraint_rows_[r].one_sided = c.kind == ConstraintKind::kInequality;
+    }
+  }
+}
+
+void Workspace::keep() {
+  kept_.valid = std::exchange(by_edge_, true) && problem_ != nullptr && summed_ == state_.data() &&
+                derived_from_ == state_.data();
+  if (!kept_.valid) return;
+  kept_.world = evaluated_ == state_.data();
+  kept_.bindings = bindings_;
+  kept_.active.resize(problem_->active().size());
+  std::ranges::copy(problem_->active(), kept_.active.begin());
+  kept_.derived.clear();
+  for (const auto& store : derived_) kept_.derived.push_back(store.get());
+  kept_.state = state_;
+  kept_.errors.swap(constraint_errors_);
+  kept_.rows.clear();
+  if (!rows_as_allocated_) kept_.rows = constraint_rows_;
+  const std::size_t pools = problem_->edges().size();
+  kept_.edges.resize(pools);
+  kept_.constraint_row.resize(pools);
+  for (std::size_t p = 0; p < pools; ++p) {
+    kept_.edges[p] = problem_->edges()[p].edges;
+    kept_.constraint_row[p] = problem_->edges()[p].constraint_row;
+  }
+  kept_.costs.swap(edge_costs_);
+}
+
+void Workspace::take_over() {
+  if (!std::exchange(kept_.valid, false)) return;
+  // Types may have been registered since.
+  if (kept_.active.size() != derived_.size() || kept_.edges.size() != problem_->edges().size())
+    return;
+  known_vertices_.resize(derived_.size());
+  for (std::size_t p = 0; p < derived_.size(); ++p) take_over_vertices(p);
+  known_edges_.resize(kept_.edges.size());
+  const bool same_bindings = kept_.world && kept_.bindings == bindings_;
+  for (std::size_t p = 0; p < kept_.edges.size(); ++p) take_over_edges(p, same_bindings);
+  partly_ = state_.data();
+}
+
+void Workspace::take_over_vertices(std::size_t p) {
+  const VertexPool& pool = *problem_->graph().vertex_pools()[p];
+  const std::vector<ActiveVertex>&active = problem_->active()[p], &was = kept_.active[p];
+  std::vector<char>& known = known_vertices_[p];
+  known.assign(active.size(), 0);
+  DerivedStore* store = derived_[p].get();
+  if (store != kept_.derived[p]) return;  // made anew
+  place_.clear();
+  for (std::size_t i = 0; i < was.size(); ++i) place_.emplace_back(was[i].index, i);
+  std::ranges::sort(place_);
+  from_.assign(active.size(), -1);
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    const auto found = std::ranges::lower_bound(place_, std::pair(active[i].index, 0));
+    if (found == place_.end() || found->first != active[i].index) continue;
+    const ActiveVertex& before = was[static_cast<std::size_t>(found->second)];
+    const auto now = state_.begin() + active[i].state_offset;
+    const int size = pool.state_size(active[i].index);
+    // To the bit: -0 and 0 may have other quantities.
+    if (std::memcmp(&*now, kept_.state.data() + before.state_offset, size * sizeof(double)) != 0)
+      continue;
+    known[i] = 1;
+    from_[i] = found->second;
+  }
+  if (store == nullptr) return;
+  from_.resize(static_cast<std::size_t>(store->size()), -1);
+  used_.assign(from_.size(), 0);
+  for (const int i : from_) {
+    if (i >= 0) used_[static_cast<std::size_t>(i)] = 1;
+  }
+  int unused = 0;
+  for (int& i : from_) {
+    if (i >= 0) continue;
+    while (used_[static_cast<std::size_t>(unused)] != 0) ++unused;
+    i = unused++;
+  }
+  store->arrange(from_);
+}
+
+void Workspace::take_over_edges(std::size_t p, bool same_bindings) {
+  const EdgePool& pool = *problem_->graph().edge_pools()[p];
+  const CompiledEdges& edges = problem_->edges()[p];
+  std::vector<char>& known = known_edges_[p];
+  known.assign(edges.edges.size(), 0);
+  if (pool.reads_bindings() && !same_bindings) return;
+  const std::vector<int>& was = kept_.edges[p];
+  // Both mostly ascend; what is missed for that is evaluated.
+  std::size_t old = 0;
+  for (std::size_t k = 0; k < edges.edges.size(); ++k) {
+    while (old < was.size() && was[old] < edges.edges[k]) ++old;
+    if (old == was.size()) break;
+    if (was[old] != edges.edges[k]) continue;
+    const auto slots =
+        std::span(edges.slots)
+            .subspan(edges.slot_begin[k], edges.slot_begin[k + 1] - edges.slot_begin[k]);
+    if (!std::ranges::all_of(slots, [&](const CompiledEdges::Slot& slot) {
+          return known_vertices_[slot.pool_number][slot.derived_index] != 0;
+        })) {
+      continue;
+    }
+    const int row = edges.constraint_row.empty() ? -1 : edges.constraint_row[k];
+    const int row_was = kept_.constraint_row[p].empty() ? -1 : kept_.constraint_row[p][old];
+    if ((row < 0) != (row_was < 0)) continue;
+    if (row >= 0) {
+      const int count = pool.dimension(edges.edges[k]);
+      const auto same = [&](int r) {
+        const ConstraintRow before =
+            kept_.rows.empty() ? ConstraintRow{.one_sided = constraint_rows_[row + r].one_sided}
+                               : kept_.rows[row_was + r];
+        return before == constraint_rows_[row + r];
+      };
+      bool all_same = true;
+      if (!kept_.rows.empty() || !rows_as_allocated_) {
+        for (int r = 0; r < count && all_same; ++r) all_same = same(r);
+      }
+      if (!all_same) continue;
+      std::copy_n(kept_.errors.begin() + row_was, count, constraint_errors_.begin() + row);
+    }
+    edge_costs_[p][k] = kept_.costs[p][old];
+    known[k] = 1;
+  }
 }
 
 bool Workspace::DerivedFor::fits(const VertexPool& other,
@@ -58,7 +196,7 @@ void Workspace::DerivedFor::assign(const VertexPool& other, std::span<const Acti
 void Workspace::bind(const Bindings& bindings) {
   bindings.require_fit(problem_->graph().parameters());
   bindings_ = bindings;
-  evaluated_ = nullptr;
+  evaluated_ = partly_ = nullptr;
 }
 
 void Workspace::load_state() {
@@ -70,13 +208,16 @@ void Workspace::load_state() {
     }
   }
   trial_ = state_;
-  evaluated_ = derived_from_ = nullptr;
+  evaluated_ = derived_from_ = summed_ = partly_ = nullptr;
+  take_over();
 }
 
 void Workspace::set_state(const std::vector<double>& state) {
   if (state == state_) return;
   if (evaluated_ == state_.data()) evaluated_ = nullptr;
   if (derived_from_ == state_.data()) derived_from_ = nullptr;
+  if (summed_ == state_.data()) summed_ = nullptr;
+  if (partly_ == state_.data()) partly_ = nullptr;
   state_ = state;
 }
 
@@ -121,13 +262,17 @@ Cost Workspace::sum_chunks(Task&& task) {
 
 Cost Workspace::return_to_state() {
   if (evaluated_ == state_.data()) return evaluated_cost_;
-  if (derived_from_ == state_.data()) return sum_costs(state_);
+  if (derived_from_ == state_.data()) {
+    return sum_costs(state_, summed_ == state_.data() ? Stale::kReadBindings : Stale::kAll);
+  }
   return evaluate(state_);
 }
 
 Cost Workspace::evaluate(const std::vector<double>& state) {
+  const bool partly = partly_ == state.data();
   derive(state);
-  return sum_costs(state);
+  partly_ = nullptr;
+  return sum_costs(state, partly ? Stale::kUnknown : Stale::kAll);
 }
 
 void Workspace::derive(const std::vector<double>& state) {
@@ -136,23 +281,42 @@ void Workspace::derive(const std::vector<double>& state) {
   for (std::size_t p = 0; p < derived_.size(); ++p) {
     if (!derived_[p]) continue;
     const std::vector<ActiveVertex>& active = problem_->active()[p];
+    const VertexPool& pool = *problem_->graph().vertex_pools()[p];
+    if (partly_ == state.data()) {
+      for (std::size_t i = 0; i < active.size(); ++i) {
+        if (known_vertices_[p][i] == 0) pool.derive(active, i, i + 1, state.data(), *derived_[p]);
+      }
+      continue;
+    }
     for_each(problem_->chunks(), [&](std::size_t chunk) {
-      problem_->graph().vertex_pools()[p]->derive(active, active.size() * chunk / chunks,
-                                                  active.size() * (chunk + 1) / chunks,
-                                                  state.data(), *derived_[p]);
+      pool.derive(active, active.size() * chunk / chunks, active.size() * (chunk + 1) / chunks,
+                  state.data(), *derived_[p]);
     });
   }
 }
 
 /// With the quantities derived of it.
-Cost Workspace::sum_costs(const std::vector<double>& state) {
-  evaluated_ = state.data();
+Cost Workspace::sum_costs(const std::vector<double>& state, Stale stale) {
+  evaluated_ = summed_ = nullptr;
   try {
     evaluated_cost_ = sum_chunks([&](int chunk, std::size_t p) {
       const CompiledEdges& edges = problem_->edges()[p];
-      return problem_->graph().edge_pools()[p]->cost(
-          edges, edges.chunk_begin[chunk], edges.chunk_begin[chunk + 1], evaluation(state, chunk));
+      const EdgePool& pool = *problem_->graph().edge_pools()[p];
+      const int begin = edges.chunk_begin[chunk], end = edges.chunk_begin[chunk + 1];
+      if (!by_edge_) return pool.cost(edges, begin, end, evaluation(state, chunk));
+      const bool all =
+          stale == Stale::kAll || (stale == Stale::kReadBindings && pool.reads_bindings());
+      Cost sum;
+      for (int k = begin; k < end; ++k) {
+        Cost& cost = edge_costs_[p][k];
+        if (all || (stale == Stale::kUnknown && known_edges_[p][k] == 0)) {
+          cost = pool.cost(edges, k, k + 1, evaluation(state, chunk));
+        }
+        sum += cost;
+      }
+      return sum;
     });
+    evaluated_ = summed_ = state.data();
     return evaluated_cost_;
   } catch (const Error&) {
     throw_with_line(state);

@@ -17,6 +17,11 @@ class Workspace {
  public:
   /// Keeps memory that is large enough. The problem must outlive the workspace's use.
   void allocate(const Problem& problem);
+  /// Called before the problem is compiled again for a window that has slid along an otherwise
+  /// unchanged graph: what is known at state() holds after the load_state() that comes next, for
+  /// vertices whose state is the same, and edges on such vertices whose rows are. Costs are summed
+  /// to the same bits.
+  void keep();
   /// Null for the caller's thread alone. The pool must outlive the workspace's use.
   void use_threads(ThreadPool* threads) { threads_ = threads; }
   /// Parameters that stand in for those of the problem's graph from the next evaluate() on, until
@@ -45,7 +50,8 @@ class Workspace {
   /// Of the problem's constraints(); as allocated: no shift, scale 1. Costs of before they are
   /// changed do not count any more.
   std::vector<ConstraintRow>& constraint_rows() {
-    evaluated_ = nullptr;
+    evaluated_ = summed_ = nullptr;
+    rows_as_allocated_ = false;
     return constraint_rows_;
   }
   const std::vector<ConstraintRow>& constraint_rows() const { return constraint_rows_; }
@@ -62,7 +68,7 @@ class Workspace {
   /// The cost at state() of a workspace that nobody has written into since it was evaluated, but by
   /// bind() and set_state(). Evaluates it where that is needed: not where it was evaluated last, as
   /// it is after a run whose last trial was accepted. Where only the bindings are others, what was
-  /// derived of it stays.
+  /// derived of it stays, and so do the costs of edges that do not read them.
   Cost return_to_state();
   /// Fills hessian() and gradient() at state(), which was evaluated last.
   Cost linearise();
@@ -108,15 +114,22 @@ class Workspace {
   template <class Task>
   Cost sum_chunks(Task&& task);
   void derive(const std::vector<double>& state);
-  Cost sum_costs(const std::vector<double>& state);
+  /// Which edges have to be evaluated.
+  enum class Stale { kAll, kReadBindings, kUnknown };
+  Cost sum_costs(const std::vector<double>& state, Stale stale);
+  void allocate_rows();
+  void take_over();
+  void take_over_vertices(std::size_t pool);
+  void take_over_edges(std::size_t pool, bool same_bindings);
   void reduce(const Problem::Reductions& reductions, std::vector<double>& values);
 
   const Problem* problem_ = nullptr;
   Bindings bindings_;
   std::vector<ConstraintRow> constraint_rows_;
   std::vector<double> constraint_errors_;
-  /// The buffer, state or trial, that was evaluated last; that of whose numbers all is derived.
-  const double *evaluated_ = nullptr, *derived_from_ = nullptr;
+  /// The buffer, state or trial, that was evaluated last; that of whose numbers all is derived;
+  /// that whose costs are known but for those that read the bindings.
+  const double *evaluated_ = nullptr, *derived_from_ = nullptr, *summed_ = nullptr;
   Cost evaluated_cost_;
   std::vector<double> state_, trial_, hessian_, gradient_, step_, damping_;
   std::vector<std::unique_ptr<DerivedStore>> derived_;
@@ -124,6 +137,30 @@ class Workspace {
   std::vector<Scratch> scratch_;  ///< one for each chunk
   std::vector<Cost> chunk_costs_;
   ThreadPool* threads_ = nullptr;
+  std::vector<CompiledConstraint> rows_for_;  ///< that constraint_rows_ were allocated for
+  bool rows_as_allocated_ = false;
+
+  // See keep().
+  struct Kept {
+    bool valid = false, world = false;  ///< the edges that read the bindings, too
+    Bindings bindings;
+    std::vector<std::vector<ActiveVertex>> active;
+    std::vector<const DerivedStore*> derived;
+    std::vector<double> state, errors;
+    std::vector<ConstraintRow> rows;  ///< empty: as allocated
+    std::vector<std::vector<int>> edges, constraint_row;
+    std::vector<std::vector<Cost>> costs;
+  };
+  bool by_edge_ = false;
+  Kept kept_;
+  std::vector<std::vector<Cost>> edge_costs_;      ///< by pool and edge
+  std::vector<std::vector<char>> known_edges_;     ///< at partly_, likewise
+  std::vector<std::vector<char>> known_vertices_;  ///< by pool and active vertex
+  const double* partly_ = nullptr;  ///< the buffer of which a part is known, before it is evaluated
+  std::vector<std::pair<int, int>>
+      place_;  ///< of a kept vertex: index in its pool, and in `active`
+  std::vector<int> from_;
+  std::vector<char> used_;
 };
 
 }  // namespace locograph

@@ -23,8 +23,8 @@ class BallClosure final : public ClosureRows {
     const BallPose to = pose(state);
     const BallStep::Derivative by_to = BallStep(track_, from_, to).by_to();
     for (int row = 0; row < 3; ++row) {
-      state.add_point_gradient(link(), to.centre, by_to.by_centre.row(row), 1.0, jacobian);
-      state.add_rotation_gradient(link(), by_to.by_turn.row(row), 1.0, jacobian);
+      state.add_wrench_gradient(link(), to.centre, by_to.by_centre.row(row), by_to.by_turn.row(row),
+                                jacobian);
       jacobian += stride;
     }
   }

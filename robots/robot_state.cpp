@@ -109,27 +109,36 @@ void RobotState::point_jacobian(
   }
 }
 
-// d . (v + omega x r) = v . d + omega . (r x d), with d in base axes.
+// f . (v + omega x r) + m . omega = v . f + omega . (r x f + m), with v and omega in base axes.
 void RobotState::add_base_gradient(const Eigen::Vector3d& point_world,
-                                   const Eigen::Vector3d& direction_world, double* row,
+                                   const Eigen::Vector3d& force_world,
+                                   const Eigen::Vector3d& moment_world, double* row,
                                    int stride) const {
   const Eigen::Matrix3d world_from_base = world_from_body_[0].linear();
   const Eigen::Vector3d arm = point_world - world_from_body_[0].translation();
-  const Eigen::Vector3d linear = world_from_base.transpose() * direction_world;
-  const Eigen::Vector3d angular = world_from_base.transpose() * arm.cross(direction_world);
+  const Eigen::Vector3d linear = world_from_base.transpose() * force_world;
+  const Eigen::Vector3d angular =
+      world_from_base.transpose() * (arm.cross(force_world) + moment_world);
   for (int k = 0; k < 3; ++k) {
     row[k * stride] += linear[k];
     row[(3 + k) * stride] += angular[k];
   }
 }
 
-// d . (axis x (p - o)) = axis . ((p - o) x d) for a joint.
 void RobotState::add_point_gradient(int link, const Eigen::Vector3d& point_world,
                                     const Eigen::Vector3d& direction_world, double scale,
                                     double* row, int stride) const {
-  const Eigen::Vector3d direction = scale * direction_world;
+  add_wrench_gradient(link, point_world, scale * direction_world, Eigen::Vector3d::Zero(), row,
+                      stride);
+}
+
+// f . (axis x (p - o)) + m . axis = axis . ((p - o) x f + m) for a joint.
+void RobotState::add_wrench_gradient(int link, const Eigen::Vector3d& point_world,
+                                     const Eigen::Vector3d& force_world,
+                                     const Eigen::Vector3d& moment_world, double* row,
+                                     int stride) const {
   if (robot_->floating_base()) {
-    add_base_gradient(point_world, direction, row, stride);
+    add_base_gradient(point_world, force_world, moment_world, row, stride);
     row += 6 * stride;
   }
   const int* support = tree_->support.data();
@@ -137,9 +146,10 @@ void RobotState::add_point_gradient(int link, const Eigen::Vector3d& point_world
   for (int s = tree_->support_begin[static_cast<std::size_t>(link)]; s < end; ++s) {
     const int i = support[s];
     const Eigen::Vector3d& along = joint_axis(i);
-    const double slope = tree_->bodies[static_cast<std::size_t>(i) + 1].revolute
-                             ? along.dot((point_world - joint_origin(i)).cross(direction))
-                             : along.dot(direction);
+    const double slope =
+        tree_->bodies[static_cast<std::size_t>(i) + 1].revolute
+            ? along.dot((point_world - joint_origin(i)).cross(force_world) + moment_world)
+            : along.dot(force_world);
     const Axis& axis = robot_->axes()[static_cast<std::size_t>(i)];
     row[axis.active * stride] += axis.multiplier * slope;
   }
@@ -212,7 +222,7 @@ void RobotState::add_center_of_mass_gradient(const Eigen::Vector3d& direction_wo
   const Eigen::Vector3d com = center_of_mass();
   const Eigen::Vector3d direction = scale * direction_world;
   if (robot_->floating_base()) {
-    add_base_gradient(com, direction, row, stride);
+    add_base_gradient(com, direction, Eigen::Vector3d::Zero(), row, stride);
     row += 6 * stride;
   }
   const Eigen::Vector3d share = direction / tree_->bodies[0].subtree_mass;

@@ -63,6 +63,12 @@ class RobotState {
   void add_rotation_gradient(int link, const Eigen::Vector3d& direction_world, double scale,
                              double* row, int stride = 1) const;
 
+  /// row[k * stride] += force . d(point)/d(tangent_k) + moment . d(rotation)/d(tangent_k): the two
+  /// above in one pass, for what a wrench at point_world does to the tangent.
+  void add_wrench_gradient(int link, const Eigen::Vector3d& point_world,
+                           const Eigen::Vector3d& force_world, const Eigen::Vector3d& moment_world,
+                           double* row, int stride = 1) const;
+
   /// row[k * stride] += scale * direction . d(axis)/d(tangent_k) for a unit vector fixed to `link`
   /// that now points along axis_world. Touches the same columns.
   void add_axis_gradient(int link, const Eigen::Vector3d& axis_world,
@@ -88,9 +94,9 @@ class RobotState {
                                    double* row, int stride = 1) const;
 
  private:
-  /// The columns of the base in the gradient of a point that moves with it.
-  void add_base_gradient(const Eigen::Vector3d& point_world, const Eigen::Vector3d& direction_world,
-                         double* row, int stride) const;
+  /// The columns of the base in the gradient of what moves with it.
+  void add_base_gradient(const Eigen::Vector3d& point_world, const Eigen::Vector3d& force_world,
+                         const Eigen::Vector3d& moment_world, double* row, int stride) const;
 
   const Robot* robot_;
   const KinematicTree* tree_;

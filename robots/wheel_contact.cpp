@@ -49,10 +49,10 @@ class WheelClosure final : public ClosureRows {
       state.add_point_gradient(wheel_.carrier, pose.centre, axes_.col(row), 1.0, jacobian);
       jacobian += stride;
     }
-    state.add_point_gradient(wheel_.carrier, pose.centre, normal, 1.0, jacobian);
-    state.add_axis_gradient(wheel_.carrier, pose.axle, normal,
-                            wheel_.radius_m * tilt / upright(tilt), jacobian);
-    state.add_axis_gradient(wheel_.carrier, pose.axle, normal, 1.0, jacobian + stride);
+    const Eigen::Vector3d tilting = pose.axle.cross(normal);
+    state.add_wrench_gradient(wheel_.carrier, pose.centre, normal,
+                              wheel_.radius_m * tilt / upright(tilt) * tilting, jacobian);
+    state.add_rotation_gradient(wheel_.carrier, tilting, 1.0, jacobian + stride);
   }
 
  private:

@@ -37,10 +37,15 @@ void BandedSolver::analyse(const BlockPattern& pattern) {
   last_ = panel_ends(pattern);
   panel_begin_.assign(1, 0);
   height_.clear();
+  // Blocks of the pattern are copied whole; the others are those that fill in.
+  std::vector<int> blocks(pattern.size(), 0);
+  for (const int row : pattern.row) ++blocks[row];
+  fills_.clear();
   for (int c = 0; c < pattern.size(); ++c) {
     height_.push_back(pattern.scalar_begin[last_[c] + 1] - pattern.scalar_begin[c]);
     panel_begin_.push_back(panel_begin_.back() +
                            static_cast<std::size_t>(height_[c]) * pattern.dimension[c]);
+    if (blocks[c] <= last_[c] - c) fills_.push_back(c);
   }
   panels_.reserve(static_cast<std::int64_t>(panel_begin_.back()));
 }
@@ -48,7 +53,9 @@ void BandedSolver::analyse(const BlockPattern& pattern) {
 bool BandedSolver::factorise(const double* values, const double* damping) {
   failed_row_ = -1;
   const DenseKernels& dense = kernels().dense;
-  std::fill_n(panels_.data(), panel_begin_.back(), 0.0);
+  for (const int c : fills_) {
+    std::fill(panels_.data() + panel_begin_[c], panels_.data() + panel_begin_[c + 1], 0.0);
+  }
   // The upper block (r, c) of the pattern is the transpose of the lower block (c, r) of panel r.
   for (int c = 0; c < pattern_.size(); ++c) {
     const int columns = pattern_.dimension[c];

@@ -31,6 +31,7 @@ class BandedSolver final : public LinearSolver {
   std::vector<int> last_;  ///< last block row of each panel
   std::vector<std::size_t> panel_begin_;
   std::vector<int> height_;  ///< scalar rows of each panel
+  std::vector<int> fills_;   ///< panels with blocks that the pattern does not have
   AlignedMemory panels_;
   int failed_row_ = -1;
 };

@@ -38,7 +38,7 @@ LocalPlanner::LocalPlanner(Graph& graph, const LocalPlannerOptions& options)
   if (plan_.size() < 2) return;
   Window first = window_;  // a copy: nothing has entered the planner's own
   first.move_to(0);
-  solver_.compile(first);
+  solver_.compile(first, false);
   solver_.load_state();
   solver_.prepare();
 }
@@ -100,7 +100,7 @@ bool LocalPlanner::take_shown() {
 bool LocalPlanner::begin_window(int executed) {
   require_step(executed);
   take_shown();
-  move_window(executed, take_measured());
+  move_window(executed, take_measured(), true);
   hand_out_best();
   changed_ = true;
   return incumbent_.best().quality.feasible();
@@ -120,8 +120,8 @@ CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
   const Stopwatch watch;
   const bool new_world = take_shown();
   const Eigen::VectorXd measured = take_measured();
-  const bool moved =
-      std::exchange(changed_, false) || answer_.executed != executed || measured.size() > 0;
+  const bool changed = std::exchange(changed_, false);
+  const bool moved = changed || answer_.executed != executed || measured.size() > 0;
   if (phase_ == Phase::kOver && !moved && !new_world && !tries_again()) {
     report = answer_;
     report.detour = report.deadline_missed = false;
@@ -130,7 +130,7 @@ CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
     report.statistics.total_s = watch.seconds();
     return report;
   }
-  if (moved || new_world) begin(report, moved, measured);
+  if (moved || new_world) begin(report, moved, changed, measured);
   report.window = window_.steps();
   report.statistics.constraints = static_cast<int>(solver_.problem().constraints().size());
   const int cut_short_after = improve(report, termination);
@@ -161,7 +161,8 @@ bool LocalPlanner::tries_again() {
 
 /// At another configuration, or in another world. What the search had come to goes on from there;
 /// one that is over, or whose window is good as it is, begins anew.
-void LocalPlanner::begin(CycleReport& report, bool moved, const Eigen::VectorXd& measured) {
+void LocalPlanner::begin(CycleReport& report, bool moved, bool changed,
+                         const Eigen::VectorXd& measured) {
   const Stopwatch watch;
   const bool goes_on = phase_ != Phase::kOver &&
                        (phase_ != Phase::kOptimise ||
@@ -169,7 +170,7 @@ void LocalPlanner::begin(CycleReport& report, bool moved, const Eigen::VectorXd&
   tried_ = {};
   left_over_ = false;
   if (moved) {
-    left_over_ = move_window(report.executed, measured);
+    left_over_ = move_window(report.executed, measured, changed);
   } else {
     see_new_world();
   }
@@ -200,9 +201,9 @@ const std::vector<double>* LocalPlanner::leftover() {
   return incumbent_.unfinished(solver_.running() ? &solver_.state() : nullptr);
 }
 
-/// measured: see measure(); empty: nothing. Returns whether there is something left over, which is
-/// kept as unfinished.
-bool LocalPlanner::move_window(int executed, const Eigen::VectorXd& measured) {
+/// measured: see measure(); empty: nothing. changed: see plan_changed(). Returns whether there is
+/// something left over, which is kept as unfinished.
+bool LocalPlanner::move_window(int executed, const Eigen::VectorXd& measured, bool changed) {
   if (answer_.executed >= 0) {
     if (const std::vector<double>* state = leftover()) {
       solver_.store(*state);
@@ -220,7 +221,9 @@ bool LocalPlanner::move_window(int executed, const Eigen::VectorXd& measured) {
     plan_.take_contacts(executed);
     warm_start_.lead_back(window_, was);
   }
-  solver_.compile(window_);
+  const bool slid = !changed && plan_.revision() == revision_;
+  revision_ = plan_.revision();
+  solver_.compile(window_, slid);
   solver_.load_state();
   incumbent_.clear();
   beside_.clear();

@@ -119,9 +119,9 @@ class LocalPlanner {
   void require_step(int executed) const;
   Eigen::VectorXd take_measured();
   bool tries_again();
-  void begin(CycleReport& report, bool moved, const Eigen::VectorXd& measured);
+  void begin(CycleReport& report, bool moved, bool changed, const Eigen::VectorXd& measured);
   const std::vector<double>* leftover();
-  bool move_window(int executed, const Eigen::VectorXd& measured);
+  bool move_window(int executed, const Eigen::VectorXd& measured, bool changed);
   void see_new_world();
   int improve(CycleReport& report, const Termination& termination);
   bool advance(CycleReport& report, const Termination& termination);
@@ -156,6 +156,7 @@ class LocalPlanner {
   bool left_over_ = false;  ///< the search began with a window that the one before had left
   bool better_ = false;     ///< the incumbent, than what was handed out
   bool changed_ = false;    ///< see plan_changed()
+  int revision_ = 0;        ///< of the plan that was compiled last
   std::vector<double> handed_out_, least_;  ///< see see_new_world()
   CycleReport answer_;                      ///< of the last cycle
   WindowQuality tried_;                     ///< what the last search at this configuration led to

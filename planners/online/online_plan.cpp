@@ -87,6 +87,7 @@ void OnlinePlan::take_contacts(int index) {
     taken.push_back(number);
   }
   if (taken.empty()) return;
+  ++revision_;
   const auto has_taken = [&](const StanceParameter& stance) {
     return std::ranges::find_first_of(stance.contact_numbers, taken) !=
            stance.contact_numbers.end();
@@ -136,11 +137,17 @@ void OnlinePlan::follow_moved(int first, int last) {
         planned_.slopes.empty() ? Eigen::VectorXd() : planned_.slopes[static_cast<std::size_t>(i)];
   }
   if (!steps) return;
-  carry_slopes(planned_, plan_, graph_, {first, last});
-  carry_wrenches(planned_, plan_, graph_, {first - 1, last});
+  const auto moved = [this](int i) { return moved_around(planned_, plan_, graph_, i); };
+  PlanRange range = {first - 1, last};
+  while (range.first <= range.last && !moved(range.first)) ++range.first;
+  while (range.last > range.first && !moved(range.last)) --range.last;
+  if (range.first > range.last) return;
+  carry_slopes(planned_, plan_, graph_, {std::max(first, range.first), range.last});
+  carry_wrenches(planned_, plan_, graph_, range);
 }
 
 void OnlinePlan::slow_down(int from, int to, double duration_s) {
+  ++revision_;
   const int steps = to - from;
   std::vector<double> step_s, faster(static_cast<std::size_t>(steps) + 1);
   for (int i = from; i < to; ++i) step_s.push_back(time_s(i + 1) - time_s(i));

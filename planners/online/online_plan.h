@@ -85,6 +85,9 @@ class OnlinePlan {
   /// The world as it is known now: that of the plan until another one is shown.
   const WorldSnapshot& world() const { return *world_->snapshot; }
   void show(std::shared_ptr<const WorldParameter> world);
+  /// How often anything but states, slopes and the world has been changed: times, parameters.
+  int revision() const { return revision_; }
+
   /// For evaluations of the graph: edges see that world.
   const Bindings& bindings() const { return bindings_; }
 
@@ -98,6 +101,7 @@ class OnlinePlan {
   Motion planned_;
   std::vector<bool> rolls_;    ///< by configuration
   std::vector<int> borne_at_;  ///< by slot
+  int revision_ = 0;
 };
 
 }  // namespace locograph

@@ -75,11 +75,12 @@ WindowSolver::WindowSolver(const WindowSolverOptions& options)
 
 WindowSolver::~WindowSolver() = default;
 
-void WindowSolver::compile(const Window& window) {
+void WindowSolver::compile(const Window& window, bool slid) {
   goes_on_ = run_ == RunKind::kRaising && !begins_;
   if (raised_) keep_multipliers();
   end_run();
   raised_ = false;
+  if (slid) workspace_.keep();
   problem_.compile(window.graph(), window.free_vertices(), window.held_vertices());
   workspace_.allocate(problem_);
   workspace_.bind(window.plan().bindings());

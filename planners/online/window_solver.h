@@ -2,7 +2,7 @@
 /// Optimises the window of an online planner on one compiled problem, an iteration at a time.
 ///
 ///     WindowSolver solver{WindowSolverOptions()};
-///     solver.compile(window);
+///     solver.compile(window, false);
 ///     solver.load_state();
 ///     solver.begin(WindowSolver::Start::kIncumbent);
 ///     while (solver.step(termination, statistics)) {
@@ -48,8 +48,9 @@ class WindowSolver {
   explicit WindowSolver(const WindowSolverOptions& options);
   ~WindowSolver();
 
-  /// Of a window that has moved. A run ends.
-  void compile(const Window& window);
+  /// Of a window that has moved. A run ends. slid: along a graph in which nothing but states has
+  /// changed since the last one; what is known of it holds then.
+  void compile(const Window& window, bool slid);
   /// The world has changed. A run goes on in it.
   void rebind(const Bindings& bindings);
   /// Graph → state(). A run ends.

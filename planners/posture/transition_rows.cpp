@@ -351,8 +351,8 @@ void TransitionRows::add_self() {
   for (const CoarsePair& coarse : coarse_) {
     const SelfCollisionShapes::Pair& pair =
         robot_->self_collision.pairs[static_cast<std::size_t>(coarse.pair)];
-    const Eigen::Vector3d between = state_.bound_centres[static_cast<std::size_t>(pair.first)] -
-                                    state_.bound_centres[static_cast<std::size_t>(pair.second)];
+    const Eigen::Vector3d between = state_.bound_centre(static_cast<std::size_t>(pair.first)) -
+                                    state_.bound_centre(static_cast<std::size_t>(pair.second));
     if (between.norm() >= pair.reach + limit) continue;
     const int a = robot_->bounds[static_cast<std::size_t>(pair.first)].link;
     const int b = robot_->bounds[static_cast<std::size_t>(pair.second)].link;
@@ -425,7 +425,7 @@ void TransitionRows::add_obstacles() {
   for (std::size_t b = 0; b < robot_->bounds.size(); ++b) {
     if (exempt_[b]) continue;
     const RobotParameter::LinkBound& bound = robot_->bounds[b];
-    if (in_the_way_.distance(state_.bound_centres[b], 0.0) - bound.radius >= limit) continue;
+    if (in_the_way_.distance(state_.bound_centre(b), 0.0) - bound.radius >= limit) continue;
     double least = limit;
     DistanceSample worst;
     int nearest = -1;

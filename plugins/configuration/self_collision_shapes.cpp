@@ -2,6 +2,7 @@
 #include <locograph/robots/covering_capsules.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace locograph {
 
@@ -31,6 +32,26 @@ SelfCollisionShapes::SelfCollisionShapes(const RobotParameter& parameter) {
     const int a = bound_of_link[first], b = bound_of_link[second];
     if (a < 0 || b < 0) continue;
     pairs.push_back({a, b, of_bound[a].radius + of_bound[b].radius});
+  }
+  std::vector<int> place_of(of_bound.size(), -1);
+  for (const Pair& pair : pairs) {
+    if (place_of[pair.first] < 0) {
+      place_of[pair.first] = static_cast<int>(by_first.size());
+      by_first.push_back({pair.first, pair.second, pair.second, {}, {}});
+    }
+    PairsOf& of = by_first[place_of[pair.first]];
+    of.begin = std::min(of.begin, pair.second);
+    of.end = std::max(of.end, pair.second + 1);
+  }
+  for (PairsOf& of : by_first) {
+    of.reach.assign(of.end - of.begin, -std::numeric_limits<double>::infinity());
+    of.number.assign(of.end - of.begin, -1);
+  }
+  for (int number = 0; number < static_cast<int>(pairs.size()); ++number) {
+    const Pair& pair = pairs[number];
+    PairsOf& of = by_first[place_of[pair.first]];
+    of.reach[pair.second - of.begin] = pair.reach;
+    of.number[pair.second - of.begin] = number;
   }
 }
 

@@ -53,7 +53,7 @@ ConfigurationState::ConfigurationState(std::shared_ptr<const RobotParameter> par
       kinematics(*robot->robot),
       q(robot->robot->configuration_size()),
       sphere_centres(robot->spheres.size()),
-      bound_centres(robot->bounds.size()) {}
+      bound_centres(static_cast<Eigen::Index>(robot->bounds.size()), 3) {}
 
 void ConfigurationState::update(const double* configuration) {
   std::copy_n(configuration, q.size(), q.data());
@@ -62,9 +62,9 @@ void ConfigurationState::update(const double* configuration) {
     const CollisionSphere& sphere = robot->spheres[i];
     sphere_centres[i] = kinematics.world_from_link(sphere.link) * sphere.center;
   }
-  for (std::size_t i = 0; i < bound_centres.size(); ++i) {
-    const RobotParameter::LinkBound& bound = robot->bounds[i];
-    bound_centres[i] = kinematics.world_from_link(bound.link) * bound.center;
+  for (Eigen::Index i = 0; i < bound_centres.rows(); ++i) {
+    const RobotParameter::LinkBound& bound = robot->bounds[static_cast<std::size_t>(i)];
+    bound_centres.row(i) = (kinematics.world_from_link(bound.link) * bound.center).transpose();
   }
 }
 

@@ -33,12 +33,15 @@ struct ConfigurationState {
   Eigen::VectorXd q;
   double time_s = 0.0;
   std::vector<Eigen::Vector3d> sphere_centres;  ///< world frame, as RobotParameter::spheres
-  std::vector<Eigen::Vector3d> bound_centres;   ///< world frame, as RobotParameter::bounds
+  Eigen::MatrixX3d bound_centres;               ///< by row, likewise, as RobotParameter::bounds
 
   explicit ConfigurationState(std::shared_ptr<const RobotParameter> parameter);
   void update(const double* configuration);
 
   const Robot& model() const { return kinematics.robot(); }
+  Eigen::Vector3d bound_centre(std::size_t bound) const {
+    return bound_centres.row(static_cast<Eigen::Index>(bound)).transpose();
+  }
   double joint(int active) const { return q[model().base_configuration_size() + active]; }
   /// world_from_base, identity rotation and origin for a fixed base.
   Eigen::Vector3d base_position() const { return q.head<3>(); }

@@ -16,11 +16,11 @@ namespace {
 template <class F>
 void each_near_sphere(const ConfigurationState& q, const WorldDistance& world, double margin_m,
                       F&& f) {
-  for (std::size_t link = 0; link < q.bound_centres.size(); ++link) {
+  for (std::size_t link = 0; link < q.robot->bounds.size(); ++link) {
     const RobotParameter::LinkBound& bound = q.robot->bounds[link];
     // The field changes by no more than the way, so nothing inside the bound can be nearer.
     const double reach = bound.radius + margin_m;
-    if (reach < world.max_distance() && world.distance(q.bound_centres[link], q.time_s) > reach)
+    if (reach < world.max_distance() && world.distance(q.bound_centre(link), q.time_s) > reach)
       continue;
     for (int i = bound.begin; i < bound.end; ++i) f(i);
   }

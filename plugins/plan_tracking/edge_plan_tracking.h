@@ -40,6 +40,7 @@ struct EdgePlanTracking : WeightedEdge<Eigen::Dynamic, VertexConfiguration> {
   EdgePlanTracking() = default;
   EdgePlanTracking(const Eigen::VectorXd& reference, const Eigen::VectorXd& weights);
 
+  int diagonal_from(const ConfigurationState& q) const { return q.model().base_tangent_size(); }
   void error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const ConfigurationState& q, JacobianRef<EdgePlanTracking, 0> j) const;
   RowLabel row_label(int row, const VertexConfiguration& q) const {

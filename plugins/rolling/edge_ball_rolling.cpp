@@ -37,8 +37,8 @@ void EdgeBallRolling::jacobians(const ConfigurationState& a, const Configuration
   const BallStep::Derivative by_from = step.by_from(), by_to = step.by_to();
   const auto add = [&](const ConfigurationState& q, const BallPose& at,
                        const BallStep::Derivative& by, int i, double* row) {
-    q.kinematics.add_point_gradient(contact->link, at.centre, by.by_centre.row(i), 1.0, row);
-    q.kinematics.add_rotation_gradient(contact->link, by.by_turn.row(i), 1.0, row);
+    q.kinematics.add_wrench_gradient(contact->link, at.centre, by.by_centre.row(i),
+                                     by.by_turn.row(i), row);
   };
   for (int i = 0; i < 3; ++i) {
     add(a, from, by_from, i, ja.row(i).data());

@@ -25,15 +25,13 @@ struct RollingPose : WheelPose {
 
 double nearest_turn(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
 
-/// row += scale · dψ, ψ = atan2(y, x) with y = (n × u) · a = n · (u × a) and x = n · u.
-void add_pitch_gradient(const RobotState& kinematics, const Wheel& wheel, const RollingPose& pose,
-                        const Eigen::Vector3d& normal, double scale, double* row) {
+/// dψ by how the carrier turns, ψ = atan2(y, x) with y = (n × u) · a = n · (u × a) and x = n · u.
+Eigen::Vector3d pitch_gradient(const RollingPose& pose, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d side = pose.upright.cross(pose.axle);  // fixed to the carrier, as u and a
   const double x = normal.dot(pose.upright), y = normal.dot(side);
   // A wheel lying flat has no pitch, hence no gradient of it.
   const double squared = std::max(1e-12, x * x + y * y);
-  kinematics.add_axis_gradient(wheel.carrier, side, normal, scale * x / squared, row);
-  kinematics.add_axis_gradient(wheel.carrier, pose.upright, normal, -scale * y / squared, row);
+  return (x * side - y * pose.upright).cross(normal) / squared;
 }
 
 int rows_of(const StanceParameter::StandingWheel& standing) { return standing.locked ? 3 : 2; }
@@ -99,16 +97,19 @@ void EdgeRolling::jacobians(const ConfigurationState& a, const ConfigurationStat
     const auto rows = [&](const ConfigurationState& q, const RollingPose& pose, double sign,
                           double* lateral, std::ptrdiff_t stride) {
       const RobotState& kinematics = q.kinematics;
-      double* longitudinal = lateral + stride;
-      kinematics.add_point_gradient(wheel.carrier, pose.centre, step.axle, sign, lateral);
-      kinematics.add_axis_gradient(wheel.carrier, pose.axle, along, 1.0, lateral);
-      if (flip != 0.0) {
-        add_turn_gradient(kinematics, wheel, pose, normal, sign * flip, lateral);
+      WheelGradient sideways{sign * step.axle, pose.axle.cross(along)};
+      if (flip != 0.0) sideways.by_turn += sign * flip * turn_gradient(pose, normal);
+      sideways.add_to(kinematics, wheel, pose, lateral);
+      double* turned = lateral + stride;
+      WheelGradient forward = step.way_gradient(pose, normal, sign);
+      if (standing.locked) {
+        forward.add_to(kinematics, wheel, pose, turned);
+        forward = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+        turned += stride;
       }
-      step.add_way_gradient(kinematics, wheel, pose, normal, sign, 1.0, longitudinal);
-      double* turned = standing.locked ? longitudinal + stride : longitudinal;
       const double scale = (standing.locked ? sign : -sign) * wheel.radius_m;
-      add_pitch_gradient(kinematics, wheel, pose, normal, scale, turned);
+      forward.by_turn += scale * pitch_gradient(pose, normal);
+      forward.add_to(kinematics, wheel, pose, turned);
       if (wheel.joint >= 0) turned[q.model().base_tangent_size() + wheel.joint] += scale;
     };
     rows(a, from, -1.0, ja.row(row).data(), ja.outerStride());

@@ -68,8 +68,11 @@ void EdgeSteeringSlip::jacobians(const ConfigurationState& a, const Configuratio
     const double slope = std::copysign(kHalfWayShare, step.way * step.turned);
     const auto add = [&](const RobotState& kinematics, const WheelPose& pose, double sign,
                          double* entries) {
-      step.add_way_gradient(kinematics, wheel, pose, normal, sign, slope * step.turned, entries);
-      add_turn_gradient(kinematics, wheel, pose, normal, sign * slope * step.way, entries);
+      WheelGradient gradient = step.way_gradient(pose, normal, sign);
+      gradient.by_centre *= slope * step.turned;
+      gradient.by_turn = slope * step.turned * gradient.by_turn +
+                         sign * slope * step.way * turn_gradient(pose, normal);
+      gradient.add_to(kinematics, wheel, pose, entries);
     };
     add(a.kinematics, from, -1.0, ja.row(row).data());
     add(b.kinematics, to, 1.0, jb.row(row).data());

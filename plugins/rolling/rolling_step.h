@@ -18,6 +18,17 @@ inline Eigen::Vector3d rolling_part(const Eigen::Vector3d& v, const Eigen::Vecto
   return v - normal.dot(v) * normal;
 }
 
+/// The derivative of a number by the pose of a wheel's carrier: by the wheel's centre, and by how
+/// it turns, in the world. That of a · v by a vector a of the carrier is a × v by how it turns.
+struct WheelGradient {
+  Eigen::Vector3d by_centre, by_turn;
+
+  void add_to(const RobotState& kinematics, const Wheel& wheel, const WheelPose& pose,
+              double* row) const {
+    kinematics.add_wrench_gradient(wheel.carrier, pose.centre, by_centre, by_turn, row);
+  }
+};
+
 /// What the two poses of a wheel have between them.
 struct RollingStep {
   Eigen::Vector3d moved;     ///< of the centre, in the plane
@@ -49,27 +60,19 @@ struct RollingStep {
     if (length == 0.0) return Eigen::Vector3d::Zero();
     return (v - axle.dot(v) * axle) / length;
   }
-  /// row += scale · d(way) by the configuration of one pose; sign: -1 for the first, 1 for the
-  /// second.
-  void add_way_gradient(const RobotState& kinematics, const Wheel& wheel, const WheelPose& pose,
-                        const Eigen::Vector3d& normal, double sign, double scale,
-                        double* row) const {
-    kinematics.add_point_gradient(wheel.carrier, pose.centre, axle.cross(normal), sign * scale,
-                                  row);
+  /// d(way) by one pose of the wheel; sign: -1 for the first, 1 for the second.
+  WheelGradient way_gradient(const WheelPose& pose, const Eigen::Vector3d& normal,
+                             double sign) const {
     // moved · (axle × normal) = axle · (normal × moved)
-    kinematics.add_axis_gradient(wheel.carrier, pose.axle, by_axle(normal.cross(moved)), scale,
-                                 row);
+    return {sign * axle.cross(normal), pose.axle.cross(by_axle(normal.cross(moved)))};
   }
 };
 
-/// row += scale · dθ, θ the angle of the axle about the normal: a vector a in the plane turns by
+/// dθ, θ the angle of the axle about the normal: a vector a in the plane turns by
 /// (n × a) · da / |a|².
-inline void add_turn_gradient(const RobotState& kinematics, const Wheel& wheel,
-                              const WheelPose& pose, const Eigen::Vector3d& normal, double scale,
-                              double* row) {
+inline Eigen::Vector3d turn_gradient(const WheelPose& pose, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d flat = rolling_part(pose.axle, normal);
-  kinematics.add_axis_gradient(wheel.carrier, pose.axle, normal.cross(flat),
-                               scale / flat.squaredNorm(), row);
+  return pose.axle.cross(normal.cross(flat)) / flat.squaredNorm();
 }
 
 }  // namespace locograph

@@ -34,10 +34,14 @@ Eigen::Vector3d direction_between(const SegmentPoints& points, const Capsule& a,
   return axis.unitOrthogonal();
 }
 
-bool near(const ConfigurationState& q, const SelfCollisionShapes::Pair& pair, double limit) {
-  const double reach = pair.reach + limit;
-  return reach > 0.0 &&
-         (q.bound_centres[pair.second] - q.bound_centres[pair.first]).squaredNorm() < reach * reach;
+/// Calls f(number, pair) for the pairs with a weight whose bounds are nearer than `limit`.
+template <class F>
+void each_near_pair(const ConfigurationState& q, const Eigen::VectorXd& weights, double limit,
+                    F&& f) {
+  const SelfCollisionShapes& shapes = q.robot->self_collision;
+  shapes.each_near_pair(q.bound_centres, limit, [&](int number) {
+    if (weights[number] != 0.0) f(number, shapes.pairs[number]);
+  });
 }
 
 /// The nearest capsules of two links that are nearer than `limit`, in the frame of the first link.
@@ -115,41 +119,33 @@ void add_gradient(const ConfigurationState& q, const SelfCollisionShapes::Pair& 
 }  // namespace
 
 void EdgeSelfCollision::error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const {
-  const std::vector<SelfCollisionShapes::Pair>& pairs = q.robot->self_collision.pairs;
-  require_rows(kTag, e.size(), static_cast<long>(pairs.size()));
-  for (std::size_t p = 0; p < pairs.size(); ++p) {
-    const Eigen::Index row = static_cast<Eigen::Index>(p);
-    e[row] = weights[row] != 0.0 && near(q, pairs[p], margin_m)
-                 ? margin_m - nearest(q, pairs[p], margin_m).distance
-                 : 0.0;
-  }
+  require_rows(kTag, e.size(), static_cast<long>(q.robot->self_collision.pairs.size()));
+  e.setZero();
+  each_near_pair(q, weights, margin_m, [&](int number, const SelfCollisionShapes::Pair& pair) {
+    e[number] = margin_m - nearest(q, pair, margin_m).distance;
+  });
 }
 
 void EdgeSelfCollision::jacobians(const ConfigurationState& q,
                                   JacobianRef<EdgeSelfCollision, 0> j) const {
-  const std::vector<SelfCollisionShapes::Pair>& pairs = q.robot->self_collision.pairs;
-  for (std::size_t p = 0; p < pairs.size(); ++p) {
-    if (weights[static_cast<Eigen::Index>(p)] == 0.0 || !near(q, pairs[p], margin_m)) continue;
-    const Nearest found = nearest(q, pairs[p], margin_m);
-    if (found.distance >= margin_m) continue;
-    add_gradient(q, pairs[p], found, -1.0, j.row(static_cast<Eigen::Index>(p)).data());
-  }
+  each_near_pair(q, weights, margin_m, [&](int number, const SelfCollisionShapes::Pair& pair) {
+    const Nearest found = nearest(q, pair, margin_m);
+    if (found.distance < margin_m) add_gradient(q, pair, found, -1.0, j.row(number).data());
+  });
 }
 
 void find_near_pairs(const ConfigurationState& q, const Eigen::VectorXd& weights, double limit,
                      std::vector<NearPair>& near_pairs, std::vector<double>& gradients) {
   near_pairs.clear();
   gradients.clear();
-  const std::vector<SelfCollisionShapes::Pair>& pairs = q.robot->self_collision.pairs;
   const std::size_t size = static_cast<std::size_t>(q.model().tangent_size());
-  for (std::size_t p = 0; p < pairs.size(); ++p) {
-    if (weights[static_cast<Eigen::Index>(p)] == 0.0 || !near(q, pairs[p], limit)) continue;
-    const Nearest found = nearest(q, pairs[p], limit);
-    if (found.distance >= limit) continue;
-    near_pairs.push_back({static_cast<int>(p), found.distance});
+  each_near_pair(q, weights, limit, [&](int number, const SelfCollisionShapes::Pair& pair) {
+    const Nearest found = nearest(q, pair, limit);
+    if (found.distance >= limit) return;
+    near_pairs.push_back({number, found.distance});
     gradients.resize(gradients.size() + size, 0.0);
-    add_gradient(q, pairs[p], found, 1.0, gradients.data() + gradients.size() - size);
-  }
+    add_gradient(q, pair, found, 1.0, gradients.data() + gradients.size() - size);
+  });
 }
 
 RowLabel EdgeSelfCollision::row_label(int row, const VertexConfiguration& q) const {

@@ -106,7 +106,7 @@ std::optional<PlaceRow> EdgeSurfaceDistance::worst_row(const ConfigurationState&
   const PlaceBands bands{.margin_m = margin_m};
   std::optional<PlaceRow> worst;
   relations->places().tree().each_touching(
-      box_around(q.bound_centres[bound], reach), [&](int place) {
+      box_around(q.bound_centre(bound), reach), [&](int place) {
         const std::optional<PlaceRow> row =
             place_row(q, *relations, place, static_cast<std::size_t>(place), bound, bands);
         if (row && row->value < (worst ? worst->value : 0.0)) worst = row;

@@ -7,7 +7,7 @@ std::optional<PlaceRow> row_apart(const ConfigurationState& q, const TouchablePl
                                   int place, std::size_t b, const PlaceBands& bands) {
   const RobotParameter::LinkBound& bound = q.robot->bounds[b];
   const double limit = bands.margin_m + bands.apart_m;
-  if (places.is_far(place, q.bound_centres[b], bound.radius, limit)) return std::nullopt;
+  if (places.is_far(place, q.bound_centre(b), bound.radius, limit)) return std::nullopt;
   TouchablePlaces::Distance worst{limit, Eigen::Vector3d::Zero()};
   int nearest = -1;
   for (int i = bound.begin; i < bound.end; ++i) {
@@ -38,8 +38,8 @@ std::optional<PlaceRow> row_touching(const ConfigurationState& q, const Touchabl
 
 Eigen::AlignedBox3d reach_of(const ConfigurationState& q, double reach_m) {
   Eigen::AlignedBox3d around;
-  for (std::size_t b = 0; b < q.bound_centres.size(); ++b) {
-    around.extend(box_around(q.bound_centres[b], q.robot->bounds[b].radius + reach_m));
+  for (std::size_t b = 0; b < q.robot->bounds.size(); ++b) {
+    around.extend(box_around(q.bound_centre(b), q.robot->bounds[b].radius + reach_m));
   }
   return around;
 }

@@ -90,7 +90,7 @@ class Step {
   void each_lacking_sphere(F&& f) const {
     const std::vector<RobotParameter::LinkBound>& bounds = a_.robot->bounds;
     for (std::size_t link = 0; link < bounds.size(); ++link) {
-      if (is_far(bounds[link], a_.bound_centres[link], b_.bound_centres[link])) continue;
+      if (is_far(bounds[link], a_.bound_centre(link), b_.bound_centre(link))) continue;
       for (int i = bounds[link].begin; i < bounds[link].end; ++i) {
         const Worst worst = worst_of(i);
         if (worst.lack > 0.0) f(i, worst);
@@ -107,19 +107,24 @@ class Step {
   bool is_far(const RobotParameter::LinkBound& bound, const Eigen::Vector3d& from,
               const Eigen::Vector3d& to) const {
     const double length = (to - from).norm();
-    const double turn = std::sqrt(0.5) * (b_.kinematics.world_from_link(bound.link).linear() -
-                                          a_.kinematics.world_from_link(bound.link).linear())
-                                             .norm();  // of a unit vector, at most
-    const double half_gap = (length + turn * bound.radius + world_moves_m_) / (2.0 * samples_);
-    const double reach = bound.radius + margin_m_ + half_gap + 0.5 * length + world_moves_m_;
-    if (reach >= world_.max_distance()) return false;
+    const auto reach_of = [&](double turn) {  // of a unit vector, at most
+      const double half_gap = (length + turn * bound.radius + world_moves_m_) / (2.0 * samples_);
+      return bound.radius + margin_m_ + half_gap + 0.5 * length + world_moves_m_;
+    };
+    constexpr double kMostTurn = 2.0;
     const Eigen::Vector3d middle = 0.5 * (from + to);
-    const double time_s = time_at(0.5);
-    return world_.distance(middle, time_s) > reach &&
-           std::ranges::none_of(world_.obstacles, [&](const Obstacle& obstacle) {
-             return is_there(obstacle) && !obstacle.is_there(time_s) &&
-                    obstacle.sample_shape(middle, time_s).distance <= reach;
-           });
+    const double time_s = time_at(0.5), distance = world_.distance(middle, time_s);
+    double reach = reach_of(kMostTurn);
+    if (distance <= reach || reach >= world_.max_distance()) {
+      reach = reach_of(std::sqrt(0.5) * (b_.kinematics.world_from_link(bound.link).linear() -
+                                         a_.kinematics.world_from_link(bound.link).linear())
+                                            .norm());
+      if (distance <= reach || reach >= world_.max_distance()) return false;
+    }
+    return std::ranges::none_of(world_.obstacles, [&](const Obstacle& obstacle) {
+      return is_there(obstacle) && !obstacle.is_there(time_s) &&
+             obstacle.sample_shape(middle, time_s).distance <= reach;
+    });
   }
 
   Worst worst_of(int sphere) const {

@@ -32,6 +32,7 @@ struct EdgeAccelerationTracking
   EdgeAccelerationTracking() = default;
   EdgeAccelerationTracking(const Eigen::VectorXd& acceleration, const Eigen::VectorXd& weights);
 
+  int diagonal_from(const ConfigurationState& q) const { return q.model().base_tangent_size(); }
   void error(const ConfigurationState& a, const ConfigurationState& b, const ConfigurationState& c,
              Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const ConfigurationState& a, const ConfigurationState& b,

@@ -31,6 +31,7 @@ struct EdgeVelocityTracking
   EdgeVelocityTracking() = default;
   EdgeVelocityTracking(const Eigen::VectorXd& step, const Eigen::VectorXd& weights);
 
+  int diagonal_from(const ConfigurationState& q) const { return q.model().base_tangent_size(); }
   void error(const ConfigurationState& a, const ConfigurationState& b,
              Eigen::Ref<Eigen::VectorXd> e) const;
   void jacobians(const ConfigurationState& a, const ConfigurationState& b,

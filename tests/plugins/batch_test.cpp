@@ -51,6 +51,11 @@ Graph plan_with_everything(const RobotCase& robot,
     graph.add_edge(
         dress(EdgeVelocityTracking(random.vector(tangent, 0.1), Eigen::VectorXd::Ones(tangent))), a,
         b);
+    if (i > 1) {
+      graph.add_edge(dress(EdgeAccelerationTracking(random.vector(tangent, 0.1),
+                                                    Eigen::VectorXd::Ones(tangent))),
+                     ids[i - 2], ids[i - 1], ids[i]);
+    }
     // Velocity limits follow the time.
     graph.add_edge(dress(EdgeVelocityLimits(model, 0.3, 0.2, 0.2, 1.0)), ids[i - 1], ids[i]);
   }
@@ -68,7 +73,7 @@ TEST_P(Batch, IsTheSumOverItsEdgesOneByOne) {
   for (const bool kernels : {false, true}) {
     if (kSanitized && !kernels) continue;
     Graph graph = plan_with_everything(robot, everything_around(), true, kernels);
-    ASSERT_EQ(graph.edge_pools().size(), 10u);
+    ASSERT_EQ(graph.edge_pools().size(), 11u);
     Problem problem;
     problem.compile(graph);
     ASSERT_EQ(problem.dimension(), 18 * robot.model().tangent_size());
