@@ -1,7 +1,5 @@
 #pragma once
 /// Of hundreds of limits few are reached: what rests is found many numbers at a time.
-///
-///     if (all_zero(errors, rows)) continue;
 
 #include <cstdint>
 #include <cstring>

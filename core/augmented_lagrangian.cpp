@@ -78,13 +78,13 @@ class ConstrainedOptimiser::Rows {
   void measure() {
     const std::vector<ConstraintRow>& rows = std::as_const(*workspace_).constraint_rows();
     for (const CompiledConstraint& c : problem_->constraints()) {
-      const bool hinged = pool(c).one_sided();
+      const bool hinged = pool(c).one_sided(), one_sided = is_one_sided(c);
       for (int r = c.row; r < c.row + c.count; ++r) {
         const double e = error(r);
         // How far the row is from satisfying its complementarity condition, N&W eq. 17.66.
-        violation_[r] = weight_[r] == 0.0              ? 0.0
-                        : !rows[r].one_sided || hinged ? std::abs(e)
-                                                       : std::abs(std::max(e, -rows[r].shift));
+        violation_[r] = weight_[r] == 0.0      ? 0.0
+                        : !one_sided || hinged ? std::abs(e)
+                                               : std::abs(std::max(e, -rows[r].shift));
       }
     }
   }
@@ -105,7 +105,7 @@ class ConstrainedOptimiser::Rows {
       for (int r = c.row; r < c.row + c.count; ++r) {
         if (!hinged) {
           rows[r].shift += error(r);
-          if (rows[r].one_sided) rows[r].shift = std::max(0.0, rows[r].shift);
+          if (is_one_sided(c)) rows[r].shift = std::max(0.0, rows[r].shift);
         }
         any = any || slow(r);
       }
@@ -137,7 +137,7 @@ class ConstrainedOptimiser::Rows {
         scaled_shift[r] = row.scale * row.shift;
         const double e = error(c.row + r);
         const double violation = weight_[c.row + r] == 0.0 ? 0.0
-                                 : row.one_sided           ? std::max(0.0, e)
+                                 : is_one_sided(c)         ? std::max(0.0, e)
                                                            : std::abs(e);
         if (violation > state.violation) {
           state.violation = violation;
@@ -160,6 +160,9 @@ class ConstrainedOptimiser::Rows {
  private:
   const EdgePool& pool(const CompiledConstraint& c) const {
     return *problem_->graph().edge_pools()[c.pool];
+  }
+  static bool is_one_sided(const CompiledConstraint& c) {
+    return c.kind == ConstraintKind::kInequality;
   }
   double error(int row) const { return workspace_->constraint_errors()[row]; }
   bool slow(int r) const {

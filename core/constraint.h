@@ -34,18 +34,17 @@ enum class ConstraintKind : unsigned char {
 struct ConstraintRow {
   double shift = 0.0;  ///< in the unit of the error
   double scale = 1.0;  ///< square root of the penalty
-  bool one_sided = false;
 
   bool operator==(const ConstraintRow&) const = default;
 };
 
-/// e ← scale·(e + shift) of n rows, hinged where the row is one-sided.
-void constrain_error(const ConstraintRow* rows, int n, double* e);
+/// e ← scale·(e + shift) of n rows, hinged if they are one-sided.
+void constrain_error(const ConstraintRow* rows, bool one_sided, int n, double* e);
 
 /// The same for the derivative (n × d), stored row by row or column by column; `e` is the error
 /// after constrain_error(). Rows inside their limit become zero, unless the type hinges by itself:
 /// then they are left as they are, for nobody reads them.
-void constrain_jacobian(const ConstraintRow* rows, int n, int d, const double* e, double* jacobian,
-                        bool by_row, bool hinged = false);
+void constrain_jacobian(const ConstraintRow* rows, bool one_sided, int n, int d, const double* e,
+                        double* jacobian, bool by_row, bool hinged = false);
 
 }  // namespace locograph

@@ -65,7 +65,7 @@ DensePriorPool::Vector DensePriorPool::shifted_error(const CompiledEdges& compil
   const ConstraintRow* rows = constraint_rows(compiled, k, x);
   if (rows != nullptr) {
     std::copy_n(e.data(), n, x.constraint_errors + compiled.constraint_row[k]);
-    constrain_error(rows, n, e.data());
+    constrain_error(rows, compiled.one_sided[k] != 0, n, e.data());
   }
   return e;
 }
@@ -122,8 +122,8 @@ Cost DensePriorPool::linearise_one(const CompiledEdges& compiled, int k, const E
       slots[s].pool->ominus_jacobian(slots[s].vertex_index, x.state + slots[s].state_offset,
                                      reference, jacobians[s], *x.scratch);
       if (rows != nullptr) {
-        constrain_jacobian(rows + row, static_cast<int>(d), static_cast<int>(d), e.data() + row,
-                           jacobians[s], false);
+        constrain_jacobian(rows + row, compiled.one_sided[k] != 0, static_cast<int>(d),
+                           static_cast<int>(d), e.data() + row, jacobians[s], false);
       }
     }
     reference += state_size_of(slots[s]);

@@ -45,6 +45,7 @@ struct CompiledEdges {
   /// For each edge its first row in Evaluation::constraint_rows, -1 when it is no constraint; empty
   /// when none is.
   std::vector<int> constraint_row;
+  std::vector<char> one_sided;  ///< likewise: whether it is an inequality
 
   void clear() {
     edges.clear();
@@ -54,6 +55,7 @@ struct CompiledEdges {
     block_begin.assign(1, 0);
     blocks.clear();
     constraint_row.clear();
+    one_sided.clear();
   }
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace locograph {
 namespace {
@@ -62,6 +63,7 @@ void OptimiserOptions::validate() const {
   check_option(refused_lambda > 0.0, "refused_lambda", "a positive number");
   check_option(initial_radius > 0.0, "initial_radius", "a positive number");
   check_option(max_refusals >= 1, "max_refusals", "1 or more");
+  check_option(max_trials >= 0, "max_trials", "0 (off) or more");
   check_option(nonmonotonic_steps >= 0, "nonmonotonic_steps", "0 or more");
 }
 
@@ -111,6 +113,7 @@ void Optimiser::start(Workspace& workspace, LinearSolver& solver, bool evaluated
   lambda_growth_ = 2.0;
   lambda_fall_ = kLambdaFall;
   refused_ = false;
+  refused_before_ = 0;
   radius_ = options_.initial_radius;
   const int n = workspace.problem().dimension();
   diagonal_.resize(n);
@@ -171,6 +174,7 @@ bool Optimiser::finish_refused(Reason converged, double promised) {
 
 void Optimiser::costs_changed() {
   cost_ = result_.final = best_cost_ = workspace_->return_to_state();
+  refused_before_ = 0;
   reference_.start(cost_.robust, options_.nonmonotonic_steps);
   if (may_rise()) best_state_ = workspace_->state();
 }
@@ -181,9 +185,11 @@ bool Optimiser::iterate() {
   if (options_.deadline.passed()) return finish(Reason::kDeadline);
   IterationStatistics now;
   Stopwatch watch;
-  workspace_->linearise();
+  if (refused_before_ == 0) {
+    workspace_->linearise();
+    map(negative_gradient_) = -map(workspace_->gradient());
+  }
   now.time_linearise = watch.seconds();
-  map(negative_gradient_) = -map(workspace_->gradient());
   if (map(negative_gradient_).lpNorm<Eigen::Infinity>() <= options_.gradient_tolerance) {
     return finish(Reason::kGradient);
   }
@@ -225,8 +231,13 @@ Cost Optimiser::evaluate_trial(IterationStatistics& now) {
   const Stopwatch watch;
   workspace_->apply_step();
   const Cost cost = workspace_->evaluate(workspace_->trial());
+  ++now.trials;
   now.time_evaluate += watch.seconds();
   return cost;
+}
+
+bool Optimiser::has_tried_enough(const IterationStatistics& now) const {
+  return options_.max_trials > 0 && now.trials >= options_.max_trials;
 }
 
 double Optimiser::state_norm() const { return norm(map(workspace_->state())); }
@@ -277,7 +288,7 @@ bool Optimiser::shorten(Cost& cost, IterationStatistics& now) {
   Vector step = map(workspace_->step());
   const double slope = 2.0 * dot(step, map(negative_gradient_));  // at 0, downwards
   double length = 1.0;
-  for (int cut = 0; cut < kMostCuts; ++cut) {
+  for (int cut = 0; cut < kMostCuts && !has_tried_enough(now); ++cut) {
     // The least of the parabola through the cost at 0, with its slope, and at `length`.
     const double least = 0.5 * slope * length / (slope + (cost.robust - cost_.robust) / length);
     const double factor = std::isfinite(cost.robust) ? std::clamp(least / length, 0.1, 0.5) : 0.1;
@@ -312,7 +323,8 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
   update_scaling();
   bool factorised = false;
   double promised = 0.0;
-  for (; now.refusals < options_.max_refusals; ++now.refusals) {
+  const int before = std::exchange(refused_before_, 0);
+  for (; before + now.refusals < options_.max_refusals; ++now.refusals) {
     now.lambda = lambda_;
     Vector damping = map(workspace_->damping());
     if (options_.scale_by_diagonal) {
@@ -376,8 +388,12 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
       reference_.start(cost_.robust, options_.nonmonotonic_steps);
     }
     if (options_.deadline.passed()) return finish(Reason::kDeadline);
+    if (has_tried_enough(now)) {
+      refused_before_ = before + ++now.refusals;
+      return true;
+    }
   }
-  if (!factorised) return finish(Reason::kSingular);
+  if (!factorised && before == 0) return finish(Reason::kSingular);
   return finish_refused(Reason::kNoProgress, promised);
 }
 

@@ -75,6 +75,10 @@ struct OptimiserOptions {
   double initial_radius = 1e4;
   /// Steps that may be refused in a row before the iteration gives up.
   int max_refusals = 16;
+  /// Of Levenberg-Marquardt, for iterations that have to be short: the states that one tries. Where
+  /// it takes none of them, iterate() says that there is more to do, and the next one goes on with
+  /// the damping and the linear system that there are. 0: as many as it needs.
+  int max_trials = 0;
   Deadline deadline;
   /// Called after every iteration; false stops the run. The result so far holds the statistics of
   /// the iteration; the workspace holds its state.
@@ -94,6 +98,7 @@ struct IterationStatistics {
   double lambda = 0.0;  ///< or the trust-region radius
   double step_norm = 0.0;
   int refusals = 0;
+  int trials = 0;  ///< states whose cost was worked out
   double time_linearise = 0.0, time_solve = 0.0, time_evaluate = 0.0;  ///< seconds
 };
 
@@ -157,6 +162,7 @@ class Optimiser {
   void update_scaling();
   bool iterate_dogleg(IterationStatistics& now);
   bool solve(IterationStatistics& now);
+  bool has_tried_enough(const IterationStatistics& now) const;
   Cost evaluate_trial(IterationStatistics& now);
   bool shorten(Cost& cost, IterationStatistics& now);
   bool accept(const Cost& cost, double predicted, IterationStatistics& now, bool whole = true);
@@ -170,7 +176,8 @@ class Optimiser {
   ReferenceCost reference_;
   double lambda_ = 0.0, lambda_unit_ = 1.0, lambda_growth_ = 2.0;
   double lambda_fall_ = 0.0, radius_ = 0.0;
-  bool refused_ = false;  ///< a step, of this run
+  bool refused_ = false;    ///< a step, of this run
+  int refused_before_ = 0;  ///< in a row, by iterations that took no step
   std::vector<double> diagonal_, scaling_, newton_step_, negative_gradient_;
   std::vector<double> first_diagonal_, first_state_;
   std::vector<double> best_state_;  ///< where the cost has risen since

@@ -311,6 +311,8 @@ void Problem::compile_constraints() {
     }
     compiled.constraint_row.resize(compiled.edges.size(), -1);
     compiled.constraint_row[c.k] = c.row;
+    compiled.one_sided.resize(compiled.edges.size(), 0);
+    compiled.one_sided[c.k] = c.kind == ConstraintKind::kInequality ? 1 : 0;
   }
 }
 

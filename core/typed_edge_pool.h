@@ -91,7 +91,7 @@ class TypedEdgePool final : public EdgePool {
         std::copy_n(e.data(), edge.dimension(), x.constraint_errors + compiled.constraint_row[k]);
         // Inside all of its limits: it has no shifts (constraint.h), and its cost is 0.
         if (kHinged && all_zero(e.data(), edge.dimension())) continue;
-        constrain_error(rows, edge.dimension(), e.data());
+        constrain_error(rows, compiled.one_sided[k] != 0, edge.dimension(), e.data());
       }
       const double chi2 = weighted_square(edge, e.data());
       total += {robust_weights(edge, rows, chi2).cost, chi2};
@@ -343,7 +343,7 @@ class TypedEdgePool final : public EdgePool {
       const double* errors = x.constraint_errors + compiled.constraint_row[k];
       if (kHinged && all_zero(errors, n)) return {};
       std::copy_n(errors, n, e.data());
-      constrain_error(rows, n, e.data());
+      constrain_error(rows, compiled.one_sided[k] != 0, n, e.data());
     } else {
       evaluator.error(e);
     }
@@ -370,7 +370,8 @@ class TypedEdgePool final : public EdgePool {
     if (rows != nullptr) {
       evaluator.each_slot([&]<class V>(std::type_identity<V>, int s) {
         if (data[s] == nullptr) return;
-        constrain_jacobian(rows, n, detail::vertex_of<V>(own[s]).dimension(), e.data(), data[s],
+        constrain_jacobian(rows, compiled.one_sided[k] != 0, n,
+                           detail::vertex_of<V>(own[s]).dimension(), e.data(), data[s],
                            JacobianMatrix<E, V::kDimension>::IsRowMajor, kHinged);
       });
     }

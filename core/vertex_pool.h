@@ -80,6 +80,10 @@ class VertexPool {
   /// Null when the type has no derived quantities.
   virtual std::unique_ptr<DerivedStore> make_derived(
       std::span<const ActiveVertex> vertices) const = 0;
+  /// Puts the place of vertex i of the list into a store, instead of what is there or after the
+  /// last one.
+  virtual void make_derived_at(std::span<const ActiveVertex> vertices, std::size_t i,
+                               DerivedStore& derived) const = 0;
   /// Fills those of vertices [begin, end) of the list.
   virtual void derive(std::span<const ActiveVertex> vertices, std::size_t begin, std::size_t end,
                       const double* state, DerivedStore& derived) const = 0;
@@ -159,6 +163,20 @@ class TypedVertexPool final : public VertexPool {
       return store;
     } else {
       return nullptr;
+    }
+  }
+
+  void make_derived_at([[maybe_unused]] std::span<const ActiveVertex> active,
+                       [[maybe_unused]] std::size_t i,
+                       [[maybe_unused]] DerivedStore& derived) const override {
+    if constexpr (HasDerived<V>) {
+      std::vector<typename V::Derived>& values = static_cast<TypedDerivedStore<V>&>(derived).values;
+      typename V::Derived made = vertices[active[i].index].make_derived();
+      if (i < values.size()) {
+        values[i] = std::move(made);
+      } else {
+        values.push_back(std::move(made));
+      }
     }
   }
 

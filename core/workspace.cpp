@@ -17,14 +17,24 @@ void Workspace::allocate(const Problem& problem) {
   gradient_.resize(problem.gradient_reductions().size);
   step_.resize(n);
   damping_.assign(n, 0.0);
-  allocate_rows();
+  if (!std::exchange(rows_as_allocated_, true)) constraint_rows_.clear();
+  constraint_rows_.resize(problem.constraint_rows());
+  constraint_errors_.resize(problem.constraint_rows());
   evaluated_ = derived_from_ = summed_ = partly_ = nullptr;
   const std::size_t pools = problem.active().size();
+  // Types may have been registered since.
+  kept_.valid =
+      kept_.valid && kept_.active.size() == pools && kept_.edges.size() == problem.edges().size();
+  for (std::size_t p = 0; kept_.valid && p < pools; ++p) {
+    kept_.valid =
+        derived_[p] == nullptr || derived_for_[p].is_of(*problem.graph().vertex_pools()[p]);
+  }
   derived_.resize(pools);
   derived_for_.resize(pools);
   for (std::size_t p = 0; p < pools; ++p) {
     const VertexPool& pool = *problem.graph().vertex_pools()[p];
     const std::vector<ActiveVertex>& active = problem.active()[p];
+    if (derived_[p] && kept_.valid && derived_for_[p].is_of(pool)) continue;  // see take_over()
     // A store whose places have the same sizes serves a window that slid or got shorter.
     if (derived_[p] && derived_for_[p].fits(pool, active)) continue;
     derived_[p] = pool.make_derived(active);
@@ -40,24 +50,6 @@ void Workspace::allocate(const Problem& problem) {
   }
 }
 
-/// Rows that nobody has written into serve another problem with the same constraints.
-void Workspace::allocate_rows() {
-  constraint_errors_.resize(problem_->constraint_rows());
-  const std::span<const CompiledConstraint> constraints = problem_->constraints();
-  const auto same = [](const CompiledConstraint& a, const CompiledConstraint& b) {
-    return a.row == b.row && a.count == b.count && a.kind == b.kind;
-  };
-  if (rows_as_allocated_ && std::ranges::equal(constraints, rows_for_, same)) return;
-  rows_as_allocated_ = true;
-  rows_for_.assign(constraints.begin(), constraints.end());
-  constraint_rows_.assign(problem_->constraint_rows(), {});
-  for (const CompiledConstraint& c : constraints) {
-    for (int r = c.row; r < c.row + c.count; ++r) {
-      constraint_rows_[r].one_sided = c.kind == ConstraintKind::kInequality;
-    }
-  }
-}
-
 void Workspace::keep() {
   kept_.valid = std::exchange(by_edge_, true) && problem_ != nullptr && summed_ == state_.data() &&
                 derived_from_ == state_.data();
@@ -66,8 +58,6 @@ void Workspace::keep() {
   kept_.bindings = bindings_;
   kept_.active.resize(problem_->active().size());
   std::ranges::copy(problem_->active(), kept_.active.begin());
-  kept_.derived.clear();
-  for (const auto& store : derived_) kept_.derived.push_back(store.get());
   kept_.state = state_;
   kept_.errors.swap(constraint_errors_);
   kept_.rows.clear();
@@ -84,9 +74,6 @@ void Workspace::keep() {
 
 void Workspace::take_over() {
   if (!std::exchange(kept_.valid, false)) return;
-  // Types may have been registered since.
-  if (kept_.active.size() != derived_.size() || kept_.edges.size() != problem_->edges().size())
-    return;
   known_vertices_.resize(derived_.size());
   for (std::size_t p = 0; p < derived_.size(); ++p) take_over_vertices(p);
   known_edges_.resize(kept_.edges.size());
@@ -100,8 +87,6 @@ void Workspace::take_over_vertices(std::size_t p) {
   const std::vector<ActiveVertex>&active = problem_->active()[p], &was = kept_.active[p];
   std::vector<char>& known = known_vertices_[p];
   known.assign(active.size(), 0);
-  DerivedStore* store = derived_[p].get();
-  if (store != kept_.derived[p]) return;  // made anew
   place_.clear();
   for (std::size_t i = 0; i < was.size(); ++i) place_.emplace_back(was[i].index, i);
   std::ranges::sort(place_);
@@ -118,8 +103,16 @@ void Workspace::take_over_vertices(std::size_t p) {
     known[i] = 1;
     from_[i] = found->second;
   }
-  if (store == nullptr) return;
-  from_.resize(static_cast<std::size_t>(store->size()), -1);
+  if (derived_[p] == nullptr) return;
+  DerivedStore& store = *derived_[p];
+  std::vector<int>& sizes = derived_for_[p].state_sizes;
+  const auto make = [&](std::size_t i) {
+    pool.make_derived_at(active, i, store);
+    sizes.resize(static_cast<std::size_t>(store.size()));
+    sizes[i] = pool.state_size(active[i].index);
+  };
+  while (store.size() < static_cast<int>(active.size())) make(store.size());
+  from_.resize(static_cast<std::size_t>(store.size()), -1);
   used_.assign(from_.size(), 0);
   for (const int i : from_) {
     if (i >= 0) used_[static_cast<std::size_t>(i)] = 1;
@@ -130,7 +123,13 @@ void Workspace::take_over_vertices(std::size_t p) {
     while (used_[static_cast<std::size_t>(unused)] != 0) ++unused;
     i = unused++;
   }
-  store->arrange(from_);
+  sizes_.clear();
+  for (const int i : from_) sizes_.push_back(sizes[static_cast<std::size_t>(i)]);
+  sizes.swap(sizes_);
+  store.arrange(from_);
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    if (sizes[i] != pool.state_size(active[i].index)) make(i);
+  }
 }
 
 void Workspace::take_over_edges(std::size_t p, bool same_bindings) {
@@ -160,9 +159,7 @@ void Workspace::take_over_edges(std::size_t p, bool same_bindings) {
     if (row >= 0) {
       const int count = pool.dimension(edges.edges[k]);
       const auto same = [&](int r) {
-        const ConstraintRow before =
-            kept_.rows.empty() ? ConstraintRow{.one_sided = constraint_rows_[row + r].one_sided}
-                               : kept_.rows[row_was + r];
+        const ConstraintRow before = kept_.rows.empty() ? ConstraintRow() : kept_.rows[row_was + r];
         return before == constraint_rows_[row + r];
       };
       bool all_same = true;
@@ -179,8 +176,7 @@ void Workspace::take_over_edges(std::size_t p, bool same_bindings) {
 
 bool Workspace::DerivedFor::fits(const VertexPool& other,
                                  std::span<const ActiveVertex> active) const {
-  if (pool != &other || type != other.type()) return false;
-  return active.size() <= state_sizes.size() &&
+  return is_of(other) && active.size() <= state_sizes.size() &&
          std::equal(
              active.begin(), active.end(), state_sizes.begin(),
              [&](const ActiveVertex& v, int size) { return other.state_size(v.index) == size; });
@@ -398,7 +394,8 @@ Workspace::Linearised Workspace::linearise_edge(int pool_number, int k) {
   edge.error.resize(pool.dimension(index));
   error(pool_number, k, edge.error.data());
   if (first >= 0) {
-    constrain_error(constraint_rows_.data() + first, pool.dimension(index), edge.error.data());
+    constrain_error(constraint_rows_.data() + first, compiled.one_sided[k] != 0,
+                    pool.dimension(index), edge.error.data());
   } else {
     edge.weight = pool.kernel(index).weights(weighted_square(pool, index, edge.error)).weight;
   }
@@ -408,9 +405,9 @@ Workspace::Linearised Workspace::linearise_edge(int pool_number, int k) {
     Eigen::MatrixXd& jacobian = edge.jacobians.back();
     jacobian = pool.jacobian(compiled, k, s - compiled.slot_begin[k], evaluation(state_, 0), false);
     if (first >= 0) {
-      constrain_jacobian(constraint_rows_.data() + first, static_cast<int>(jacobian.rows()),
-                         static_cast<int>(jacobian.cols()), edge.error.data(), jacobian.data(),
-                         false);
+      constrain_jacobian(constraint_rows_.data() + first, compiled.one_sided[k] != 0,
+                         static_cast<int>(jacobian.rows()), static_cast<int>(jacobian.cols()),
+                         edge.error.data(), jacobian.data(), false);
     }
     // A hinge that is not violated has no derivative.
     for (Eigen::Index r = 0; pool.one_sided() && r < edge.error.size(); ++r) {

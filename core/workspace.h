@@ -96,6 +96,7 @@ class Workspace {
     std::type_index type = typeid(void);
     std::vector<int> state_sizes;
 
+    bool is_of(const VertexPool& other) const { return pool == &other && type == other.type(); }
     bool fits(const VertexPool& other, std::span<const ActiveVertex> active) const;
     void assign(const VertexPool& other, std::span<const ActiveVertex> active);
   };
@@ -117,7 +118,6 @@ class Workspace {
   /// Which edges have to be evaluated.
   enum class Stale { kAll, kReadBindings, kUnknown };
   Cost sum_costs(const std::vector<double>& state, Stale stale);
-  void allocate_rows();
   void take_over();
   void take_over_vertices(std::size_t pool);
   void take_over_edges(std::size_t pool, bool same_bindings);
@@ -137,15 +137,13 @@ class Workspace {
   std::vector<Scratch> scratch_;  ///< one for each chunk
   std::vector<Cost> chunk_costs_;
   ThreadPool* threads_ = nullptr;
-  std::vector<CompiledConstraint> rows_for_;  ///< that constraint_rows_ were allocated for
-  bool rows_as_allocated_ = false;
+  bool rows_as_allocated_ = false;  ///< nobody has written into constraint_rows_
 
   // See keep().
   struct Kept {
     bool valid = false, world = false;  ///< the edges that read the bindings, too
     Bindings bindings;
     std::vector<std::vector<ActiveVertex>> active;
-    std::vector<const DerivedStore*> derived;
     std::vector<double> state, errors;
     std::vector<ConstraintRow> rows;  ///< empty: as allocated
     std::vector<std::vector<int>> edges, constraint_row;
@@ -159,7 +157,7 @@ class Workspace {
   const double* partly_ = nullptr;  ///< the buffer of which a part is known, before it is evaluated
   std::vector<std::pair<int, int>>
       place_;  ///< of a kept vertex: index in its pool, and in `active`
-  std::vector<int> from_;
+  std::vector<int> from_, sizes_;
   std::vector<char> used_;
 };
 

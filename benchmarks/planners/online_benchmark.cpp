@@ -6,9 +6,10 @@
 // there were so many cycles. A ball of 0.1 to 0.3 m is 1 cm to 0.5 m from what the robot sweeps in
 // the next 2 s; each second it is somewhere else, and until then it trembles by 1 mm: the world is
 // another one at each configuration. Prints one JSON object: processor time of the cycles [ms],
-// alone of those without a proposal, and parts of them by elapsed time; windows called feasible;
-// how much memory the process has more at the end than after the first time along the plan. What
-// shows the world and what makes the snapshot are not in the times, nor is the judge.
+// alone of those without a proposal; by elapsed time parts of them, and of the longest one; windows
+// called feasible; how much memory the process has more at the end than after the first time along
+// the plan. What shows the world and what makes the snapshot are not in the times, nor is the
+// judge.
 #include <locograph/common/simd_level.h>
 #include <locograph/common/uniform.h>
 #include <locograph/core/graph_file.h>
@@ -65,6 +66,17 @@ Json percentiles_ms(std::vector<double> seconds) {
           {"p95", at(0.95)},
           {"p99", at(0.99)},
           {"max", at(1.0)}};
+}
+
+/// Seconds.
+using Parts = std::array<double, 5>;
+
+Json parts_ms(const Parts& parts) {
+  return {{"compile", 1e3 * parts[0]},
+          {"linearise", 1e3 * parts[1]},
+          {"solve", 1e3 * parts[2]},
+          {"evaluate", 1e3 * parts[3]},
+          {"proposals", 1e3 * parts[4]}};
 }
 
 /// Where a ball is beside a plan.
@@ -146,7 +158,8 @@ class Benchmark {
   Json run(const std::string& file) {
     all_s_.clear();
     without_s_.clear();
-    parts_ = {};
+    parts_ = longest_ = {};
+    longest_s_ = 0.0;
     feasible_ = iterations_ = 0;
     const Graph first = read_graph(file, types_);
     const Plan plan = plan_of(first);
@@ -159,10 +172,7 @@ class Benchmark {
       if (times == 0) before_MB = resident_MB();
     }
     const auto cycles = static_cast<double>(all_s_.size());
-    Json parts;
-    const std::array<const char*, 5> names = {"compile", "linearise", "solve", "evaluate",
-                                              "proposals"};
-    for (std::size_t k = 0; k < names.size(); ++k) parts[names[k]] = 1e3 * parts_[k] / cycles;
+    for (double& part : parts_) part /= cycles;
     return {{"plan", std::filesystem::path(file).filename().string()},
             {"configurations", planned_.configurations.size()},
             {"duration_s", planned_.time_s.back()},
@@ -173,7 +183,8 @@ class Benchmark {
             {"iterations_per_cycle", iterations_ / cycles},
             {"processor_ms", percentiles_ms(all_s_)},
             {"without_proposals_ms", percentiles_ms(without_s_)},
-            {"mean_ms", parts},
+            {"mean_ms", parts_ms(parts_)},
+            {"longest_ms", parts_ms(longest_)},
             {"memory_grew_MB", times > 1 ? Json(resident_MB() - before_MB) : Json(nullptr)}};
   }
 
@@ -217,16 +228,18 @@ class Benchmark {
     iterations_ += report.statistics.iterations;
     window_ = std::max(window_, report.window);
     const WindowStatistics& s = report.statistics;
-    const std::array<double, 5> parts = {s.compile_s, s.linearise_s, s.solve_s, s.evaluate_s,
-                                         s.proposals_s};
+    const Parts parts = {s.compile_s, s.linearise_s, s.solve_s, s.evaluate_s, s.proposals_s};
     for (std::size_t k = 0; k < parts.size(); ++k) parts_[k] += parts[k];
+    if (took_s > longest_s_) longest_ = parts;
+    longest_s_ = std::max(longest_s_, took_s);
   }
 
   Options options_;
   TypeRegistry types_;
   Motion planned_;
   std::vector<double> all_s_, without_s_;
-  std::array<double, 5> parts_ = {};
+  Parts parts_ = {}, longest_ = {};
+  double longest_s_ = 0.0;
   double feasible_ = 0.0, iterations_ = 0.0;
   int window_ = 0;
 };

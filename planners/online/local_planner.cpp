@@ -41,6 +41,12 @@ LocalPlanner::LocalPlanner(Graph& graph, const LocalPlannerOptions& options)
   solver_.compile(first, false);
   solver_.load_state();
   solver_.prepare();
+  // Twice, as a window that slides is: what is taken over has its memory, too.
+  for (int times = 0; times < 2; ++times) {
+    solver_.compile(first, true);
+    solver_.load_state();
+    solver_.quality();
+  }
 }
 
 void LocalPlanner::show(std::shared_ptr<const WorldSnapshot> world) {
@@ -221,7 +227,7 @@ bool LocalPlanner::move_window(int executed, const Eigen::VectorXd& measured, bo
     plan_.take_contacts(executed);
     warm_start_.lead_back(window_, was);
   }
-  const bool slid = !changed && plan_.revision() == revision_;
+  const bool slid = !changed && answer_.executed >= 0 && plan_.revision() == revision_;
   revision_ = plan_.revision();
   solver_.compile(window_, slid);
   solver_.load_state();

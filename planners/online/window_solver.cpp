@@ -19,7 +19,7 @@ namespace {
 /// Constraints weigh up to 1e5 times as much as tracking: λ must begin far below either.
 constexpr double kLeastLambda = 1e-10;
 /// Of an iteration that has to be short, and of iterations in a row.
-constexpr int kFewRefusals = 2, kMostRefused = 5;
+constexpr int kFewRefusals = 2, kMostRefused = 5, kFewTrials = 3;
 
 OptimiserOptions optimiser_options(const WindowSolverOptions& options) {
   OptimiserOptions result;
@@ -240,6 +240,7 @@ bool WindowSolver::step_plain(const Termination& termination) {
 
 bool WindowSolver::step_raising(const Termination& termination, WindowStatistics& statistics) {
   raising_.inner_options().deadline = deadline_of_step(termination);
+  raising_.inner_options().max_trials = termination.max_iterations > 0 ? kFewTrials : 0;
   const bool more = raising_.iterate();
   statistics.rounds = raising_.rounds();
   return more;

@@ -76,7 +76,8 @@ Bindings bound_to(double place) {
   return bindings;
 }
 
-/// A chain of numbers, each tied to the next two, and a window of 8 that slides along it.
+/// A chain of numbers, each tied to the next two, beside it one of arms of one or two joints, and
+/// a window of 8 of each that slides along it.
 class KeptWindow : public testing::Test {
  protected:
   static constexpr int kLength = 30, kWindow = 8;
@@ -89,6 +90,14 @@ class KeptWindow : public testing::Test {
     for (int i = 0; i < kLength; ++i) {
       ids_.push_back(graph_.add_vertex(i, VertexSine(number(engine))));
       slots_.push_back(ids_.back().slot);
+      VertexJoints arm;
+      arm.state.resize(1 + i % 2);
+      for (double& joint : arm.state) joint = number(engine);
+      arms_.push_back(graph_.add_vertex(kLength + i, arm).slot);
+      if (i > 0) {
+        graph_.add_edge(ToyMeet<Derivatives::kByHand>(), VertexId<VertexJoints>{arms_[i - 1]},
+                        VertexId<VertexJoints>{arms_[i]});
+      }
       SineSpot spot;
       spot.weights.setConstant(1, 2.0);
       graph_.add_edge(spot, ids_[i]);
@@ -103,7 +112,9 @@ class KeptWindow : public testing::Test {
   }
 
   void compile(int begin, Problem& problem) {
-    problem.compile(graph_, std::span<const int>(slots_).subspan(begin, kWindow));
+    free_.assign(slots_.begin() + begin, slots_.begin() + begin + kWindow);
+    free_.insert(free_.end(), arms_.begin() + begin, arms_.begin() + begin + kWindow);
+    problem.compile(graph_, free_);
   }
 
   void move_to(int begin, bool keeps) {
@@ -153,7 +164,7 @@ class KeptWindow : public testing::Test {
 
   Graph graph_;
   std::vector<VertexId<VertexSine>> ids_;
-  std::vector<int> slots_;
+  std::vector<int> slots_, arms_, free_;
   Bindings bindings_ = bound_to(0.3);
   Problem problem_;
   Workspace workspace_;
