@@ -223,6 +223,7 @@ class Run {
               : "link " + result_.other_link + " touches" +
                     (result_.touched_link.empty() ? "" : " link " + result_.touched_link);
     }
+    if (!result_.carried_out && !gave_way_.empty()) result_.reason += "; " + gave_way_;
     result_.processor_s = processor_seconds() - began;
     return std::move(result_);
   }
@@ -319,6 +320,10 @@ class Run {
         Hand& hand = hands_[e];
         hand.beyond_s = bears_in_hand(e) ? 0.0 : hand.beyond_s + options_.player.cycle_s;
         if (command && hand.beyond_s <= kBeyond_s) continue;
+        if (command && gave_way_.empty()) {
+          gave_way_ = "the grasp of " + effectors_[e].name + " gave way at " +
+                      std::to_string(player_.plan_time_s()).substr(0, 5) + " s of the plan";
+        }
         engine_.release(index);
         hand = {0.0, command};
       } else if (command && hands_[e].gave_way != command) {
@@ -536,6 +541,7 @@ class Run {
     const HeldContact* gave_way = nullptr;  ///< what it could not hold
   };
   std::vector<Hand> hands_;
+  std::string gave_way_;  ///< the first hand that did, in words
   /// Of an end effector that should be free.
   struct Free {
     double touches_s = 0.0;                                          ///< so far

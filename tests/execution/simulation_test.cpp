@@ -189,6 +189,8 @@ TEST(Grasps, GiveWayBeyondTheirLimits) {
   const SimulationResult result =
       held.run({.push_N = 150.0, .push_s = 0.3, .seed = 2, .record_every_s = 0.01});
   EXPECT_FALSE(result.carried_out);
+  EXPECT_NE(result.reason.find("the grasp of grip gave way at "), std::string::npos)
+      << result.reason;
   EXPECT_FALSE(result.samples.back().forces[2].norm() > 0.0);
 }
 
