@@ -82,7 +82,8 @@
 /// do not concern each other may say so: from row int diagonal_from(view) const on, the view that
 /// of its first vertex, a row has one entry in each Jacobian, in its own column, which jacobians()
 /// sets, and the rows before it have entries in the columns before it only. It has to have its
-/// jacobians() by hand. What is zero by that costs nothing.
+/// jacobians() by hand, no more rows than any of its vertices has coordinates, and must not be
+/// one-sided. What is zero by that costs nothing.
 
 #include <locograph/core/constraint.h>
 #include <locograph/core/robust_kernel.h>

@@ -96,6 +96,7 @@ class EdgeEvaluator {
   /// before it; dimension() where the type does not say (see edge.h).
   int diagonal_from() const {
     if constexpr (has_diagonal()) {
+      static_assert(!E::kOneSided, "diagonal_from() does not know rows at rest");
       return edge_.diagonal_from(view_of<FixedVertex<E, 0>>(slots_[0], x_));
     } else {
       return dimension();

@@ -106,7 +106,9 @@ void Optimiser::start(Workspace& workspace, LinearSolver& solver, bool evaluated
   // The statistics keep their memory: a moving horizon starts an optimisation every cycle.
   std::vector<IterationStatistics> statistics = std::move(result_.statistics);
   statistics.clear();
-  statistics.reserve(std::min(options_.max_iterations, kMostStatistics));
+  const int entries = options_.max_trials > 0 ? options_.max_refusals : 1;  // of each step
+  statistics.reserve(
+      std::min(std::min(options_.max_iterations, kMostStatistics) * entries, kMostStatistics));
   result_ = {};
   result_.statistics = std::move(statistics);
   lambda_ = 0.0;
@@ -318,12 +320,15 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
   workspace_->diagonal(diagonal_);
   if (lambda_ == 0.0) {
     lambda_unit_ = options_.scale_by_diagonal ? 1.0 : map(diagonal_).maxCoeff();
-    lambda_ = options_.initial_lambda * lambda_unit_;
+    const double first = std::exchange(first_lambda_, 0.0);
+    lambda_ = std::max(options_.initial_lambda, first) * lambda_unit_;
   }
   update_scaling();
-  bool factorised = false;
-  double promised = 0.0;
   const int before = std::exchange(refused_before_, 0);
+  if (before == 0) {
+    factorised_ = false;
+    promised_ = 0.0;
+  }
   for (; before + now.refusals < options_.max_refusals; ++now.refusals) {
     now.lambda = lambda_;
     Vector damping = map(workspace_->damping());
@@ -335,7 +340,7 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
     if (solve(now)) {
       const Vector step = map(workspace_->step());
       if (norm(step) <= options_.step_tolerance * (state_norm() + options_.step_tolerance)) {
-        return finish_refused(Reason::kStep, promised);
+        return finish_refused(Reason::kStep, promised_);
       }
       const Cost cost = evaluate_trial(now);
       // F(h) ≈ F + 2gᵀh + hᵀHh, and (H + D)h = −g: the predicted decrease is hᵀ(Dh − g).
@@ -343,8 +348,8 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
       const double predicted = sum(step.size(), [&](Eigen::Index i) {
         return step[i] * (damping[i] * step[i] + descent[i]);
       });
-      if (!factorised) promised = predicted;
-      factorised = true;
+      if (!factorised_) promised_ = predicted;
+      factorised_ = true;
       now.gain_ratio = reference_.quality(cost.robust, predicted);
       if (std::isfinite(cost.robust) && now.gain_ratio > 0.0) {
         const double s = 2.0 * now.gain_ratio - 1.0;
@@ -363,7 +368,7 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
       }
       // At the bottom of the valley rounding decides; the model says there is nothing to gain.
       if (predicted <= options_.gain * cost_.robust * 1e-3) {
-        return finish_refused(Reason::kGain, promised);
+        return finish_refused(Reason::kGain, promised_);
       }
       lambda_fall_ = kLambdaFall;
       Cost shorter = cost;
@@ -382,7 +387,7 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
       lambda_ = std::max(lambda_, options_.refused_lambda * lambda_unit_);
     }
     lambda_growth_ *= 2.0;
-    if (!refused_ && options_.follow_diagonal && promised > kMatters * cost_.robust) {
+    if (!refused_ && options_.follow_diagonal && promised_ > kMatters * cost_.robust) {
       refused_ = true;
       if (result_.iterations > 0) return begin_again();
       reference_.start(cost_.robust, options_.nonmonotonic_steps);
@@ -393,8 +398,8 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
       return true;
     }
   }
-  if (!factorised && before == 0) return finish(Reason::kSingular);
-  return finish_refused(Reason::kNoProgress, promised);
+  if (!factorised_) return finish(Reason::kSingular);
+  return finish_refused(Reason::kNoProgress, promised_);
 }
 
 bool Optimiser::iterate_dogleg(IterationStatistics& now) {

@@ -43,6 +43,7 @@ void Workspace::allocate(const Problem& problem) {
   if (static_cast<int>(scratch_.size()) < problem.chunks()) scratch_.resize(problem.chunks());
   for (Scratch& scratch : scratch_) scratch.reserve(problem.scratch_bytes());
   chunk_costs_.resize(problem.chunks());
+  by_edge_ = keeps_;
   if (!by_edge_) return;
   edge_costs_.resize(problem.edges().size());
   for (std::size_t p = 0; p < edge_costs_.size(); ++p) {
@@ -51,10 +52,11 @@ void Workspace::allocate(const Problem& problem) {
 }
 
 void Workspace::keep() {
-  kept_.valid = std::exchange(by_edge_, true) && problem_ != nullptr && summed_ == state_.data() &&
-                derived_from_ == state_.data();
-  if (!kept_.valid) return;
+  keeps_ = true;
+  kept_.valid = by_edge_ && summed_ == state_.data() && derived_from_ == state_.data();
   kept_.world = evaluated_ == state_.data();
+  evaluated_ = summed_ = derived_from_ = partly_ = nullptr;
+  if (!kept_.valid) return;
   kept_.bindings = bindings_;
   kept_.active.resize(problem_->active().size());
   std::ranges::copy(problem_->active(), kept_.active.begin());

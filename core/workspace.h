@@ -20,7 +20,7 @@ class Workspace {
   /// Called before the problem is compiled again for a window that has slid along an otherwise
   /// unchanged graph: what is known at state() holds after the load_state() that comes next, for
   /// vertices whose state is the same, and edges on such vertices whose rows are. Costs are summed
-  /// to the same bits.
+  /// to the same bits. Until then nothing may be read.
   void keep();
   /// Null for the caller's thread alone. The pool must outlive the workspace's use.
   void use_threads(ThreadPool* threads) { threads_ = threads; }
@@ -50,7 +50,7 @@ class Workspace {
   /// Of the problem's constraints(); as allocated: no shift, scale 1. Costs of before they are
   /// changed do not count any more.
   std::vector<ConstraintRow>& constraint_rows() {
-    evaluated_ = summed_ = nullptr;
+    evaluated_ = summed_ = partly_ = nullptr;
     rows_as_allocated_ = false;
     return constraint_rows_;
   }
@@ -60,7 +60,10 @@ class Workspace {
 
   /// trial = state ⊞ step.
   void apply_step();
-  void accept_trial() { state_.swap(trial_); }
+  void accept_trial() {
+    state_.swap(trial_);
+    partly_ = nullptr;
+  }
 
   /// Derives the quantities of `state` and sums the cost. Returns a non-finite cost for a state
   /// that cannot be evaluated. What an edge throws gets the line that the edge was read from.
@@ -149,7 +152,7 @@ class Workspace {
     std::vector<std::vector<int>> edges, constraint_row;
     std::vector<std::vector<Cost>> costs;
   };
-  bool by_edge_ = false;
+  bool keeps_ = false, by_edge_ = false;  ///< the latter since it was allocated last
   Kept kept_;
   std::vector<std::vector<Cost>> edge_costs_;      ///< by pool and edge
   std::vector<std::vector<char>> known_edges_;     ///< at partly_, likewise

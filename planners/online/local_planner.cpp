@@ -106,7 +106,8 @@ bool LocalPlanner::take_shown() {
 bool LocalPlanner::begin_window(int executed) {
   require_step(executed);
   take_shown();
-  move_window(executed, take_measured(), true);
+  changed_ = true;
+  move_window(executed, take_measured());
   hand_out_best();
   changed_ = true;
   return incumbent_.best().quality.feasible();
@@ -126,8 +127,7 @@ CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
   const Stopwatch watch;
   const bool new_world = take_shown();
   const Eigen::VectorXd measured = take_measured();
-  const bool changed = std::exchange(changed_, false);
-  const bool moved = changed || answer_.executed != executed || measured.size() > 0;
+  const bool moved = changed_ || answer_.executed != executed || measured.size() > 0;
   if (phase_ == Phase::kOver && !moved && !new_world && !tries_again()) {
     report = answer_;
     report.detour = report.deadline_missed = false;
@@ -136,7 +136,7 @@ CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
     report.statistics.total_s = watch.seconds();
     return report;
   }
-  if (moved || new_world) begin(report, moved, changed, measured);
+  if (moved || new_world) begin(report, moved, measured);
   report.window = window_.steps();
   report.statistics.constraints = static_cast<int>(solver_.problem().constraints().size());
   const int cut_short_after = improve(report, termination);
@@ -167,8 +167,7 @@ bool LocalPlanner::tries_again() {
 
 /// At another configuration, or in another world. What the search had come to goes on from there;
 /// one that is over, or whose window is good as it is, begins anew.
-void LocalPlanner::begin(CycleReport& report, bool moved, bool changed,
-                         const Eigen::VectorXd& measured) {
+void LocalPlanner::begin(CycleReport& report, bool moved, const Eigen::VectorXd& measured) {
   const Stopwatch watch;
   const bool goes_on = phase_ != Phase::kOver &&
                        (phase_ != Phase::kOptimise ||
@@ -176,7 +175,7 @@ void LocalPlanner::begin(CycleReport& report, bool moved, bool changed,
   tried_ = {};
   left_over_ = false;
   if (moved) {
-    left_over_ = move_window(report.executed, measured, changed);
+    left_over_ = move_window(report.executed, measured);
   } else {
     see_new_world();
   }
@@ -207,9 +206,9 @@ const std::vector<double>* LocalPlanner::leftover() {
   return incumbent_.unfinished(solver_.running() ? &solver_.state() : nullptr);
 }
 
-/// measured: see measure(); empty: nothing. changed: see plan_changed(). Returns whether there is
-/// something left over, which is kept as unfinished.
-bool LocalPlanner::move_window(int executed, const Eigen::VectorXd& measured, bool changed) {
+/// measured: see measure(); empty: nothing. Returns whether there is something left over, which is
+/// kept as unfinished.
+bool LocalPlanner::move_window(int executed, const Eigen::VectorXd& measured) {
   if (answer_.executed >= 0) {
     if (const std::vector<double>* state = leftover()) {
       solver_.store(*state);
@@ -227,9 +226,10 @@ bool LocalPlanner::move_window(int executed, const Eigen::VectorXd& measured, bo
     plan_.take_contacts(executed);
     warm_start_.lead_back(window_, was);
   }
-  const bool slid = !changed && answer_.executed >= 0 && plan_.revision() == revision_;
+  const bool slid = !changed_ && answer_.executed >= 0 && plan_.revision() == revision_;
   revision_ = plan_.revision();
   solver_.compile(window_, slid);
+  changed_ = false;
   solver_.load_state();
   incumbent_.clear();
   beside_.clear();

@@ -91,7 +91,8 @@ class LocalPlanner {
   /// Puts the last cycle's answer into words, where its window is not feasible: reason, violation.
   void explain(CycleReport& last) const;
 
-  /// Something of the graph is different that no vertex's state says, such as times.
+  /// Something of the graph is different that no vertex's state says, such as times, weights or
+  /// parameters: what is known of the window does not hold any more.
   void plan_changed() { changed_ = true; }
 
   int plan_size() const { return plan_.size(); }
@@ -119,9 +120,9 @@ class LocalPlanner {
   void require_step(int executed) const;
   Eigen::VectorXd take_measured();
   bool tries_again();
-  void begin(CycleReport& report, bool moved, bool changed, const Eigen::VectorXd& measured);
+  void begin(CycleReport& report, bool moved, const Eigen::VectorXd& measured);
   const std::vector<double>* leftover();
-  bool move_window(int executed, const Eigen::VectorXd& measured, bool changed);
+  bool move_window(int executed, const Eigen::VectorXd& measured);
   void see_new_world();
   int improve(CycleReport& report, const Termination& termination);
   bool advance(CycleReport& report, const Termination& termination);

@@ -240,7 +240,6 @@ bool WindowSolver::step_plain(const Termination& termination) {
 
 bool WindowSolver::step_raising(const Termination& termination, WindowStatistics& statistics) {
   raising_.inner_options().deadline = deadline_of_step(termination);
-  raising_.inner_options().max_trials = termination.max_iterations > 0 ? kFewTrials : 0;
   const bool more = raising_.iterate();
   statistics.rounds = raising_.rounds();
   return more;
@@ -249,6 +248,7 @@ bool WindowSolver::step_raising(const Termination& termination, WindowStatistics
 bool WindowSolver::step(const Termination& termination, WindowStatistics& statistics) {
   const Stopwatch watch;
   const bool raises = run_ == RunKind::kRaising;
+  raising_.inner_options().max_trials = termination.max_iterations > 0 ? kFewTrials : 0;
   if (begins_) {
     begin_run();
   } else if (std::exchange(rebound_, false)) {

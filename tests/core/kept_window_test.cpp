@@ -222,6 +222,30 @@ TEST_F(KeptWindow, EvaluatesWhereRowsAreOthers) {
   expect({1, 2 + 1, 1});
 }
 
+TEST_F(KeptWindow, EvaluatesWhatIsChangedOnceItIsLoaded) {
+  move_to(3, true);
+  for (const bool rows : {true, false}) {
+    Problem problem;
+    Workspace fresh;
+    workspace_.keep();
+    compile(4, problem_);
+    compile(4, problem);
+    for (Workspace* workspace : {&workspace_, &fresh}) {
+      workspace->allocate(workspace == &fresh ? problem : problem_);
+      workspace->bind(bindings_);
+      workspace->load_state();
+      if (rows) {
+        workspace->constraint_rows()[kRaised].scale = 2.0;
+      } else {
+        workspace->step().assign(workspace->step().size(), 0.1);
+        workspace->apply_step();
+        workspace->accept_trial();
+      }
+    }
+    EXPECT_EQ(workspace_.return_to_state().chi2, fresh.evaluate(fresh.state()).chi2);
+  }
+}
+
 TEST_F(KeptWindow, ForgetsWhatHasNotBeenEvaluated) {
   move_to(3, true);
   workspace_.step().assign(workspace_.step().size(), 0.1);

@@ -15,8 +15,9 @@
 namespace locograph {
 namespace {
 
-/// Of the spline, half-way between waypoints; the judge allows 1e-4 m at vertices.
-constexpr double kClosedAlong = 3e-5;
+/// Of the spline, at three places between waypoints; it is a little more beside them. The edges of
+/// a plan tolerate 3e-5 m (edge_contact.h), the judge 1e-4 m.
+constexpr double kClosedAlong = 2.5e-5;
 constexpr int kMostRounds = 8;
 /// Balls are followed in so many steps between two waypoints of a spline, a multiple of 4; until
 /// they slip by less at waypoints, by moving these so often.
