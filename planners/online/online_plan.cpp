@@ -138,12 +138,48 @@ void OnlinePlan::follow_moved(int first, int last) {
   }
   if (!steps) return;
   const auto moved = [this](int i) { return moved_around(planned_, plan_, graph_, i); };
+  for (int i = first; i <= last; ++i) {
+    if (!rolls(i) && !rolls(i - 1) && !is_as_planned(i) && !is_fixed(i)) lift_out(i);
+  }
   PlanRange range = {first - 1, last};
   while (range.first <= range.last && !moved(range.first)) ++range.first;
   while (range.last > range.first && !moved(range.last)) --range.last;
   if (range.first > range.last) return;
   carry_slopes(planned_, plan_, graph_, {std::max(first, range.first), range.last});
   carry_wrenches(planned_, plan_, graph_, range);
+}
+
+void OnlinePlan::lift_out(int index) {
+  constexpr double kMost_m = 1e-4, kClear_m = 1e-7;
+  const auto stance_at = [this](int i) -> const StanceParameter& {
+    return *plan_.stance_from[static_cast<std::size_t>(i)];
+  };
+  const StanceParameter& here = stance_at(index);
+  RobotState state(robot());
+  Eigen::VectorXd off;
+  const auto lift = [&](const std::vector<int>& numbers, const std::vector<int>& held) {
+    for (const int number : numbers) {
+      if (std::ranges::find(held, number) != held.end()) continue;
+      const auto parameter = graph_.parameters().get<ContactParameter>(number);
+      if (parameter->contact.effector.kind == ContactKind::kGrasp || parameter->contact.bar)
+        continue;
+      state.update(configuration(index).data());
+      off.resize(parameter->closure.rows());
+      parameter->closure.error(state, off.data());
+      for (int row = 0; row < parameter->closure.rows(); ++row) {
+        if (parameter->closure.held()[static_cast<std::size_t>(row)] != 2) continue;
+        if (!(off[row] < 0.0 && off[row] > -kMost_m)) continue;
+        const Eigen::Vector3d normal = axes_in_world(parameter->contact).col(2);
+        configuration(index).head<3>() += (kClear_m - off[row]) * normal;
+      }
+    }
+  };
+  int before = index, after = index;
+  while (before > 0 && &stance_at(before) == &here) --before;
+  while (after < last() && &stance_at(after) == &here) ++after;
+  lift(stance_at(before).contact_numbers, here.contact_numbers);
+  lift(stance_at(after).contact_numbers, here.contact_numbers);
+  if (before + 1 == index) lift(here.contact_numbers, stance_at(before).contact_numbers);
 }
 
 void OnlinePlan::slow_down(int from, int to, double duration_s) {

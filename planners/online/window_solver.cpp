@@ -19,7 +19,7 @@ namespace {
 /// Constraints weigh up to 1e5 times as much as tracking: λ must begin far below either.
 constexpr double kLeastLambda = 1e-10;
 /// Of an iteration that has to be short, and of iterations in a row.
-constexpr int kFewRefusals = 2, kMostRefused = 5, kFewTrials = 3;
+constexpr int kFewRefusals = 2, kMostRefused = 5;
 
 OptimiserOptions optimiser_options(const WindowSolverOptions& options) {
   OptimiserOptions result;
@@ -248,7 +248,6 @@ bool WindowSolver::step_raising(const Termination& termination, WindowStatistics
 bool WindowSolver::step(const Termination& termination, WindowStatistics& statistics) {
   const Stopwatch watch;
   const bool raises = run_ == RunKind::kRaising;
-  raising_.inner_options().max_trials = termination.max_iterations > 0 ? kFewTrials : 0;
   if (begins_) {
     begin_run();
   } else if (std::exchange(rebound_, false)) {

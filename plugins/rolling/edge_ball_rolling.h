@@ -24,7 +24,7 @@ struct EdgeBallRolling : WeightedEdge<3, VertexConfiguration, VertexConfiguratio
   static constexpr std::string_view kTag = "EDGE_BALL_ROLLING";
   static constexpr ConstraintKind kConstraint = ConstraintKind::kEquality;
   /// m; the judge allows 1 mm of slip while the ball is held, and 1e-4 m of height.
-  static constexpr double kSlipTolerance = 1e-4, kHeightTolerance = 3e-5;
+  static constexpr double kSlipTolerance = 1e-4, kHeightTolerance = 4e-5;
   int contact_number = 0;
   std::shared_ptr<const ContactParameter> contact;  ///< looked up by bind()
   std::optional<BallTrack> track;                   ///< likewise

@@ -15,9 +15,9 @@
 namespace locograph {
 namespace {
 
-/// Of the spline, at three places between waypoints; it is a little more beside them. The edges of
-/// a plan tolerate 3e-5 m (edge_contact.h), the judge 1e-4 m.
-constexpr double kClosedAlong = 2.5e-5;
+/// Of the spline, at three places between waypoints; it may be a little more beside them. The edges
+/// of a plan tolerate 4e-5 m (edge_contact.h), the judge 1e-4 m.
+constexpr double kClosedAlong = 3e-5;
 constexpr int kMostRounds = 8;
 /// Balls are followed in so many steps between two waypoints of a spline, a multiple of 4; until
 /// they slip by less at waypoints, by moving these so often.
@@ -224,6 +224,7 @@ std::optional<PathSpline> SegmentMover::close(const std::vector<Eigen::VectorXd>
         on_way(way, length - length * i / (kOffGround + 1.0) / static_cast<double>(parts)));
   }
   nodes.push_back(on_way(way, length));
+  drop_repeated(nodes);
   const bool rolls = !tracks_.empty(), end_is_fixed = rolls && to.size() > 0;
   if (rolls) nodes.back().q = end_is_fixed ? to : segment.to;
   for (int round = 0;; ++round) {
@@ -237,11 +238,26 @@ std::optional<PathSpline> SegmentMover::close(const std::vector<Eigen::VectorXd>
       }
       more.push_back(nodes[i]);
     }
+    drop_repeated(more);
     if (more.size() == nodes.size() || round == kMostRounds) {
       to = rolls ? nodes.back().q : segment.to;
       return path;
     }
     nodes = std::move(more);
+  }
+}
+
+/// A spline needs a way between its waypoints.
+void SegmentMover::drop_repeated(std::vector<Node>& nodes) const {
+  for (std::size_t i = 1; i + 1 < nodes.size();) {
+    const bool is_last = i + 2 == nodes.size();
+    const bool repeated = space_.distance(nodes[i - 1].q, nodes[i].q) <= kNoWay ||
+                          (is_last && space_.distance(nodes[i].q, nodes.back().q) <= kNoWay);
+    if (repeated) {
+      nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(i));
+    } else {
+      ++i;
+    }
   }
 }
 

@@ -98,6 +98,7 @@ class SegmentMover {
   void roll_from(const Eigen::VectorXd& q, const std::vector<Eigen::Vector2d>& slips);
   /// Moves nodes to where balls get along the spline through them, which it returns.
   std::optional<PathSpline> roll(std::vector<Node>& nodes, bool end_is_fixed, Slips& slips);
+  void drop_repeated(std::vector<Node>& nodes) const;
   PathSpline spline_through(const std::vector<Node>& nodes) const;
   Node on_way(const std::vector<Node>& way, double at);
   /// What the spline has to go through as well between nodes i - 1 and i; nothing: it holds.

@@ -142,8 +142,8 @@ TEST(Fallbacks, AreAskedWhereNoWindowIsFeasible) {
   Graph graph = drive();
   LocalPlanner planner(graph, options);
   std::vector<CycleReport> reports = {planner.cycle(0)};
-  planner.show(seeing({box_ahead()}));
-  for (int executed = 1; executed < 15; ++executed) reports.push_back(planner.cycle(executed));
+  planner.show(seeing({box("rock", {0.5, 0.0, 0.5}, {3.0, 3.0, 1.0})}));
+  for (int executed = 1; executed < 6; ++executed) reports.push_back(planner.cycle(executed));
   Indices infeasible;
   for (const CycleReport& report : reports) {
     EXPECT_EQ(report.detour, !report.success());
