@@ -97,10 +97,10 @@ void Workspace::take_over_vertices(std::size_t p) {
     const auto found = std::ranges::lower_bound(place_, std::pair(active[i].index, 0));
     if (found == place_.end() || found->first != active[i].index) continue;
     const ActiveVertex& before = was[static_cast<std::size_t>(found->second)];
-    const auto now = state_.begin() + active[i].state_offset;
+    const double* now = state_.data() + active[i].state_offset;
     const int size = pool.state_size(active[i].index);
     // To the bit: -0 and 0 may have other quantities.
-    if (std::memcmp(&*now, kept_.state.data() + before.state_offset, size * sizeof(double)) != 0)
+    if (std::memcmp(now, kept_.state.data() + before.state_offset, size * sizeof(double)) != 0)
       continue;
     known[i] = 1;
     from_[i] = found->second;
