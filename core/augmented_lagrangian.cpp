@@ -250,7 +250,6 @@ void ConstrainedOptimiser::start(Workspace& workspace, LinearSolver& solver, boo
 void ConstrainedOptimiser::go_on(Workspace& workspace, LinearSolver& solver, bool evaluated) {
   const bool raised = raised_;
   const int rounds = rounds_, iterations = this->iterations(), of_round = round_iterations_;
-  inner_.keep_damping();
   start(workspace, solver, true, evaluated);
   raised_ = raised;
   rounds_ = rounds;
@@ -264,9 +263,8 @@ std::vector<double>& ConstrainedOptimiser::last_violations() { return rows_->las
 bool ConstrainedOptimiser::iterate() {
   constexpr int kOfARound = 3;
   if (over_) return false;
-  const int before = inner_.result().iterations;
   const bool more = inner_.iterate();
-  round_iterations_ += inner_.result().iterations - before;
+  ++round_iterations_;
   if (more && !(goes_on_ && round_iterations_ >= kOfARound)) return true;
   over_ = !end_round(more);
   return !over_;

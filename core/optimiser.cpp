@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace locograph {
 namespace {
@@ -63,7 +62,6 @@ void OptimiserOptions::validate() const {
   check_option(refused_lambda > 0.0, "refused_lambda", "a positive number");
   check_option(initial_radius > 0.0, "initial_radius", "a positive number");
   check_option(max_refusals >= 1, "max_refusals", "1 or more");
-  check_option(max_trials >= 0, "max_trials", "0 (off) or more");
   check_option(nonmonotonic_steps >= 0, "nonmonotonic_steps", "0 or more");
 }
 
@@ -106,16 +104,13 @@ void Optimiser::start(Workspace& workspace, LinearSolver& solver, bool evaluated
   // The statistics keep their memory: a moving horizon starts an optimisation every cycle.
   std::vector<IterationStatistics> statistics = std::move(result_.statistics);
   statistics.clear();
-  const int entries = options_.max_trials > 0 ? options_.max_refusals : 1;  // of each step
-  statistics.reserve(
-      std::min(std::min(options_.max_iterations, kMostStatistics) * entries, kMostStatistics));
+  statistics.reserve(std::min(options_.max_iterations, kMostStatistics));
   result_ = {};
   result_.statistics = std::move(statistics);
   lambda_ = 0.0;
   lambda_growth_ = 2.0;
   lambda_fall_ = kLambdaFall;
   refused_ = false;
-  refused_before_ = 0;
   radius_ = options_.initial_radius;
   const int n = workspace.problem().dimension();
   diagonal_.resize(n);
@@ -176,7 +171,6 @@ bool Optimiser::finish_refused(Reason converged, double promised) {
 
 void Optimiser::costs_changed() {
   cost_ = result_.final = best_cost_ = workspace_->return_to_state();
-  refused_before_ = 0;
   reference_.start(cost_.robust, options_.nonmonotonic_steps);
   if (may_rise()) best_state_ = workspace_->state();
 }
@@ -187,11 +181,9 @@ bool Optimiser::iterate() {
   if (options_.deadline.passed()) return finish(Reason::kDeadline);
   IterationStatistics now;
   Stopwatch watch;
-  if (refused_before_ == 0) {
-    workspace_->linearise();
-    map(negative_gradient_) = -map(workspace_->gradient());
-  }
+  workspace_->linearise();
   now.time_linearise = watch.seconds();
+  map(negative_gradient_) = -map(workspace_->gradient());
   if (map(negative_gradient_).lpNorm<Eigen::Infinity>() <= options_.gradient_tolerance) {
     return finish(Reason::kGradient);
   }
@@ -233,13 +225,8 @@ Cost Optimiser::evaluate_trial(IterationStatistics& now) {
   const Stopwatch watch;
   workspace_->apply_step();
   const Cost cost = workspace_->evaluate(workspace_->trial());
-  ++now.trials;
   now.time_evaluate += watch.seconds();
   return cost;
-}
-
-bool Optimiser::has_tried_enough(const IterationStatistics& now) const {
-  return options_.max_trials > 0 && now.trials >= options_.max_trials;
 }
 
 double Optimiser::state_norm() const { return norm(map(workspace_->state())); }
@@ -290,7 +277,7 @@ bool Optimiser::shorten(Cost& cost, IterationStatistics& now) {
   Vector step = map(workspace_->step());
   const double slope = 2.0 * dot(step, map(negative_gradient_));  // at 0, downwards
   double length = 1.0;
-  for (int cut = 0; cut < kMostCuts && !has_tried_enough(now); ++cut) {
+  for (int cut = 0; cut < kMostCuts; ++cut) {
     // The least of the parabola through the cost at 0, with its slope, and at `length`.
     const double least = 0.5 * slope * length / (slope + (cost.robust - cost_.robust) / length);
     const double factor = std::isfinite(cost.robust) ? std::clamp(least / length, 0.1, 0.5) : 0.1;
@@ -320,16 +307,12 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
   workspace_->diagonal(diagonal_);
   if (lambda_ == 0.0) {
     lambda_unit_ = options_.scale_by_diagonal ? 1.0 : map(diagonal_).maxCoeff();
-    const double first = std::exchange(first_lambda_, 0.0);
-    lambda_ = std::max(options_.initial_lambda, first) * lambda_unit_;
+    lambda_ = options_.initial_lambda * lambda_unit_;
   }
   update_scaling();
-  const int before = std::exchange(refused_before_, 0);
-  if (before == 0) {
-    factorised_ = false;
-    promised_ = 0.0;
-  }
-  for (; before + now.refusals < options_.max_refusals; ++now.refusals) {
+  bool factorised = false;
+  double promised = 0.0;
+  for (; now.refusals < options_.max_refusals; ++now.refusals) {
     now.lambda = lambda_;
     Vector damping = map(workspace_->damping());
     if (options_.scale_by_diagonal) {
@@ -340,7 +323,7 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
     if (solve(now)) {
       const Vector step = map(workspace_->step());
       if (norm(step) <= options_.step_tolerance * (state_norm() + options_.step_tolerance)) {
-        return finish_refused(Reason::kStep, promised_);
+        return finish_refused(Reason::kStep, promised);
       }
       const Cost cost = evaluate_trial(now);
       // F(h) ≈ F + 2gᵀh + hᵀHh, and (H + D)h = −g: the predicted decrease is hᵀ(Dh − g).
@@ -348,8 +331,8 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
       const double predicted = sum(step.size(), [&](Eigen::Index i) {
         return step[i] * (damping[i] * step[i] + descent[i]);
       });
-      if (!factorised_) promised_ = predicted;
-      factorised_ = true;
+      if (!factorised) promised = predicted;
+      factorised = true;
       now.gain_ratio = reference_.quality(cost.robust, predicted);
       if (std::isfinite(cost.robust) && now.gain_ratio > 0.0) {
         const double s = 2.0 * now.gain_ratio - 1.0;
@@ -368,7 +351,7 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
       }
       // At the bottom of the valley rounding decides; the model says there is nothing to gain.
       if (predicted <= options_.gain * cost_.robust * 1e-3) {
-        return finish_refused(Reason::kGain, promised_);
+        return finish_refused(Reason::kGain, promised);
       }
       lambda_fall_ = kLambdaFall;
       Cost shorter = cost;
@@ -387,19 +370,15 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
       lambda_ = std::max(lambda_, options_.refused_lambda * lambda_unit_);
     }
     lambda_growth_ *= 2.0;
-    if (!refused_ && options_.follow_diagonal && promised_ > kMatters * cost_.robust) {
+    if (!refused_ && options_.follow_diagonal && promised > kMatters * cost_.robust) {
       refused_ = true;
       if (result_.iterations > 0) return begin_again();
       reference_.start(cost_.robust, options_.nonmonotonic_steps);
     }
     if (options_.deadline.passed()) return finish(Reason::kDeadline);
-    if (has_tried_enough(now)) {
-      refused_before_ = before + ++now.refusals;
-      return true;
-    }
   }
-  if (!factorised_) return finish(Reason::kSingular);
-  return finish_refused(Reason::kNoProgress, promised_);
+  if (!factorised) return finish(Reason::kSingular);
+  return finish_refused(Reason::kNoProgress, promised);
 }
 
 bool Optimiser::iterate_dogleg(IterationStatistics& now) {

@@ -75,11 +75,6 @@ struct OptimiserOptions {
   double initial_radius = 1e4;
   /// Steps that may be refused in a row before the iteration gives up.
   int max_refusals = 16;
-  /// Of Levenberg-Marquardt, for iterations that have to be short: the states that one tries. Where
-  /// it takes none of them, iterate() says that there is more to do, and the next one goes on with
-  /// the damping and the linear system that there are; it has an entry of its own in the
-  /// statistics. 0: as many as it needs.
-  int max_trials = 0;
   Deadline deadline;
   /// Called after every iteration; false stops the run. The result so far holds the statistics of
   /// the iteration; the workspace holds its state.
@@ -99,7 +94,6 @@ struct IterationStatistics {
   double lambda = 0.0;  ///< or the trust-region radius
   double step_norm = 0.0;
   int refusals = 0;
-  int trials = 0;  ///< states whose cost was worked out
   double time_linearise = 0.0, time_solve = 0.0, time_evaluate = 0.0;  ///< seconds
 };
 
@@ -139,11 +133,8 @@ class Optimiser {
   /// The workspace must hold the initial state (load_state()). evaluated: nothing has written into
   /// its state() since it was evaluated, see Workspace::return_to_state().
   void start(Workspace& workspace, LinearSolver& solver, bool evaluated = false);
-  /// One accepted step, or none where max_trials has ended it; false when it is over.
+  /// One accepted step; false when it is over.
   bool iterate();
-  /// Where the last iterations took no step, the next run begins with the damping that they came
-  /// to.
-  void keep_damping() { first_lambda_ = refused_before_ > 0 ? lambda_ / lambda_unit_ : 0.0; }
   /// Between iterations: costs have changed, as with other bindings, but no state. The run goes on
   /// with the damping and the count of iterations that it has.
   void costs_changed();
@@ -166,7 +157,6 @@ class Optimiser {
   void update_scaling();
   bool iterate_dogleg(IterationStatistics& now);
   bool solve(IterationStatistics& now);
-  bool has_tried_enough(const IterationStatistics& now) const;
   Cost evaluate_trial(IterationStatistics& now);
   bool shorten(Cost& cost, IterationStatistics& now);
   bool accept(const Cost& cost, double predicted, IterationStatistics& now, bool whole = true);
@@ -181,11 +171,6 @@ class Optimiser {
   double lambda_ = 0.0, lambda_unit_ = 1.0, lambda_growth_ = 2.0;
   double lambda_fall_ = 0.0, radius_ = 0.0;
   bool refused_ = false;  ///< a step, of this run
-  // Of the steps from one state, over iterations that took none (see max_trials).
-  int refused_before_ = 0;
-  bool factorised_ = false;
-  double promised_ = 0.0;      ///< by the first of them
-  double first_lambda_ = 0.0;  ///< of the next run, in units of the largest diagonal entry; 0: none
   std::vector<double> diagonal_, scaling_, newton_step_, negative_gradient_;
   std::vector<double> first_diagonal_, first_state_;
   std::vector<double> best_state_;  ///< where the cost has risen since

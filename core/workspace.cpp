@@ -160,15 +160,12 @@ void Workspace::take_over_edges(std::size_t p, bool same_bindings) {
     if ((row < 0) != (row_was < 0)) continue;
     if (row >= 0) {
       const int count = pool.dimension(edges.edges[k]);
-      const auto same = [&](int r) {
+      bool same = true;
+      for (int r = 0; r < count && same && !(kept_.rows.empty() && rows_as_allocated_); ++r) {
         const ConstraintRow before = kept_.rows.empty() ? ConstraintRow() : kept_.rows[row_was + r];
-        return before == constraint_rows_[row + r];
-      };
-      bool all_same = true;
-      if (!kept_.rows.empty() || !rows_as_allocated_) {
-        for (int r = 0; r < count && all_same; ++r) all_same = same(r);
+        same = before == constraint_rows_[row + r];
       }
-      if (!all_same) continue;
+      if (!same) continue;
       std::copy_n(kept_.errors.begin() + row_was, count, constraint_errors_.begin() + row);
     }
     edge_costs_[p][k] = kept_.costs[p][old];

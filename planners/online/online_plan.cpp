@@ -154,6 +154,7 @@ void OnlinePlan::lift_out(int index) {
   const auto stance_at = [this](int i) -> const StanceParameter& {
     return *plan_.stance_from[static_cast<std::size_t>(i)];
   };
+  if (!robot().floating_base()) return;
   const StanceParameter& here = stance_at(index);
   RobotState state(robot());
   Eigen::VectorXd off;

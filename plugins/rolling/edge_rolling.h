@@ -32,7 +32,8 @@ struct EdgeRolling : WeightedEdge<Eigen::Dynamic, VertexConfiguration, VertexCon
   static constexpr std::string_view kTag = "EDGE_ROLLING";
   static constexpr ConstraintKind kConstraint = ConstraintKind::kEquality;
   /// m; with what wheels that steer may slip half-way of two steps, 1.9 mm each to either side, it
-  /// stays within the 5 mm that the judge allows in 0.1 m of their way.
+  /// stays within the 5 mm that the judge allows in 0.1 m of their way; where steps are much
+  /// shorter, more of them lie in it, and may add up to more.
   static constexpr double kTolerance = 1e-3;
   int stance_number = 0;
   std::shared_ptr<const StanceParameter> stance;  ///< looked up by bind()

@@ -288,32 +288,6 @@ TEST(Optimiser, DampedAlgorithmsConvergeWhereGaussNewtonDiverges) {
   }
 }
 
-TEST(Optimiser, IterationsThatTryOneStateEachComeToTheSameSteps) {
-  OptimiserOptions options;
-  options.algorithm = Algorithm::kLevenbergMarquardt;
-  Graph at_once = arctan_graph(), in_turns = arctan_graph();
-  const OptimiserResult expected = run(at_once, options);
-  options.max_trials = 1;
-  const OptimiserResult result = run(in_turns, options);
-  EXPECT_EQ(result.reason, expected.reason);
-  EXPECT_EQ(result.iterations, expected.iterations);
-  EXPECT_EQ(in_turns.vertex(VertexId<VertexXY>{0}).state,
-            at_once.vertex(VertexId<VertexXY>{0}).state);
-  int refusals = 0, expected_refusals = 0;
-  for (const IterationStatistics& one : result.statistics) {
-    EXPECT_LE(one.trials, 1);
-    refusals += one.refusals;
-  }
-  for (const IterationStatistics& one : expected.statistics) expected_refusals += one.refusals;
-  EXPECT_EQ(refusals, expected_refusals);
-  EXPECT_GT(refusals, 0);
-  EXPECT_GT(result.statistics.size(), expected.statistics.size());
-
-  Graph graph = arctan_graph();
-  options.max_refusals = 1;
-  EXPECT_EQ(run(graph, options).reason, Reason::kNoProgress);
-}
-
 TEST(Optimiser, GivesUpWhenNoStepLowersTheCost) {
   for (const Algorithm algorithm : {Algorithm::kLevenbergMarquardt, Algorithm::kDogleg}) {
     Graph graph = arctan_graph();
@@ -368,7 +342,6 @@ TEST(OptimiserOptions, OutOfRangeAreErrorsThatNameTheOption) {
   refused("initial_lambda", [](OptimiserOptions& o) { o.initial_lambda = 0.0; });
   refused("initial_radius", [](OptimiserOptions& o) { o.initial_radius = -2.0; });
   refused("max_refusals", [](OptimiserOptions& o) { o.max_refusals = 0; });
-  refused("max_trials", [](OptimiserOptions& o) { o.max_trials = -1; });
   EXPECT_NO_THROW(OptimiserOptions().validate());
 }
 
