@@ -112,20 +112,54 @@ struct Rest {
   }
 };
 
-/// Along the rest of what was planned, in its time but for the beginning.
-std::optional<Rest> along_the_plan(const Motion& planned, int at, const Eigen::VectorXd& stands,
-                                   Wheels& wheels, double ramp_m) {
+Eigen::VectorXd between(const Robot& robot, const Eigen::VectorXd& a, const Eigen::VectorXd& b,
+                        double share) {
+  if (share == 1.0) return b;
+  Eigen::VectorXd step(robot.tangent_size()), q = a;
+  robot.difference(a.data(), b.data(), step.data());
+  step *= share;
+  robot.integrate(a.data(), step.data(), q.data());
+  return q;
+}
+
+/// How long a step of a plan takes, in the middle of all that move.
+double usual_step_s(const Motion& planned) {
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < planned.time_s.size(); ++i) {
+    if (planned.configurations[i] == planned.configurations[i - 1]) continue;
+    steps_s.push_back(planned.time_s[i] - planned.time_s[i - 1]);
+  }
+  if (steps_s.empty()) return planned.time_s.back();
+  std::ranges::sort(steps_s);
+  return steps_s[steps_s.size() / 2];
+}
+
+/// Along the rest of what was planned, in its time but for the beginning, whose first step takes
+/// longer than others: in as many that do not. What moves is looked at in each step, and wheels
+/// that steer while one speeds up slip less.
+std::optional<Rest> along_the_plan(const Robot& robot, const Motion& planned, int at,
+                                   const Eigen::VectorXd& stands, Wheels& wheels, double ramp_m) {
   Rest rest;
   const auto from = static_cast<std::size_t>(at);
-  for (std::size_t i = from; i < planned.configurations.size(); ++i) {
-    rest.add(planned.configurations[i]);
+  std::vector<double> planned_step_s = {0.0};
+  rest.add(planned.configurations[from]);
+  for (std::size_t i = from + 1; i < planned.configurations.size(); ++i) {
+    const double step_s = planned.time_s[i] - planned.time_s[i - 1];
+    const bool first = i == from + 1;
+    const int parts =
+        first ? std::max(1, static_cast<int>(std::round(2.0 * step_s / usual_step_s(planned)))) : 1;
+    for (int part = 1; part <= parts; ++part) {
+      rest.add(between(robot, planned.configurations[i - 1], planned.configurations[i],
+                       static_cast<double>(part) / parts));
+      planned_step_s.push_back(step_s / parts);
+    }
   }
   rest.lead_back(stands);
   if (!wheels.drive(rest.motion.configurations)) return {};
   rest.motion.time_s = {0.0};
   double before = 0.0;
   for (std::size_t k = 1; k < rest.gone_m.size(); ++k) {
-    const double planned_s = planned.time_s[from + k] - planned.time_s[from + k - 1];
+    const double planned_s = planned_step_s[k];
     if (rest.gone_m[k] == 0.0) {
       rest.motion.time_s.push_back(rest.motion.time_s.back() + planned_s);
       continue;
@@ -196,7 +230,7 @@ ResumedPlan wait_for_free_drive(const Graph& stopped, const Motion& planned, con
   }
   const double speed_m_s = task.drive->speed_m_s;
   const std::optional<Rest> driven = along_the_plan(
-      planned, at, stands, wheels, speed_m_s * speed_m_s / (2.0 * kAcceleration_m_s2));
+      robot, planned, at, stands, wheels, speed_m_s * speed_m_s / (2.0 * kAcceleration_m_s2));
   if (!driven) return refused("wheels do not stay on the ground on the way back to the plan");
   const Rest& rest = *driven;
   Eigen::VectorXd steered;
@@ -218,7 +252,11 @@ ResumedPlan wait_for_free_drive(const Graph& stopped, const Motion& planned, con
   whole.slopes.back() = still;
   const double moves_s = begin_s + steers_s + *after_s;
   const std::vector<Eigen::VectorXd>& way = rest.motion.configurations;
-  if (moves_s > begin_s) add(steered, moves_s, still);
+  if (steers_s > 0.0) add(steered, begin_s + steers_s, still);
+  const int waits = static_cast<int>(std::ceil(*after_s / (2.0 * usual_step_s(planned))));
+  for (int k = 1; k <= waits; ++k) {
+    add(whole.configurations.back(), begin_s + steers_s + *after_s * k / waits, still);
+  }
   for (std::size_t k = 1; k < way.size(); ++k) {
     const bool ends = k + 1 == way.size();
     add(way[k], moves_s + rest.motion.time_s[k], ends ? still : Eigen::VectorXd());

@@ -149,6 +149,10 @@ class Step {
       } else {
         const ObstacleStep step = obstacle_step(obstacle, a_.time_s, b_.time_s);
         try_samples(from, way, Padding(rho, way - step.shift, step.turn, samples_), worst, sample);
+        const DistanceSample at_end = sample(b_.sphere_centres[sphere], 1.0);
+        if (rho - at_end.distance > worst.lack) {
+          worst = {rho - at_end.distance, 1.0, at_end.gradient, Eigen::Vector3d::Zero()};
+        }
       }
     }
     return worst;

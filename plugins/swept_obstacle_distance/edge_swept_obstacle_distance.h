@@ -15,13 +15,15 @@
 /// next to it sees p within √(ρ² + h²). Too few samples make the edge pessimistic (by h²/2ρ where
 /// h is small), never blind. An obstacle that moves counts with the way relative to it: h is half
 /// the gap of c_b − c_a − (its displacement), and more by how far it turns its surface; it is taken
-/// to move evenly between the two times. One that is there for a part of the step counts all along
-/// it. A map answers with max_distance() at most: where
-/// √(ρ² + h²) exceeds that, the step counts as violated, unknown as it is.
+/// to move evenly between the two times. What comes straight towards the robot is nearest at the
+/// end of the step, which is one more sample then, with ρ as it is: the last step of a window has
+/// no next one. One that is there for a part of the step counts all along it. A map answers with
+/// max_distance() at most: where √(ρ² + h²) exceeds that, the step counts as violated, unknown as
+/// it is.
 ///
-/// Not covered: the two ends themselves, which are EDGE_OBSTACLE_DISTANCE's, and the arc by which a
-/// centre leaves its chord, θ² R/8 for a turn by θ about an axis at distance R (3 mm for 0.2 rad
-/// and 0.6 m): the margin must leave room for it.
+/// Not covered: the two ends themselves where nothing moves, which are EDGE_OBSTACLE_DISTANCE's,
+/// and the arc by which a centre leaves its chord, θ² R/8 for a turn by θ about an axis at distance
+/// R (3 mm for 0.2 rad and 0.6 m): the margin must leave room for it.
 
 #include <locograph/core/typed_edge_pool.h>
 #include <locograph/plugins/configuration/edge_fit.h>

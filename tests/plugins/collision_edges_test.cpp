@@ -123,6 +123,14 @@ struct SweptReference {
              radius * angle, kink_distance(obstacle, c, t) > 0.01);
       }
     }
+    for (const Obstacle& obstacle : world.obstacles) {
+      if (obstacle.motion.empty()) continue;
+      const double lack = rho - obstacle.distance(to, b.time_s);
+      second = std::max(second, std::min(lack, worst));
+      if (lack <= worst) continue;
+      worst = lack;
+      smooth = kink_distance(obstacle, to, b.time_s) > 0.01;
+    }
     if (worst < -kKink) {
       smooth = true;
     } else if (worst < kKink || worst - second < kKink) {
@@ -410,6 +418,20 @@ TEST_F(SweptObstacleDistance, CountsTheWayRelativeToAnObstacleThatMovesAlong) {
   const Eigen::VectorXd swept = between(-1.0, 1.0, 0.05, 1), middle = at(0.0, 0.5);
   ASSERT_GT(middle.maxCoeff(), 0.01);
   EXPECT_LT((swept - middle).cwiseAbs().maxCoeff(), 1e-12) << "relative to it the robot stands";
+}
+
+TEST_F(SweptObstacleDistance, MeetsWhatComesStraightTowardsItAtTheEndOfTheStep) {
+  Obstacle cart = box_obstacle({-3.0, 0.0, 0.7}, {0.4, 0.4, 1.4});
+  KeyFrame there;
+  there.time_s = 1.0;
+  there.pose.translation() << -0.4, 0.0, 0.7;
+  cart.motion.push_back(there);
+  world = world_of({cart});
+  const Eigen::VectorXd end = at(0.0, 1.0);
+  ASSERT_GT(end.maxCoeff(), 0.01);
+  for (const int samples : {1, 2, 4}) {
+    EXPECT_GE((between(0.0, 0.0, 0.05, samples) - end).minCoeff(), -1e-12) << samples;
+  }
 }
 
 TEST_F(SweptObstacleDistance, CountsAnObstacleAllAlongAStepThatItIsThereForAPartOf) {
