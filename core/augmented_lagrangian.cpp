@@ -54,18 +54,12 @@ class ConstrainedOptimiser::Rows {
     const std::size_t count = rows.size();
     violation_.assign(count, 0.0);
     last_.assign(count, std::numeric_limits<double>::infinity());
-    weight_.resize(count);
-    tolerance_.resize(count);
     joint_.assign(problem_->constraints().size(), false);
     for (std::size_t i = 0; i < problem_->constraints().size(); ++i) {
       const CompiledConstraint& c = problem_->constraints()[i];
-      const int index = problem_->edges()[c.pool].edges[c.k];
       // A limit on hundreds of rows has its weights, not a matrix of their square.
-      if (!pool(c).has_weights()) joint_[i] = !pool(c).information(index).isDiagonal(0.0);
-      for (int r = 0; r < c.count; ++r) {
-        weight_[c.row + r] = pool(c).weight(index, r);
-        tolerance_[c.row + r] = tolerance(c, r);
-      }
+      if (pool(c).has_weights()) continue;
+      joint_[i] = !pool(c).information(index(c)).isDiagonal(0.0);
     }
     if (warm) return;
     for (ConstraintRow& row : workspace.constraint_rows()) {
@@ -79,19 +73,24 @@ class ConstrainedOptimiser::Rows {
     const std::vector<ConstraintRow>& rows = std::as_const(*workspace_).constraint_rows();
     for (const CompiledConstraint& c : problem_->constraints()) {
       const bool hinged = pool(c).one_sided(), one_sided = is_one_sided(c);
-      for (int r = c.row; r < c.row + c.count; ++r) {
-        const double e = error(r);
+      for (int r = 0; r < c.count; ++r) {
+        const double e = error(c.row + r);
         // How far the row is from satisfying its complementarity condition, N&W eq. 17.66.
-        violation_[r] = weight_[r] == 0.0      ? 0.0
-                        : !one_sided || hinged ? std::abs(e)
-                                               : std::abs(std::max(e, -rows[r].shift));
+        violation_[c.row + r] = e == 0.0 || pool(c).weight(index(c), r) == 0.0 ? 0.0
+                                : !one_sided || hinged
+                                    ? std::abs(e)
+                                    : std::abs(std::max(e, -rows[c.row + r].shift));
       }
     }
   }
 
   bool satisfied() const {
-    return std::equal(violation_.begin(), violation_.end(), tolerance_.begin(),
-                      [](double violation, double tolerance) { return violation <= tolerance; });
+    for (const CompiledConstraint& c : problem_->constraints()) {
+      for (int r = 0; r < c.count; ++r) {
+        if (is_off(c, r)) return false;
+      }
+    }
+    return true;
   }
 
   /// Multipliers, then penalties. False when nothing is left to raise.
@@ -102,15 +101,16 @@ class ConstrainedOptimiser::Rows {
       const CompiledConstraint& c = problem_->constraints()[i];
       const bool hinged = pool(c).one_sided();
       bool any = false;
-      for (int r = c.row; r < c.row + c.count; ++r) {
+      for (int r = 0; r < c.count; ++r) {
+        ConstraintRow& row = rows[c.row + r];
         if (!hinged) {
-          rows[r].shift += error(r);
-          if (is_one_sided(c)) rows[r].shift = std::max(0.0, rows[r].shift);
+          row.shift += error(c.row + r);
+          if (is_one_sided(c)) row.shift = std::max(0.0, row.shift);
         }
-        any = any || slow(r);
+        any = any || slow(c, r);
       }
-      for (int r = c.row; r < c.row + c.count; ++r) {
-        if (joint_[i] ? any : slow(r)) exhausted = !raise(rows[r]) || exhausted;
+      for (int r = 0; r < c.count; ++r) {
+        if (joint_[i] ? any : slow(c, r)) exhausted = !raise(rows[c.row + r]) || exhausted;
       }
     }
     last_ = violation_;
@@ -129,24 +129,24 @@ class ConstrainedOptimiser::Rows {
       state.edge = {c.edge};
       state.multipliers.resize(c.count);
       const bool weighted = pool(c).has_weights();
-      const int index = problem_->edges()[c.pool].edges[c.k];
-      const Eigen::MatrixXd information = weighted ? Eigen::MatrixXd() : pool(c).information(index);
+      const Eigen::MatrixXd information =
+          weighted ? Eigen::MatrixXd() : pool(c).information(index(c));
       Eigen::VectorXd scaled_shift(c.count);
       for (int r = 0; r < c.count; ++r) {
         const ConstraintRow& row = rows[c.row + r];
         scaled_shift[r] = row.scale * row.shift;
         const double e = error(c.row + r);
-        const double violation = weight_[c.row + r] == 0.0 ? 0.0
-                                 : is_one_sided(c)         ? std::max(0.0, e)
-                                                           : std::abs(e);
+        const double violation = pool(c).weight(index(c), r) == 0.0 ? 0.0
+                                 : is_one_sided(c)                  ? std::max(0.0, e)
+                                                                    : std::abs(e);
         if (violation > state.violation) {
           state.violation = violation;
           state.row = r;
         }
       }
       for (int r = 0; r < c.count; ++r) {
-        const double force =
-            weighted ? weight_[c.row + r] * scaled_shift[r] : information.row(r).dot(scaled_shift);
+        const double force = weighted ? pool(c).weight(index(c), r) * scaled_shift[r]
+                                      : information.row(r).dot(scaled_shift);
         state.multipliers[r] = 2.0 * rows[c.row + r].scale * force;
       }
       if (state.violation > most) {
@@ -161,12 +161,18 @@ class ConstrainedOptimiser::Rows {
   const EdgePool& pool(const CompiledConstraint& c) const {
     return *problem_->graph().edge_pools()[c.pool];
   }
+  int index(const CompiledConstraint& c) const { return problem_->edges()[c.pool].edges[c.k]; }
   static bool is_one_sided(const CompiledConstraint& c) {
     return c.kind == ConstraintKind::kInequality;
   }
   double error(int row) const { return workspace_->constraint_errors()[row]; }
-  bool slow(int r) const {
-    return violation_[r] > tolerance_[r] && violation_[r] > options_.decrease * last_[r];
+  /// Of thousands of rows few are: the others are not asked what they tolerate.
+  bool is_off(const CompiledConstraint& c, int r) const {
+    const double violation = violation_[c.row + r];
+    return violation != 0.0 && !(violation <= tolerance(c, r));
+  }
+  bool slow(const CompiledConstraint& c, int r) const {
+    return violation_[c.row + r] > options_.decrease * last_[c.row + r] && is_off(c, r);
   }
   double tolerance(const CompiledConstraint& c, int r) const {
     if (!options_.own_tolerances) return options_.tolerance;
@@ -187,7 +193,7 @@ class ConstrainedOptimiser::Rows {
   Workspace* workspace_ = nullptr;
   const Problem* problem_ = nullptr;
   const ConstrainedOptions& options_;
-  std::vector<double> violation_, last_, weight_, tolerance_;
+  std::vector<double> violation_, last_;
   std::vector<bool> joint_;  ///< Ω is not diagonal
 };
 

@@ -69,6 +69,8 @@ struct Evaluation {
   /// is called on the same state.
   double* constraint_errors = nullptr;
   const Bindings* bindings = nullptr;  ///< null: none
+  /// constraint_errors are those of the state: cost() does not work them out.
+  bool errors_known = false;
 };
 
 /// A sum over edges: with the robust kernels, and without.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace locograph {
 namespace {
@@ -110,7 +111,7 @@ void Optimiser::start(Workspace& workspace, LinearSolver& solver, bool evaluated
   lambda_ = 0.0;
   lambda_growth_ = 2.0;
   lambda_fall_ = kLambdaFall;
-  refused_ = false;
+  refused_ = linearised_ = false;
   radius_ = options_.initial_radius;
   const int n = workspace.problem().dimension();
   diagonal_.resize(n);
@@ -130,6 +131,7 @@ void Optimiser::start(Workspace& workspace, LinearSolver& solver, bool evaluated
 }
 
 void Optimiser::go_to(const std::vector<double>& state, const Cost& cost) {
+  linearised_ = false;
   workspace_->trial() = state;
   workspace_->evaluate(workspace_->trial());
   workspace_->accept_trial();
@@ -169,7 +171,13 @@ bool Optimiser::finish_refused(Reason converged, double promised) {
   return finish(Reason::kNoProgress);
 }
 
+void Optimiser::go_on_refused() {
+  result_.reason = Reason::kRunning;
+  result_.converged = false;
+}
+
 void Optimiser::costs_changed() {
+  linearised_ = false;
   cost_ = result_.final = best_cost_ = workspace_->return_to_state();
   reference_.start(cost_.robust, options_.nonmonotonic_steps);
   if (may_rise()) best_state_ = workspace_->state();
@@ -181,7 +189,7 @@ bool Optimiser::iterate() {
   if (options_.deadline.passed()) return finish(Reason::kDeadline);
   IterationStatistics now;
   Stopwatch watch;
-  workspace_->linearise();
+  if (!std::exchange(linearised_, true)) workspace_->linearise();
   now.time_linearise = watch.seconds();
   map(negative_gradient_) = -map(workspace_->gradient());
   if (map(negative_gradient_).lpNorm<Eigen::Infinity>() <= options_.gradient_tolerance) {
@@ -242,6 +250,7 @@ bool Optimiser::accept(const Cost& cost, double predicted, IterationStatistics& 
     best_state_ = workspace_->state();
   }
   workspace_->accept_trial();
+  linearised_ = false;
   reference_.accept(cost.robust, predicted);
   cost_ = cost;
   if (!may_rise() || cost.robust < best_cost_.robust) best_cost_ = cost;

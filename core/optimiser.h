@@ -138,6 +138,11 @@ class Optimiser {
   /// Between iterations: costs have changed, as with other bindings, but no state. The run goes on
   /// with the damping and the count of iterations that it has.
   void costs_changed();
+  /// After an iteration that ended the run because all its steps were refused: it goes on with the
+  /// damping that it came to, and the linearisation that it has.
+  void go_on_refused();
+  /// Whether the next iteration begins with what was linearised before.
+  bool is_linearised() const { return linearised_; }
   const OptimiserResult& result() const { return result_; }
   OptimiserOptions& options() { return options_; }
 
@@ -170,7 +175,8 @@ class Optimiser {
   ReferenceCost reference_;
   double lambda_ = 0.0, lambda_unit_ = 1.0, lambda_growth_ = 2.0;
   double lambda_fall_ = 0.0, radius_ = 0.0;
-  bool refused_ = false;  ///< a step, of this run
+  bool refused_ = false;     ///< a step, of this run
+  bool linearised_ = false;  ///< the state, see go_on_refused()
   std::vector<double> diagonal_, scaling_, newton_step_, negative_gradient_;
   std::vector<double> first_diagonal_, first_state_;
   std::vector<double> best_state_;  ///< where the cost has risen since

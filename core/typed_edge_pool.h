@@ -85,10 +85,15 @@ class TypedEdgePool final : public EdgePool {
       x.scratch->reset();
       const E& edge = edges[compiled.edges[k]];
       detail::LocalMatrix<Error> e = detail::make_local<Error>(edge.dimension(), 1, *x.scratch);
-      Evaluator(edge, slots(compiled, k), x).error(e);
       const ConstraintRow* rows = constraint_rows(compiled, k, x);
+      double* errors = rows == nullptr ? nullptr : x.constraint_errors + compiled.constraint_row[k];
+      if (rows != nullptr && x.errors_known) {
+        std::copy_n(errors, edge.dimension(), e.data());
+      } else {
+        Evaluator(edge, slots(compiled, k), x).error(e);
+        if (rows != nullptr) std::copy_n(e.data(), edge.dimension(), errors);
+      }
       if (rows != nullptr) {
-        std::copy_n(e.data(), edge.dimension(), x.constraint_errors + compiled.constraint_row[k]);
         // Inside all of its limits: it has no shifts (constraint.h), and its cost is 0.
         if (kHinged && all_zero(e.data(), edge.dimension())) continue;
         constrain_error(rows, compiled.one_sided[k] != 0, edge.dimension(), e.data());

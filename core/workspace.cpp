@@ -53,7 +53,8 @@ void Workspace::allocate(const Problem& problem) {
 
 void Workspace::keep() {
   keeps_ = true;
-  kept_.valid = by_edge_ && summed_ == state_.data() && derived_from_ == state_.data();
+  kept_.valid =
+      by_edge_ && summed_ == state_.data() && derived_from_ == state_.data() && !rows_changed_;
   kept_.world = evaluated_ == state_.data();
   evaluated_ = summed_ = derived_from_ = partly_ = nullptr;
   if (!kept_.valid) return;
@@ -192,6 +193,7 @@ void Workspace::bind(const Bindings& bindings) {
   bindings.require_fit(problem_->graph().parameters());
   bindings_ = bindings;
   evaluated_ = partly_ = nullptr;
+  bindings_changed_ = true;
 }
 
 void Workspace::load_state() {
@@ -258,7 +260,7 @@ Cost Workspace::sum_chunks(Task&& task) {
 Cost Workspace::return_to_state() {
   if (evaluated_ == state_.data()) return evaluated_cost_;
   if (derived_from_ == state_.data()) {
-    return sum_costs(state_, summed_ == state_.data() ? Stale::kReadBindings : Stale::kAll);
+    return sum_costs(state_, summed_ == state_.data() ? Stale::kChanged : Stale::kAll);
   }
   return evaluate(state_);
 }
@@ -299,19 +301,25 @@ Cost Workspace::sum_costs(const std::vector<double>& state, Stale stale) {
       const EdgePool& pool = *problem_->graph().edge_pools()[p];
       const int begin = edges.chunk_begin[chunk], end = edges.chunk_begin[chunk + 1];
       if (!by_edge_) return pool.cost(edges, begin, end, evaluation(state, chunk));
-      const bool all =
-          stale == Stale::kAll || (stale == Stale::kReadBindings && pool.reads_bindings());
+      const bool all = stale == Stale::kAll ||
+                       (stale == Stale::kChanged && bindings_changed_ && pool.reads_bindings());
+      const bool by_rows = stale == Stale::kChanged && rows_changed_ && !all;
+      Evaluation x = evaluation(state, chunk);
+      x.errors_known = by_rows;
       Cost sum;
       for (int k = begin; k < end; ++k) {
         Cost& cost = edge_costs_[p][k];
-        if (all || (stale == Stale::kUnknown && known_edges_[p][k] == 0)) {
-          cost = pool.cost(edges, k, k + 1, evaluation(state, chunk));
+        const bool constrains = !edges.constraint_row.empty() && edges.constraint_row[k] >= 0;
+        if (all || (by_rows && constrains) ||
+            (stale == Stale::kUnknown && known_edges_[p][k] == 0)) {
+          cost = pool.cost(edges, k, k + 1, x);
         }
         sum += cost;
       }
       return sum;
     });
     evaluated_ = summed_ = state.data();
+    bindings_changed_ = rows_changed_ = false;
     return evaluated_cost_;
   } catch (const Error&) {
     throw_with_line(state);

@@ -50,7 +50,8 @@ class Workspace {
   /// Of the problem's constraints(); as allocated: no shift, scale 1. Costs of before they are
   /// changed do not count any more.
   std::vector<ConstraintRow>& constraint_rows() {
-    evaluated_ = summed_ = partly_ = nullptr;
+    evaluated_ = partly_ = nullptr;
+    rows_changed_ = true;
     rows_as_allocated_ = false;
     return constraint_rows_;
   }
@@ -70,8 +71,9 @@ class Workspace {
   Cost evaluate(const std::vector<double>& state);
   /// The cost at state() of a workspace that nobody has written into since it was evaluated, but by
   /// bind() and set_state(). Evaluates it where that is needed: not where it was evaluated last, as
-  /// it is after a run whose last trial was accepted. Where only the bindings are others, what was
-  /// derived of it stays, and so do the costs of edges that do not read them.
+  /// it is after a run whose last trial was accepted. Where only the bindings or constraint rows
+  /// are others, what was derived of it stays; with keep() so do costs that do not depend on them,
+  /// and errors of constraints.
   Cost return_to_state();
   /// Fills hessian() and gradient() at state(), which was evaluated last.
   Cost linearise();
@@ -119,7 +121,7 @@ class Workspace {
   Cost sum_chunks(Task&& task);
   void derive(const std::vector<double>& state);
   /// Which edges have to be evaluated.
-  enum class Stale { kAll, kReadBindings, kUnknown };
+  enum class Stale { kAll, kChanged, kUnknown };
   Cost sum_costs(const std::vector<double>& state, Stale stale);
   void take_over();
   void take_over_vertices(std::size_t pool);
@@ -131,8 +133,9 @@ class Workspace {
   std::vector<ConstraintRow> constraint_rows_;
   std::vector<double> constraint_errors_;
   /// The buffer, state or trial, that was evaluated last; that of whose numbers all is derived;
-  /// that whose costs are known but for those that read the bindings.
+  /// that whose costs are known but for what has changed since.
   const double *evaluated_ = nullptr, *derived_from_ = nullptr, *summed_ = nullptr;
+  bool bindings_changed_ = false, rows_changed_ = false;  ///< since costs were summed
   Cost evaluated_cost_;
   std::vector<double> state_, trial_, hessian_, gradient_, step_, damping_;
   std::vector<std::unique_ptr<DerivedStore>> derived_;

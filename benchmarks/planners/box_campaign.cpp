@@ -1,9 +1,10 @@
 // Boxes at random in a walled corridor: how often the local planner gets the CENTAURO drive past
 // them, judged by the judge.
 //
-//     box_campaign [SEED] [CASES] [--rate 50] [--iterations 1]
+//     box_campaign [SEED] [CASES] [--rate 50] [--iterations 1] [--every 25]
 //
-// Prints one JSON object: a row for each case, then the totals. Cycles as `refine` has them, but
+// Prints one JSON object: a row for each case, then the totals. The window of every n-th cycle is
+// judged. Cycles as `refine` has them, but
 // for what is asked for: --rate 0 is one cycle for each step, --iterations 0 all that a cycle
 // finds. A case counts as passed when every configuration was refined, the judge finds the result
 // feasible, and the base ends within 0.3 m of the plan's end along x.
@@ -19,6 +20,7 @@
 #include <random>
 
 #include "command_line.h"
+#include "judged_windows.h"
 #include "planners/box_scenes.h"
 
 namespace locograph {
@@ -26,7 +28,8 @@ namespace {
 
 class Campaign : public BoxDrives {
  public:
-  Campaign(double rate_hz, int iterations) : rate_hz_(rate_hz), iterations_(iterations) {}
+  Campaign(double rate_hz, int iterations, int every)
+      : rate_hz_(rate_hz), iterations_(iterations), every_(every) {}
 
   nlohmann::ordered_json run(const BoxScene& scene) {
     const World world = world_of(scene, true);
@@ -38,6 +41,8 @@ class Campaign : public BoxDrives {
     WalkOptions options = walk_options_for(plan_of(graph));
     options.rate_hz = rate_hz_;
     options.cycle_iterations = iterations_;
+    JudgedWindows windows(graph, judge, check_, every_);
+    options.on_cycle = [&](const CycleReport& cycle) { windows.look(cycle); };
     const WalkReport report = walk_plan(
         graph, [&seen](int executed) { return executed == 0 ? seen : nullptr; }, options);
     const Motion refined = motion_of(graph, plan_of(graph));
@@ -64,6 +69,9 @@ class Campaign : public BoxDrives {
             {"reason", report.reason},
             {"configurations", report.configurations},
             {"feasible_cycles", report.feasible_cycles},
+            {"windows_called_feasible", windows.counts().called_feasible},
+            {"windows_wrongly_feasible", windows.counts().wrongly_feasible},
+            {"refused", windows.counts().refused},
             {"feasible", after.feasible},
             {"violated", violated},
             {"passed", passed},
@@ -90,14 +98,14 @@ class Campaign : public BoxDrives {
   }
 
   double rate_hz_;
-  int iterations_;
+  int iterations_, every_;
   std::vector<double> all_times_;
   CheckOptions check_ = {.known = task().end_effectors()};
 };
 
-void run(unsigned long long seed, int cases, double rate_hz, int iterations) {
+void run(unsigned long long seed, int cases, double rate_hz, int iterations, int every) {
   std::mt19937_64 random(seed);
-  Campaign campaign(rate_hz, iterations);
+  Campaign campaign(rate_hz, iterations, every);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   int redrawn = 0;
   while (static_cast<int>(rows.size()) < cases) {
@@ -114,17 +122,25 @@ void run(unsigned long long seed, int cases, double rate_hz, int iterations) {
       return row[field].get<bool>();
     });
   };
-  const nlohmann::ordered_json result = {{"seed", seed},
-                                         {"cases", cases},
-                                         {"redrawn", redrawn},
-                                         {"rate_hz", rate_hz},
-                                         {"iterations", iterations},
-                                         {"original_feasible", count("original_feasible")},
-                                         {"refine_success", count("refine_success")},
-                                         {"feasible", count("feasible")},
-                                         {"passed", count("passed")},
-                                         {"cycle_ms", campaign.all_cycles()},
-                                         {"rows", rows}};
+  const auto sum = [&rows](const char* field) {
+    int total = 0;
+    for (const nlohmann::ordered_json& row : rows) total += row[field].get<int>();
+    return total;
+  };
+  const nlohmann::ordered_json result = {
+      {"seed", seed},
+      {"cases", cases},
+      {"redrawn", redrawn},
+      {"rate_hz", rate_hz},
+      {"iterations", iterations},
+      {"original_feasible", count("original_feasible")},
+      {"refine_success", count("refine_success")},
+      {"feasible", count("feasible")},
+      {"passed", count("passed")},
+      {"windows_called_feasible", sum("windows_called_feasible")},
+      {"windows_wrongly_feasible", sum("windows_wrongly_feasible")},
+      {"cycle_ms", campaign.all_cycles()},
+      {"rows", rows}};
   std::cout << result.dump(2) << '\n';
 }
 
@@ -133,7 +149,7 @@ void run(unsigned long long seed, int cases, double rate_hz, int iterations) {
 
 int main(int argc, char** argv) {
   unsigned long long seed = 1;
-  int cases = 20, iterations = 1;
+  int cases = 20, iterations = 1, every = 25;
   double rate_hz = 50.0;
   locograph::OptionParser app("Boxes at random in a walled corridor", "box_campaign");
   app.add_option("SEED", seed, "Of the boxes");
@@ -141,6 +157,7 @@ int main(int argc, char** argv) {
   app.add_option("--rate", rate_hz, "Cycles in a second of the plan; 0: one for each step")
       .not_negative();
   app.add_option("--iterations", iterations, "Of a cycle at most; 0: any number").not_negative();
+  app.add_option("--every", every, "Judge the window of every n-th cycle").positive();
   return locograph::run_benchmark(app, argc, argv,
-                                  [&] { locograph::run(seed, cases, rate_hz, iterations); });
+                                  [&] { locograph::run(seed, cases, rate_hz, iterations, every); });
 }

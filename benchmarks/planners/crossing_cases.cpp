@@ -1,12 +1,10 @@
 #include "crossing_cases.h"
 
 #include <locograph/check/judge.h>
-#include <locograph/check/motion_curve.h>
 #include <locograph/planners/offline/drive/drive_graph.h>
 #include <locograph/planners/offline/drive/wheeled_drive.h>
 #include <locograph/planners/online/free_drive.h>
 #include <locograph/planners/plan/judging.h>
-#include <locograph/planners/plan/slope_limits.h>
 
 namespace locograph {
 namespace {
@@ -27,44 +25,6 @@ Obstacle person(const Crossing& crossing, double meets_at_s) {
   walker.world_from_obstacle = start.pose;
   walker.motion = {start, end};
   return walker;
-}
-
-/// Of a window: the plan goes on before and after it.
-CheckOptions window_options(const Task& task) {
-  CheckOptions options = task.check;
-  options.starts_at_rest = options.ends_at_rest = false;
-  return options;
-}
-
-/// From the executed configuration to the last one of the window, with the slopes that `refine`
-/// would give them. It passes the last one as it moved before: what comes after it will change.
-Motion window_of(const Graph& graph, const Plan& plan, const CycleReport& cycle) {
-  const Robot& robot = *plan.robot->robot;
-  const int last = cycle.executed + cycle.window;
-  Motion whole = motion_of(graph, plan);
-  const int planned = static_cast<int>(whole.configurations.size());
-  const auto next = static_cast<std::size_t>(last) + 1;
-  if (next < whole.configurations.size()) {
-    const Eigen::VectorXd &before = whole.configurations[next - 2],
-                          &at = whole.configurations[next - 1];
-    Eigen::VectorXd moved(robot.tangent_size());
-    robot.difference(before.data(), at.data(), moved.data());
-    robot.integrate(at.data(), moved.data(), whole.configurations[next].data());
-    whole.time_s[next] = 2.0 * whole.time_s[next - 1] - whole.time_s[next - 2];
-    whole.slopes[next - 1] = {};
-  }
-  for (int i = std::max(1, cycle.executed); i <= last && i + 1 < planned; ++i) {
-    Eigen::VectorXd& slope = whole.slopes[static_cast<std::size_t>(i)];
-    if (slope.size() == 0) slope = careful_slope(robot, whole, i);
-  }
-  return part_of(MotionCurve(robot, whole), cycle.executed, last);
-}
-
-std::string first_refusal(const CheckReport& report) {
-  for (const Violation& v : report.violations) {
-    if (v.violated) return violation_text(v);
-  }
-  return violation_text(report.worst());
 }
 
 }  // namespace
@@ -94,7 +54,7 @@ CrossingResult run_crossing(const Scenario& scenario, const Crossing& crossing,
   truth.obstacles = known.obstacles;
   judging.world = std::make_shared<const WorldSnapshot>(truth);
   const Judge judge(judging.robot, judging.world);
-  const CheckOptions check = window_options(*task);
+  JudgedWindows windows(graph, judge, task->check, options.every);
 
   CrossingResult result;
   WalkOptions walk = walk_options_for(plan_of(graph));
@@ -109,20 +69,10 @@ CrossingResult run_crossing(const Scenario& scenario, const Crossing& crossing,
     planned = motion_of(*waited.graph, plan_of(*waited.graph));
     return std::move(waited.graph);
   };
-  int cycles = 0;
-  walk.on_cycle = [&](const CycleReport& cycle) {
-    if (cycles++ % options.every != 0) return;
-    const CheckReport judged = judge.check(window_of(graph, plan_of(graph), cycle), check);
-    ++result.windows;
-    result.called_feasible += cycle.success() ? 1 : 0;
-    result.judged_feasible += judged.feasible ? 1 : 0;
-    result.agreed_feasible += cycle.success() && judged.feasible ? 1 : 0;
-    if (!cycle.success() || judged.feasible) return;
-    ++result.wrongly_feasible;
-    if (result.refused.empty()) result.refused = first_refusal(judged);
-  };
+  walk.on_cycle = [&](const CycleReport& cycle) { windows.look(cycle); };
   const WalkReport report = walk_plan(
       graph, [&seen](int executed) { return executed == 0 ? seen : nullptr; }, walk);
+  static_cast<WindowCounts&>(result) = windows.counts();
   const Plan walked = plan_of(graph);
   judging.incomplete = walked.incomplete;
   const bool feasible = judged(graph, walked, judging).feasible;

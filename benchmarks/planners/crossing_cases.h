@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "judged_windows.h"
+
 namespace locograph {
 
 /// A cylinder of a person's size that walks along y at 0.5 m/s.
@@ -27,13 +29,7 @@ struct Crossing {
 /// Places along the drive, delays and sides, in turn.
 std::vector<Crossing> crossings(int count);
 
-struct CrossingResult {
-  int windows = 0;              ///< judged
-  int called_feasible = 0;      ///< by the planner
-  int judged_feasible = 0;      ///< by the judge
-  int agreed_feasible = 0;      ///< by both
-  int wrongly_feasible = 0;     ///< by the planner alone
-  std::string refused;          ///< what the judge said of the first window wrongly called feasible
+struct CrossingResult : WindowCounts {
   bool arrived = false;         ///< and all of the motion is feasible for the judge
   bool stopped_safely = false;  ///< it is feasible, but does not arrive
   int waits = 0;

@@ -1,6 +1,7 @@
 #include <locograph/planners/offline/motion/motion_loads.h>
 #include <locograph/planners/online/continuation.h>
 #include <locograph/planners/plan/plan.h>
+#include <locograph/robots/rolling_ball.h>
 
 #include <algorithm>
 #include <set>
@@ -94,7 +95,9 @@ class Continuation {
     const double duration_s = loads_.append(dwell, motion);
     begin_s_ = dwell.begin_s + duration_s;
     const int end = static_cast<int>(motion.configurations.size());
-    if (!whole_.segments.empty() && whole_.segments.back().last == last) {
+    // A robot that stopped where contacts change stands in what comes after.
+    if (!whole_.segments.empty() && whole_.segments.back().last == last &&
+        whole_.segments.back().stance == stands_in_) {
       whole_.segments.back().last = end;
       whole_.segments.back().duration_s += duration_s;
       return;
@@ -153,6 +156,23 @@ MotionPlan continued(const Task& task, Motion executed, const std::vector<PlanSe
 
 int last_configuration(const Graph& graph) {
   return static_cast<int>(plan_of(graph).slots.size()) - 1;
+}
+
+int held_balls_since(const Plan& plan, int configuration) {
+  const auto& stance_from = plan.stance_from;
+  const StanceParameter& here = *stance_from[static_cast<std::size_t>(configuration)];
+  int since = configuration;
+  for (std::size_t k = 0; k < here.contacts.size(); ++k) {
+    if (!is_ball(here.contacts[k]->contact.effector)) continue;
+    int first = configuration;
+    while (first > 0) {
+      const auto& held = stance_from[static_cast<std::size_t>(first) - 1]->contact_numbers;
+      if (std::ranges::find(held, here.contact_numbers[k]) == held.end()) break;
+      --first;
+    }
+    since = std::min(since, first);
+  }
+  return since;
 }
 
 CheckReport judged_from(int configuration, int last, const Graph& graph, const Judge& judge,

@@ -22,7 +22,11 @@ MotionPlan continued(const Task& task, Motion executed, const std::vector<PlanSe
 
 int last_configuration(const Graph& graph);
 
-/// What the judge says of a plan from where it went on: contacts that are held have rolled before.
+/// The configuration from which all balls that are held at another one are held: how much their
+/// skins slip is counted from there.
+int held_balls_since(const Plan& plan, int configuration);
+
+/// What the judge says of a plan from one of its configurations on.
 CheckReport judged_from(int configuration, int last, const Graph& graph, const Judge& judge,
                         CheckOptions options);
 

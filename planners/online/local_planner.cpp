@@ -41,8 +41,10 @@ LocalPlanner::LocalPlanner(Graph& graph, const LocalPlannerOptions& options)
   solver_.compile(first, false);
   solver_.load_state();
   solver_.prepare();
-  // Twice, as a window that slides is: what is taken over has its memory, too.
-  for (int times = 0; times < 2; ++times) {
+  // As a window that slides is, some times over: what is taken over has its memory, too.
+  constexpr int kTimes = 4;
+  for (int times = 0; times < kTimes; ++times) {
+    first.move_to(plan_.size() > 2 ? times % 2 : 0);
     solver_.compile(first, true);
     solver_.load_state();
     solver_.quality();
@@ -128,6 +130,7 @@ CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
   const bool new_world = take_shown();
   const Eigen::VectorXd measured = take_measured();
   const bool moved = changed_ || answer_.executed != executed || measured.size() > 0;
+  const bool moved_before = std::exchange(moved_, moved);
   if (phase_ == Phase::kOver && !moved && !new_world && !tries_again()) {
     report = answer_;
     report.detour = report.deadline_missed = false;
@@ -139,7 +142,8 @@ CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
   if (moved || new_world) begin(report, moved, measured);
   report.window = window_.steps();
   report.statistics.constraints = static_cast<int>(solver_.problem().constraints().size());
-  const int cut_short_after = improve(report, termination);
+  const int cut_short_after = moved && !moved_before ? improve_after_move(report, termination)
+                                                     : improve(report, termination);
   hand_out_best();
   describe_best(report);
   const auto end = ended_as(termination, cut_short_after);
@@ -253,11 +257,21 @@ void LocalPlanner::see_new_world() {
   }
 }
 
+/// Where other cycles do not move the window, moving it was the first step of this one, unless the
+/// next configuration needs more.
+int LocalPlanner::improve_after_move(CycleReport& report, const Termination& termination) {
+  Termination left = termination;
+  if (left.max_iterations == 0 || incumbent_.best().quality.feasible_steps < 1) {
+    return improve(report, termination);
+  }
+  if (--left.max_iterations > 0) return improve(report, left);
+  rest_if_as_planned();
+  return phase_ == Phase::kOver ? 0 : 1;
+}
+
 /// Step by step. Returns after how many of them it was cut short; 0: it was not.
 int LocalPlanner::improve(CycleReport& report, const Termination& termination) {
-  if (phase_ == Phase::kOptimise && !solver_.running() && is_good() && is_as_planned()) {
-    phase_ = Phase::kOver;
-  }
+  rest_if_as_planned();
   int steps = 0;
   for (; phase_ != Phase::kOver; ++steps) {
     if (steps > 0 && termination.ended(steps)) {
@@ -267,6 +281,12 @@ int LocalPlanner::improve(CycleReport& report, const Termination& termination) {
     if (!advance(report, termination)) break;
   }
   return phase_ == Phase::kPropose || phase_ == Phase::kFallBack ? steps + 1 : 0;
+}
+
+void LocalPlanner::rest_if_as_planned() {
+  if (phase_ == Phase::kOptimise && !solver_.running() && is_good() && is_as_planned()) {
+    phase_ = Phase::kOver;
+  }
 }
 
 /// One step of the search. False where the cycle may rest: its window is feasible, and the last

@@ -125,6 +125,8 @@ class LocalPlanner {
   bool move_window(int executed, const Eigen::VectorXd& measured);
   void see_new_world();
   int improve(CycleReport& report, const Termination& termination);
+  int improve_after_move(CycleReport& report, const Termination& termination);
+  void rest_if_as_planned();
   bool advance(CycleReport& report, const Termination& termination);
   bool run(CycleReport& report, const Termination& termination);
   void end_run();
@@ -157,6 +159,7 @@ class LocalPlanner {
   bool left_over_ = false;  ///< the search began with a window that the one before had left
   bool better_ = false;     ///< the incumbent, than what was handed out
   bool changed_ = false;    ///< see plan_changed()
+  bool moved_ = false;      ///< the window, in the last cycle
   int revision_ = 0;        ///< of the plan that was compiled last
   std::vector<double> handed_out_, least_;  ///< see see_new_world()
   CycleReport answer_;                      ///< of the last cycle

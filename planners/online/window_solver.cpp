@@ -18,8 +18,8 @@ namespace {
 
 /// Constraints weigh up to 1e5 times as much as tracking: λ must begin far below either.
 constexpr double kLeastLambda = 1e-10;
-/// Of an iteration that has to be short, and of iterations in a row.
-constexpr int kFewRefusals = 2, kMostRefused = 5;
+/// Of iterations in a row.
+constexpr int kMostRefused = 8;
 
 OptimiserOptions optimiser_options(const WindowSolverOptions& options) {
   OptimiserOptions result;
@@ -76,6 +76,7 @@ WindowSolver::WindowSolver(const WindowSolverOptions& options)
 WindowSolver::~WindowSolver() = default;
 
 void WindowSolver::compile(const Window& window, bool slid) {
+  quality_known_ = false;
   goes_on_ = run_ == RunKind::kRaising && !begins_;
   if (raised_) keep_multipliers();
   end_run();
@@ -94,22 +95,26 @@ void WindowSolver::compile(const Window& window, bool slid) {
 }
 
 void WindowSolver::rebind(const Bindings& bindings) {
+  quality_known_ = false;
   workspace_.bind(bindings);
   rebound_ = running();
 }
 
 void WindowSolver::load_state() {
   end_run();
+  quality_known_ = false;
   workspace_.load_state();
 }
 
 void WindowSolver::set_state(const std::vector<double>& state) {
   if (state == workspace_.state()) return;
   end_run();
+  quality_known_ = false;
   workspace_.set_state(state);
 }
 
 void WindowSolver::prepare() {
+  quality_known_ = false;
   optimiser_.start(workspace_, *linear_solver_);
   optimiser_.iterate();
 }
@@ -151,8 +156,11 @@ void WindowSolver::keep_multipliers() {
 }
 
 WindowQuality WindowSolver::quality() {
+  if (quality_known_) return quality_;
   const double cost = workspace_.return_to_state().robust;
-  return window_quality(reader_, step_of_, steps_, cost);
+  quality_ = window_quality(reader_, step_of_, steps_, cost);
+  quality_known_ = true;
+  return quality_;
 }
 
 WindowQuality WindowSolver::quality_of(const std::vector<double>& state) {
@@ -175,7 +183,7 @@ void WindowSolver::begin_raising() {
 }
 
 void WindowSolver::end_run() {
-  if (run_ == RunKind::kPlain && !begins_) learn(true);
+  if (run_ == RunKind::kPlain && !begins_) learn();
   run_ = RunKind::kNone;
   begins_ = rebound_ = false;
 }
@@ -183,6 +191,7 @@ void WindowSolver::end_run() {
 void WindowSolver::begin_run() {
   begins_ = rebound_ = false;
   if (run_ == RunKind::kRaising) {
+    quality_known_ = false;
     if (!std::exchange(goes_on_, false)) {
       raising_.start(workspace_, *linear_solver_, true, true);
       return;
@@ -199,46 +208,51 @@ void WindowSolver::begin_run() {
 
 /// The next run begins near where this one did, or goes on from where it is: a step that was
 /// refused here would be refused there.
-void WindowSolver::learn(bool from_first) {
+void WindowSolver::learn() {
   constexpr double kChange = 10.0;
   const std::vector<IterationStatistics>& done = optimiser_.result().statistics;
   if (done.empty()) return;
-  const IterationStatistics& one = from_first ? done.front() : done.back();
   diagonal_.resize(workspace_.step().size());
   workspace_.diagonal(diagonal_);
   const double unit = *std::max_element(diagonal_.begin(), diagonal_.end());
-  if (one.step_norm == 0.0) {
-    lambda() = std::max(kChange * one.lambda / unit, optimiser_.options().refused_lambda);
-  } else {
-    lambda() = std::max(kLeastLambda, one.refusals > 0 ? one.lambda / unit : lambda() / kChange);
+  const auto taken = std::ranges::find_if(
+      done, [](const IterationStatistics& one) { return one.step_norm > 0.0; });
+  if (taken == done.end()) {
+    lambda() = std::max(kChange * done.back().lambda / unit, optimiser_.options().refused_lambda);
+    return;
   }
+  const bool refused = taken != done.begin() || taken->refusals > 0;
+  lambda() = std::max(kLeastLambda, refused ? taken->lambda / unit : lambda() / kChange);
 }
 
 bool WindowSolver::gained_little() const { return gain_ <= options_.feasible_gain; }
 
-/// One that has to be short and takes no step leaves it to the next one, with more damping.
+/// One that has to be short tries one step, or two where nothing has to be linearised; the next one
+/// goes on where none was taken.
 bool WindowSolver::step_plain(const Termination& termination) {
   using Reason = OptimiserResult::Reason;
   const bool is_short = termination.max_iterations > 0;
   OptimiserOptions& options = optimiser_.options();
-  options.max_refusals = is_short ? kFewRefusals : OptimiserOptions().max_refusals;
+  const int few = optimiser_.is_linearised() ? 2 : 1;
+  options.max_refusals = is_short ? few : OptimiserOptions().max_refusals;
   options.deadline = deadline_of_step(termination);
   const int before = optimiser_.result().iterations;
   const bool more = optimiser_.iterate();
   const OptimiserResult& now = optimiser_.result();
   if (more || now.iterations > before) {
     refused_ = 0;
+    quality_known_ = false;
     return more;
   }
   const bool refused = now.reason == Reason::kDeadline || now.reason == Reason::kSingular ||
                        (is_short && now.reason == Reason::kNoProgress);
   if (!refused || ++refused_ >= kMostRefused) return false;
-  learn(false);
-  begins_ = true;
+  optimiser_.go_on_refused();
   return true;
 }
 
 bool WindowSolver::step_raising(const Termination& termination, WindowStatistics& statistics) {
+  quality_known_ = false;
   raising_.inner_options().deadline = deadline_of_step(termination);
   const bool more = raising_.iterate();
   statistics.rounds = raising_.rounds();
@@ -260,7 +274,7 @@ bool WindowSolver::step(const Termination& termination, WindowStatistics& statis
   const auto tried = [&] {
     return raises ? accepted() : static_cast<int>(optimiser_.result().statistics.size());
   };
-  const double before = workspace_.return_to_state().robust;
+  const double before = (raises ? raising_.inner() : optimiser_.result()).final.robust;
   const int accepted_before = accepted(), tried_before = tried();
   const bool more = raises ? step_raising(termination, statistics) : step_plain(termination);
   const OptimiserResult& now = raises ? raising_.inner() : optimiser_.result();

@@ -70,7 +70,8 @@ class WindowSolver {
   void begin_raising();
   bool running() const { return run_ != RunKind::kNone; }
   /// One iteration of the run. With a termination that counts iterations one whose steps are
-  /// refused tries few of them; the next one goes on with what it learnt. False: the run is over.
+  /// refused tries one or two of them; the next one goes on with the linearisation and the damping.
+  /// False: the run is over.
   bool step(const Termination& termination, WindowStatistics& statistics);
   void end_run();
   /// By the last iteration. After one that took no step nobody knows yet how much there is to gain.
@@ -94,7 +95,7 @@ class WindowSolver {
   void begin_run();
   bool step_plain(const Termination& termination);
   bool step_raising(const Termination& termination, WindowStatistics& statistics);
-  void learn(bool from_first);
+  void learn();
   double& lambda() { return start_ == Start::kIncumbent ? incumbent_lambda_ : candidate_lambda_; }
 
   WindowSolverOptions options_;
@@ -109,10 +110,12 @@ class WindowSolver {
   double incumbent_lambda_, candidate_lambda_;
   RunKind run_ = RunKind::kNone;
   Start start_ = Start::kIncumbent;
-  bool begins_ = false;                  ///< the run, with the next step
-  bool goes_on_ = false;                 ///< raising, in a window that has moved
-  bool rebound_ = false;                 ///< since the last step of the run
-  int refused_ = 0;                      ///< iterations in a row that took no step
+  bool begins_ = false;    ///< the run, with the next step
+  bool goes_on_ = false;   ///< raising, in a window that has moved
+  bool rebound_ = false;   ///< since the last step of the run
+  int refused_ = 0;        ///< iterations in a row that took no step
+  WindowQuality quality_;  ///< of the state
+  bool quality_known_ = false;
   bool raised_ = false;                  ///< since compile()
   double gain_ = 1.0;                    ///< of the last iteration, as a fraction of the cost
   std::vector<int> step_of_;             ///< of the constraints, see window_quality()

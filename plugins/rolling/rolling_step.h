@@ -35,10 +35,9 @@ struct RollingStep {
   Eigen::Vector3d from, to;  ///< the axles' parts in the plane
   Eigen::Vector3d axle;      ///< midway between them, unit
   double length;             ///< of the sum of `from` and `to`; 0: opposite, they have no middle
-  double turned;             ///< the angle between them about the normal
+  double sine, cosine;       ///< of the angle between them about the normal, times their lengths
   double lateral;            ///< moved · axle
   double way;                ///< moved · (axle × normal), along the mean heading
-  double beyond_quarter_turn;
 
   RollingStep(const WheelPose& a, const WheelPose& b, const Eigen::Vector3d& normal)
       : moved(rolling_part(b.centre - a.centre, normal)),
@@ -49,10 +48,20 @@ struct RollingStep {
     constexpr double kOpposite = 1e-6;
     if (length < kOpposite) length = 0.0;
     axle = length > 0.0 ? Eigen::Vector3d(sum / length) : normal.cross(from).stableNormalized();
-    turned = std::atan2(normal.dot(from.cross(to)), from.dot(to));
+    sine = normal.dot(from.cross(to));
+    cosine = from.dot(to);
     lateral = moved.dot(axle);
     way = moved.dot(axle.cross(normal));
-    beyond_quarter_turn = std::max(0.0, std::abs(turned) - 0.5 * std::numbers::pi);
+  }
+
+  /// The angle between the axles about the normal.
+  double turned() const { return std::atan2(sine, cosine); }
+  /// Its size is no larger: an angle is less than its tangent.
+  double turned_at_most() const {
+    return cosine > 0.0 ? std::abs(sine) / cosine : std::numbers::pi;
+  }
+  double beyond_quarter_turn() const {
+    return cosine >= 0.0 ? 0.0 : std::max(0.0, std::abs(turned()) - 0.5 * std::numbers::pi);
   }
 
   /// The derivative of v · axle by either axle.

@@ -300,6 +300,32 @@ TEST(Optimiser, GivesUpWhenNoStepLowersTheCost) {
   }
 }
 
+TEST(Optimiser, GoesOnAfterRefusalsAsIfItHadNotStopped) {
+  Graph at_once = arctan_graph(), in_parts = arctan_graph();
+  OptimiserOptions options;
+  run(at_once, options);
+  options.max_refusals = 1;
+  Problem problem;
+  problem.compile(in_parts);
+  Workspace workspace;
+  workspace.allocate(problem);
+  workspace.load_state();
+  const auto solver = make_linear_solver("auto");
+  Optimiser optimiser(options);
+  optimiser.start(workspace, *solver);
+  int refused = 0;
+  for (int most = 0; most < 1000 && !optimiser.result().converged; ++most) {
+    if (optimiser.iterate() || optimiser.result().reason != Reason::kNoProgress) continue;
+    ++refused;
+    optimiser.go_on_refused();
+    EXPECT_TRUE(optimiser.is_linearised());
+  }
+  EXPECT_GT(refused, 0);
+  workspace.store_state();
+  EXPECT_EQ(in_parts.vertex(VertexId<VertexXY>{0}).state,
+            at_once.vertex(VertexId<VertexXY>{0}).state);
+}
+
 TEST(Optimiser, MarquardtsScaledDampingReachesTheSameOptimum) {
   Graph plain = helix_3d(20), scaled = helix_3d(20);
   OptimiserOptions options;

@@ -5,6 +5,7 @@
 #include <locograph/common/uniform.h>
 #include <locograph/core/graph_file.h>
 #include <locograph/core/optimiser.h>
+#include <locograph/core/violations.h>
 #include <locograph/planners/offline/motion/motion_graph.h>
 #include <locograph/planners/plan/carried_wrenches.h>
 #include <locograph/planners/plan/plan.h>
@@ -130,6 +131,21 @@ TEST_F(MotionGraph, BothStancesHoldWhereTheyChange) {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     EXPECT_EQ(contacts[i], i <= kChange ? all : all - 1) << i;
   }
+}
+
+TEST_F(MotionGraph, ABallThatSlipsInThePlanMaySlipByAsMuch) {
+  const auto slips = [&](double by_m) {
+    MotionPlan moved = plan;
+    moved.motion.configurations[3].head<2>() += by_m * Eigen::Vector2d::Ones();
+    Graph graph =
+        read_graph_text(write_graph_text(motion_graph(task, moved)), "moved", ".", types());
+    const std::vector<ConstraintViolation> off = violations(graph);
+    return std::ranges::count(off, "EDGE_BALL_ROLLING", &ConstraintViolation::tag);
+  };
+  EXPECT_EQ(slips(0.0), 0);
+  EXPECT_EQ(slips(3e-5), 0);
+  EXPECT_EQ(slips(2e-4), 0) << "the judge lets it";
+  EXPECT_GT(slips(2e-3), 0) << "he does not";
 }
 
 TEST_F(MotionGraph, WrenchesBalanceEachConfigurationWhereTheyAreKnown) {

@@ -137,17 +137,32 @@ class TreeSearch {
   }
 
  private:
+  /// Branches are looked at in steps: what is found may meet something in between, and other trees
+  /// may not.
   bool search(bool shortened, SegmentPath& path) {
-    SeededTree<og::RRTConnect> trees(information_, options_.seed + 1);
+    constexpr std::uint64_t kTrees = 3, kOtherSeeds = 7919;
+    for (std::uint64_t k = 0; k < kTrees; ++k) {
+      if (k > 0 && (states_ > options_.max_states || options_.termination.ended(states_))) break;
+      bool found = false;
+      if (grow_trees(options_.seed + k * kOtherSeeds, shortened, path, found)) return true;
+      if (!found) break;
+    }
+    return false;
+  }
+
+  /// found: a way, whether or not it holds in between.
+  bool grow_trees(std::uint64_t seed, bool shortened, SegmentPath& path, bool& found) {
+    SeededTree<og::RRTConnect> trees(information_, seed + 1);
     const ob::ProblemDefinitionPtr first = begin(trees);
     end(trees, options_.max_states);
     if (!first->hasExactSolution()) {
       path.reason = "no way among " + std::to_string(states_) + " states";
       return false;
     }
+    found = true;
     auto* way = first->getSolutionPath()->as<og::PathGeometric>();
     path.first_length = way->length();
-    ShorteningTree shortening(information_, options_.seed + 2);
+    ShorteningTree shortening(information_, seed + 2);
     const ob::ProblemDefinitionPtr second = begin(shortening);
     if (shortened) {
       way_.clear();

@@ -267,7 +267,8 @@ Steps search_in_steps(LocalPlanner& planner, int executed) {
     const CycleReport report = planner.cycle(executed, {.max_iterations = 1});
     steps.iterations = std::max(steps.iterations, report.statistics.iterations);
     steps.success = report.success();
-    if (report.statistics.optimise_s == 0.0 && !report.detour) break;
+    const WindowStatistics& did = report.statistics;
+    if (did.compile_s + did.optimise_s == 0.0 && !report.detour) break;
   }
   return steps;
 }

@@ -165,6 +165,24 @@ TEST_F(WalkOnLegs, IsPlannedOnFromWhereItHasStopped) {
   }
 }
 
+TEST_F(WalkOnLegs, IsPlannedOnFromWhereContactsChange) {
+  const std::vector<int>& stance_from = planned().stance_from;
+  std::size_t at = 1;
+  while (stance_from[at] == stance_from[at - 1] || !planned().slopes[at].isZero(0.0)) ++at;
+  Graph stopped = motion_graph(*task_, *plan_);
+  cut_plan(stopped, plan_of(stopped), static_cast<int>(at));
+  ASSERT_EQ(plan_of(stopped).segments.back().last, static_cast<int>(at));
+  const ResumedPlan resumed = resume_plan(stopped, *task_, judging_of(task_).world, {.seed = 1});
+  ASSERT_TRUE(resumed.success()) << resumed.reason;
+  const Plan plan = plan_of(*resumed.graph);
+  for (const PlanSegment& segment : plan.segments) {
+    for (int i = segment.first; i < segment.last; ++i) {
+      EXPECT_EQ(plan.stance_from[static_cast<std::size_t>(i)],
+                plan.stance_from[static_cast<std::size_t>(segment.first)]);
+    }
+  }
+}
+
 TEST_F(WalkOnLegs, WaitsUntilTheWayIsFree) {
   Obstacle ball = in_the_way();
   ball.vanishes_s = ball.appears_s + 6.0;
