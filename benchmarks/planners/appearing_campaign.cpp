@@ -189,6 +189,18 @@ class Campaign {
         return std::move(resumed.graph);
       };
     }
+    // Of windows that were optimised: what the judge says of those that are called feasible.
+    int changed = 0, wrongly = 0;
+    std::string refused;
+    options.on_cycle = [&](const CycleReport& cycle) {
+      if (!cycle.success() || cycle.statistics.iterations == 0) return;
+      ++changed;
+      const CheckReport check = options.verify(
+          motion_of(graph, plan_of(graph), cycle.executed, cycle.executed + cycle.window));
+      if (check.feasible) return;
+      ++wrongly;
+      if (refused.empty()) refused = violation_text(check.worst());
+    };
     bool shown = false;
     const auto world_at = [&](int executed) -> std::shared_ptr<const WorldSnapshot> {
       if (shown || motion_.time_s[static_cast<std::size_t>(executed)] < one.seen_s) return nullptr;
@@ -230,6 +242,9 @@ class Campaign {
         {"resumed_s", resumed_s},
         {"not_resumed", not_resumed},
         {"iterations", iterations},
+        {"windows_changed", changed},
+        {"windows_wrongly_feasible", wrongly},
+        {"refused", refused},
         {"seconds", seconds},
         {"cycle_ms", {{"p50", percentile(0.5)}, {"p99", percentile(0.99)}, {"max", times.back()}}}};
     for (const Violation* violation : check.violated()) {

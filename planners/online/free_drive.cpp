@@ -253,7 +253,9 @@ ResumedPlan wait_for_free_drive(const Graph& stopped, const Motion& planned, con
   const double moves_s = begin_s + steers_s + *after_s;
   const std::vector<Eigen::VectorXd>& way = rest.motion.configurations;
   if (steers_s > 0.0) add(steered, begin_s + steers_s, still);
-  const int waits = static_cast<int>(std::ceil(*after_s / (2.0 * usual_step_s(planned))));
+  constexpr double kLeastWait_s = 0.5;  // of one step
+  const double step_s = std::max(2.0 * usual_step_s(planned), kLeastWait_s);
+  const int waits = static_cast<int>(std::ceil(*after_s / step_s));
   for (int k = 1; k <= waits; ++k) {
     add(whole.configurations.back(), begin_s + steers_s + *after_s * k / waits, still);
   }

@@ -2,6 +2,7 @@
 #include <locograph/check/motion_curve.h>
 #include <locograph/common/check_option.h>
 #include <locograph/common/ranges.h>
+#include <locograph/planners/online/ball_slip.h>
 #include <locograph/planners/online/braking.h>
 #include <locograph/planners/online/changing_obstacles.h>
 #include <locograph/planners/online/heading.h>
@@ -139,6 +140,7 @@ class Walk {
     } else {
       pass_through(executed + 1);
       if (options_.verify) refused = verify(executed);
+      if (refused.empty() && !rolls(executed)) refused = slipped(executed + 1);
     }
     if (!refused.empty()) {
       braking_.restore(executed, before);  // it bears the step that is not made
@@ -194,6 +196,15 @@ class Walk {
     }
     report_.verify_s.push_back(watch.seconds());
     return check.feasible ? "" : describe(check);
+  }
+
+  /// Steps are judged with a few before them: what balls slip adds up from further back.
+  std::string slipped(int configuration) const {
+    constexpr double kShare = 0.9;  // the judge looks in between, too
+    const auto most = most_slipped(planner_.online_plan(), configuration, kShare * limits::kHeld_m);
+    if (!most) return "";
+    return most->ball + " would have slipped by " + std::to_string(1e3 * most->slip_m) +
+           " mm since it touched down";
   }
 
   /// Whether the robot goes on as the window is, before any search. Since it was off its plan it

@@ -4,6 +4,7 @@
 #include <locograph/planners/offline/motion/motion_graph.h>
 #include <locograph/planners/offline/motion/motion_planner.h>
 #include <locograph/planners/offline/stance/stance_graph.h>
+#include <locograph/planners/online/ball_slip.h>
 #include <locograph/planners/online/free_way.h>
 #include <locograph/planners/online/resumed_plan.h>
 #include <locograph/planners/online/walk_plan.h>
@@ -181,6 +182,33 @@ TEST_F(WalkOnLegs, IsPlannedOnFromWhereContactsChange) {
                 plan.stance_from[static_cast<std::size_t>(segment.first)]);
     }
   }
+}
+
+TEST_F(WalkOnLegs, WhatBallsSlipAddsUpSinceTheyTouchedDown) {
+  constexpr int kSteps = 20;
+  constexpr double kSlip_m = 1e-4, kMost_m = 9e-4;
+  OnlinePlan online(graph_);
+  const auto& stance_from = online.plan().stance_from;
+  const auto has_ball = [&](int i) {
+    return std::ranges::any_of(
+        stance_from[static_cast<std::size_t>(i)]->contacts,
+        [](const auto& contact) { return is_ball(contact->contact.effector); });
+  };
+  int at = 0;
+  while (stance_from[static_cast<std::size_t>(at)] !=
+             stance_from[static_cast<std::size_t>(at + kSteps)] ||
+         !has_ball(at)) {
+    ++at;
+  }
+  EXPECT_FALSE(most_slipped(online, at + kSteps, 0.0)) << "as planned, whatever it slips";
+  for (int k = 1; k <= kSteps; ++k) {
+    online.configuration(at + k).head<3>() += k * kSlip_m * Eigen::Vector3d::Ones();
+  }
+  EXPECT_FALSE(most_slipped(online, at + 1, kMost_m));
+  const auto slipped = most_slipped(online, at + kSteps, kMost_m);
+  ASSERT_TRUE(slipped.has_value());
+  EXPECT_NEAR(slipped->slip_m, std::sqrt(2.0) * kSteps * kSlip_m, 1e-3);
+  EXPECT_FALSE(slipped->ball.empty());
 }
 
 TEST_F(WalkOnLegs, WaitsUntilTheWayIsFree) {
