@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace locograph {
 namespace {
@@ -174,6 +173,8 @@ bool Optimiser::finish_refused(Reason converged, double promised) {
 void Optimiser::go_on_refused() {
   result_.reason = Reason::kRunning;
   result_.converged = false;
+  result_.promised_decrease = 0.0;
+  result_.singular_vertex = -1;
 }
 
 void Optimiser::costs_changed() {
@@ -189,7 +190,11 @@ bool Optimiser::iterate() {
   if (options_.deadline.passed()) return finish(Reason::kDeadline);
   IterationStatistics now;
   Stopwatch watch;
-  if (!std::exchange(linearised_, true)) workspace_->linearise();
+  if (!linearised_) {
+    workspace_->linearise();
+    linearised_ = true;
+    promised_ = 0.0;
+  }
   now.time_linearise = watch.seconds();
   map(negative_gradient_) = -map(workspace_->gradient());
   if (map(negative_gradient_).lpNorm<Eigen::Infinity>() <= options_.gradient_tolerance) {
@@ -320,7 +325,6 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
   }
   update_scaling();
   bool factorised = false;
-  double promised = 0.0;
   for (; now.refusals < options_.max_refusals; ++now.refusals) {
     now.lambda = lambda_;
     Vector damping = map(workspace_->damping());
@@ -332,7 +336,7 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
     if (solve(now)) {
       const Vector step = map(workspace_->step());
       if (norm(step) <= options_.step_tolerance * (state_norm() + options_.step_tolerance)) {
-        return finish_refused(Reason::kStep, promised);
+        return finish_refused(Reason::kStep, promised_);
       }
       const Cost cost = evaluate_trial(now);
       // F(h) ≈ F + 2gᵀh + hᵀHh, and (H + D)h = −g: the predicted decrease is hᵀ(Dh − g).
@@ -340,7 +344,7 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
       const double predicted = sum(step.size(), [&](Eigen::Index i) {
         return step[i] * (damping[i] * step[i] + descent[i]);
       });
-      if (!factorised) promised = predicted;
+      if (promised_ == 0.0) promised_ = predicted;
       factorised = true;
       now.gain_ratio = reference_.quality(cost.robust, predicted);
       if (std::isfinite(cost.robust) && now.gain_ratio > 0.0) {
@@ -360,7 +364,7 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
       }
       // At the bottom of the valley rounding decides; the model says there is nothing to gain.
       if (predicted <= options_.gain * cost_.robust * 1e-3) {
-        return finish_refused(Reason::kGain, promised);
+        return finish_refused(Reason::kGain, promised_);
       }
       lambda_fall_ = kLambdaFall;
       Cost shorter = cost;
@@ -379,7 +383,7 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
       lambda_ = std::max(lambda_, options_.refused_lambda * lambda_unit_);
     }
     lambda_growth_ *= 2.0;
-    if (!refused_ && options_.follow_diagonal && promised > kMatters * cost_.robust) {
+    if (!refused_ && options_.follow_diagonal && promised_ > kMatters * cost_.robust) {
       refused_ = true;
       if (result_.iterations > 0) return begin_again();
       reference_.start(cost_.robust, options_.nonmonotonic_steps);
@@ -387,7 +391,7 @@ bool Optimiser::iterate_levenberg_marquardt(IterationStatistics& now) {
     if (options_.deadline.passed()) return finish(Reason::kDeadline);
   }
   if (!factorised) return finish(Reason::kSingular);
-  return finish_refused(Reason::kNoProgress, promised);
+  return finish_refused(Reason::kNoProgress, promised_);
 }
 
 bool Optimiser::iterate_dogleg(IterationStatistics& now) {

@@ -177,6 +177,7 @@ class Optimiser {
   double lambda_fall_ = 0.0, radius_ = 0.0;
   bool refused_ = false;     ///< a step, of this run
   bool linearised_ = false;  ///< the state, see go_on_refused()
+  double promised_ = 0.0;    ///< by the first step from there
   std::vector<double> diagonal_, scaling_, newton_step_, negative_gradient_;
   std::vector<double> first_diagonal_, first_state_;
   std::vector<double> best_state_;  ///< where the cost has risen since

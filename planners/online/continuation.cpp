@@ -182,4 +182,17 @@ CheckReport judged_from(int configuration, int last, const Graph& graph, const J
   return judge.check(motion_of(graph, plan_of(graph), configuration, last), options);
 }
 
+CheckReport judged_on(const Plan& stopped, const Graph& graph, const Judge& judge,
+                      const Task& task) {
+  const int at = static_cast<int>(stopped.slots.size()) - 1, last = last_configuration(graph);
+  const CheckReport report = judged_from(at, last, graph, judge, task.check);
+  const int since = held_balls_since(stopped, at);
+  if (!report.feasible || since == at) return report;
+  World touchable = task.world->world();
+  touchable.map = nullptr;
+  touchable.obstacles.clear();
+  return judged_from(since, last, graph, Judge(task.robot->robot, std::move(touchable)),
+                     task.check);
+}
+
 }  // namespace locograph

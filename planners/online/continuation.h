@@ -25,6 +25,11 @@ int last_configuration(const Graph& graph);
 /// The configuration from which all balls that are held at another one are held: how much their
 /// skins slip is counted from there.
 int held_balls_since(const Plan& plan, int configuration);
+/// Of a plan that goes on from one of its configurations, what the judge says from there on and, of
+/// balls that were held before, from where they touched down, then among what may be touched alone:
+/// what was in the way was another world then. stopped: the plan as it was executed.
+CheckReport judged_on(const Plan& stopped, const Graph& graph, const Judge& judge,
+                      const Task& task);
 
 /// What the judge says of a plan from one of its configurations on.
 CheckReport judged_from(int configuration, int last, const Graph& graph, const Judge& judge,

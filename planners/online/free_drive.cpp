@@ -17,6 +17,8 @@ namespace {
 
 /// Of the base while it speeds up, at most; the way on which it is led back to its plan.
 constexpr double kAcceleration_m_s2 = 0.3, kBack_m = 1.5;
+/// Of a step while the robot speeds up.
+constexpr int kMostParts = 32;
 
 /// The wheels of a stance, kept on the ground and steered along their way.
 struct Wheels {
@@ -134,42 +136,42 @@ double usual_step_s(const Motion& planned) {
   return steps_s[steps_s.size() / 2];
 }
 
-/// Along the rest of what was planned, in its time but for the beginning, whose first step takes
-/// longer than others: in as many that do not. What moves is looked at in each step, and wheels
-/// that steer while one speeds up slip less.
+/// Along the rest of what was planned, in its time but for the beginning, as the root of the way at
+/// first. Steps that take longer there than others do are made in as many that do not: what moves
+/// is looked at in each, and wheels that steer while one speeds up slip less.
 std::optional<Rest> along_the_plan(const Robot& robot, const Motion& planned, int at,
                                    const Eigen::VectorXd& stands, Wheels& wheels, double ramp_m) {
+  constexpr double kLeast = 0.1, kRounding = 1e-3;
+  const auto share_at = [&](double gone_m) {
+    return std::clamp(std::sqrt(gone_m / ramp_m), kLeast, 1.0);
+  };
+  const auto slowed = [](double share, double after) { return 2.0 / (share + after); };
+  const double usual_s = usual_step_s(planned);
   Rest rest;
-  const auto from = static_cast<std::size_t>(at);
-  std::vector<double> planned_step_s = {0.0};
-  rest.add(planned.configurations[from]);
-  for (std::size_t i = from + 1; i < planned.configurations.size(); ++i) {
+  rest.motion.time_s = {0.0};
+  rest.add(planned.configurations[static_cast<std::size_t>(at)]);
+  double before = 0.0;
+  for (auto i = static_cast<std::size_t>(at) + 1; i < planned.configurations.size(); ++i) {
+    const Eigen::VectorXd &from = planned.configurations[i - 1], &to = planned.configurations[i];
     const double step_s = planned.time_s[i] - planned.time_s[i - 1];
-    const bool first = i == from + 1;
-    const int parts =
-        first ? std::max(1, static_cast<int>(std::round(2.0 * step_s / usual_step_s(planned)))) : 1;
+    const double way_m = (to - from).head<3>().norm(), gone_m = rest.gone_m.back();
+    const bool moves = gone_m + way_m > 0.0;
+    int parts = 1;  // the first one is the slowest
+    while (moves && before < 1.0 && way_m > 0.0 && parts < kMostParts &&
+           slowed(before, share_at(gone_m + way_m / parts)) * step_s / parts >
+               (1.0 + kRounding) * usual_s) {
+      ++parts;
+    }
     for (int part = 1; part <= parts; ++part) {
-      rest.add(between(robot, planned.configurations[i - 1], planned.configurations[i],
-                       static_cast<double>(part) / parts));
-      planned_step_s.push_back(step_s / parts);
+      rest.add(between(robot, from, to, static_cast<double>(part) / parts));
+      const double after = share_at(rest.gone_m.back());
+      rest.motion.time_s.push_back(rest.motion.time_s.back() +
+                                   (moves ? slowed(before, after) : 1.0) * step_s / parts);
+      if (moves) before = after;
     }
   }
   rest.lead_back(stands);
   if (!wheels.drive(rest.motion.configurations)) return {};
-  rest.motion.time_s = {0.0};
-  double before = 0.0;
-  for (std::size_t k = 1; k < rest.gone_m.size(); ++k) {
-    const double planned_s = planned_step_s[k];
-    if (rest.gone_m[k] == 0.0) {
-      rest.motion.time_s.push_back(rest.motion.time_s.back() + planned_s);
-      continue;
-    }
-    // As the root of the way at first.
-    constexpr double kLeast = 0.1;
-    const double share = std::clamp(std::sqrt(rest.gone_m[k] / ramp_m), kLeast, 1.0);
-    rest.motion.time_s.push_back(rest.motion.time_s.back() + 2.0 / (before + share) * planned_s);
-    before = share;
-  }
   return rest;
 }
 

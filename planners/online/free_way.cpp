@@ -256,9 +256,7 @@ ResumedPlan wait_for_free_way(const Graph& stopped, const Motion& planned,
     if (plan.world) graph.replace_parameter(kWorldNumber, plan.world);
     const int last = last_configuration(graph), slow_to = last - left + slow;
     CheckReport report = judged_from(at, std::min(last, slow_to + 2), graph, judge, task.check);
-    if (report.feasible) {
-      report = judged_from(held_balls_since(plan, at), last, graph, judge, task.check);
-    }
+    if (report.feasible) report = judged_on(plan, graph, judge, task);
     if (report.feasible) {
       waited.graph = std::move(graph);
       waited.waits_s = *after_s;

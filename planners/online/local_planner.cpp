@@ -11,6 +11,8 @@ namespace {
 
 /// Of a proposal's search, see Proposal::search(): some 0.2 ms.
 constexpr int kSlice = 40;
+/// Cycles that do not move the window, before one that does: as many as are counted.
+constexpr int kRested = 3;
 
 Horizon horizon_of(const LocalPlannerOptions& options) {
   return {options.horizon, options.horizon_s};
@@ -130,7 +132,7 @@ CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
   const bool new_world = take_shown();
   const Eigen::VectorXd measured = take_measured();
   const bool moved = changed_ || answer_.executed != executed || measured.size() > 0;
-  const bool moved_before = std::exchange(moved_, moved);
+  const int rested = std::exchange(rested_, moved ? 0 : std::min(rested_ + 1, kRested));
   if (phase_ == Phase::kOver && !moved && !new_world && !tries_again()) {
     report = answer_;
     report.detour = report.deadline_missed = false;
@@ -142,8 +144,8 @@ CycleReport LocalPlanner::cycle(int executed, const Termination& termination) {
   if (moved || new_world) begin(report, moved, measured);
   report.window = window_.steps();
   report.statistics.constraints = static_cast<int>(solver_.problem().constraints().size());
-  const int cut_short_after = moved && !moved_before ? improve_after_move(report, termination)
-                                                     : improve(report, termination);
+  const int cut_short_after = moved && rested >= kRested ? improve_after_move(report, termination)
+                                                         : improve(report, termination);
   hand_out_best();
   describe_best(report);
   const auto end = ended_as(termination, cut_short_after);
@@ -257,14 +259,17 @@ void LocalPlanner::see_new_world() {
   }
 }
 
-/// Where other cycles do not move the window, moving it was the first step of this one, unless the
-/// next configuration needs more.
+/// Where most cycles do not move the window, moving it is the first step of one that does, unless
+/// the next configuration needs more.
 int LocalPlanner::improve_after_move(CycleReport& report, const Termination& termination) {
   Termination left = termination;
   if (left.max_iterations == 0 || incumbent_.best().quality.feasible_steps < 1) {
     return improve(report, termination);
   }
-  if (--left.max_iterations > 0) return improve(report, left);
+  if (--left.max_iterations > 0) {
+    const int cut_short_after = improve(report, left);
+    return cut_short_after > 0 ? cut_short_after + 1 : 0;
+  }
   rest_if_as_planned();
   return phase_ == Phase::kOver ? 0 : 1;
 }

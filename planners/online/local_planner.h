@@ -18,7 +18,8 @@
 ///   3. raise the constraints that are violated after that
 ///   4. give each of LocalPlannerOptions::fallbacks a try of its own
 ///
-/// One iteration of the optimiser is a step, or a slice of a proposal. A termination that counts
+/// One iteration of the optimiser is a step, or a slice of a proposal, or that the window is moved
+/// where most cycles do not move it. A termination that counts
 /// iterations ends a cycle after so many steps, whatever they were, and the next cycle goes on from
 /// there, in a world that is new as well: at 50 cycles of one step for each second of the plan no
 /// cycle takes longer than its longest step. Without a termination a cycle goes through to the end.
@@ -159,7 +160,7 @@ class LocalPlanner {
   bool left_over_ = false;  ///< the search began with a window that the one before had left
   bool better_ = false;     ///< the incumbent, than what was handed out
   bool changed_ = false;    ///< see plan_changed()
-  bool moved_ = false;      ///< the window, in the last cycle
+  int rested_ = 0;          ///< cycles since the window was moved
   int revision_ = 0;        ///< of the plan that was compiled last
   std::vector<double> handed_out_, least_;  ///< see see_new_world()
   CycleReport answer_;                      ///< of the last cycle

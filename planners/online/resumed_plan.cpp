@@ -42,7 +42,6 @@ ResumedPlan resume_plan(const Graph& stopped, const Task& task,
                         const StancePlannerOptions& options) {
   const Stopwatch watch;
   const Plan plan = plan_of(stopped);
-  const int at = static_cast<int>(plan.slots.size()) - 1;
   Motion executed = motion_of(stopped, plan);
   if (executed.slopes.back().size() == 0) {
     executed.slopes.back() = Eigen::VectorXd::Zero(task.robot->robot->tangent_size());
@@ -75,13 +74,7 @@ ResumedPlan resume_plan(const Graph& stopped, const Task& task,
     if (!found.success()) continue;
     resumed.graph = motion_graph(task, continued(task, executed, plan.segments, found));
     if (plan.world) resumed.graph->replace_parameter(kWorldNumber, plan.world);
-    const int last = last_configuration(*resumed.graph);
-    CheckReport report = judged_from(at, last, *resumed.graph, judge, task.check);
-    // Balls that are held have slipped before, when the world was another one.
-    if (const int since = held_balls_since(plan, at); report.feasible && since < at) {
-      report =
-          judged_from(since, last, *resumed.graph, Judge(judging.robot, judging.world), task.check);
-    }
+    const CheckReport report = judged_on(plan, *resumed.graph, judge, task);
     if (report.feasible) break;
     resumed.graph.reset();
     resumed.status = PlannerStatus::kNotFound;

@@ -242,17 +242,26 @@ class PlanEdges {
   }
 
   /// A ball that slips in the plan by what the judge allows, and the edge's type does not, may slip
-  /// by as much.
+  /// by as much; its height, in an edge of its own then, is what the type says.
   void add_rolling_ball(std::size_t i, int contact) {
     constexpr double kRoom = 1.05, kMost_m = 1e-3;
     EdgeBallRolling rolling(contact, options_.constraint_weight);
     rolling.bind(graph_.parameters());
     Eigen::Vector3d slip;
     rolling.error(at(i - 1, before_), at(i, state_), slip);
+    const double row_m = slip.head<2>().lpNorm<Eigen::Infinity>();
+    const bool slips = !plan_.stances_only && row_m > EdgeBallRolling::kSlipTolerance &&
+                       kRoom * slip.head<2>().norm() <= kMost_m;
+    if (!slips) {
+      graph_.add_edge(std::move(rolling), ids_[i - 1], ids_[i]);
+      return;
+    }
+    EdgeBallRolling height = rolling;
+    height.weights.head<2>().setZero();
+    graph_.add_edge(std::move(height), ids_[i - 1], ids_[i]);
+    rolling.weights[2] = 0.0;
     const EdgeId edge = graph_.add_edge(std::move(rolling), ids_[i - 1], ids_[i]);
-    const double most_m = slip.head<2>().lpNorm<Eigen::Infinity>();
-    if (plan_.stances_only || most_m <= EdgeBallRolling::kSlipTolerance || most_m > kMost_m) return;
-    graph_.set_constraint(edge, ConstraintKind::kEquality, kRoom * most_m);
+    graph_.set_constraint(edge, ConstraintKind::kEquality, kRoom * row_m);
   }
 
   /// From configuration i to the next one.
@@ -441,11 +450,28 @@ class PlanEdges {
       if (limit) graph_.add_edge(*limit, a, b);
     }
     const int number = stance_number(i - 1);
-    graph_.add_edge(EdgeRolling(*stance, number, options_.constraint_weight), a, b);
+    const EdgeId rolling =
+        graph_.add_edge(EdgeRolling(*stance, number, options_.constraint_weight), a, b);
+    const double tolerance_m = slip_tolerance(*stance, step);
+    if (tolerance_m < EdgeRolling::kTolerance) {
+      graph_.set_constraint(rolling, ConstraintKind::kEquality, tolerance_m);
+    }
     if (!(options_.steering_slip_m > 0.0)) return;
     const EdgeSteeringSlip slip(*stance, number, options_.steering_slip_m,
                                 options_.constraint_weight);
     if (slip.dimension() > 0) graph_.add_edge(slip, a, b);
+  }
+
+  /// Of wheels that roll on a step: over the 0.1 m within which the judge adds it up it leaves room
+  /// for what wheels that steer slip half-way of two steps, in as many steps as there are.
+  double slip_tolerance(const StanceParameter& stance, const Eigen::VectorXd& step) const {
+    constexpr double kLeast_m = 2e-5, kShare = 0.0125, kArm_m = 0.5;
+    if (robot_.base_tangent_size() == 0 ||
+        std::ranges::all_of(stance.wheels, &StanceParameter::StandingWheel::locked)) {
+      return EdgeRolling::kTolerance;
+    }
+    const double way_m = step.head<3>().norm() + kArm_m * step.segment<3>(3).norm();
+    return std::max(kLeast_m, kShare * way_m);
   }
 
   Graph& graph_;

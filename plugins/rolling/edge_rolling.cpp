@@ -1,7 +1,6 @@
 #include <locograph/plugins/rolling/edge_rolling.h>
 #include <locograph/plugins/rolling/rolling_step.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace locograph {
@@ -51,16 +50,6 @@ int rows_of(const StanceParameter& stance) {
 EdgeRolling::EdgeRolling(const StanceParameter& some, int number, double weight)
     : stance_number(number) {
   weights.setConstant(rows_of(some), weight);
-}
-
-double EdgeRolling::row_tolerance(int, const VertexConfiguration& a,
-                                  const VertexConfiguration& b) const {
-  constexpr double kLeast_m = 1e-4, kMost_m = 1e-3, kShare = 0.0125, kArm_m = 0.5;
-  if (!a.robot || !a.robot->robot->floating_base()) return kMost_m;
-  const Eigen::Quaterniond before(a.state.data() + 3), after(b.state.data() + 3);
-  const double way_m =
-      (b.state - a.state).head<3>().norm() + kArm_m * before.angularDistance(after);
-  return std::clamp(kShare * way_m, kLeast_m, kMost_m);
 }
 
 void EdgeRolling::bind(const Parameters& parameters) {

@@ -31,11 +31,10 @@ namespace locograph {
 struct EdgeRolling : WeightedEdge<Eigen::Dynamic, VertexConfiguration, VertexConfiguration> {
   static constexpr std::string_view kTag = "EDGE_ROLLING";
   static constexpr ConstraintKind kConstraint = ConstraintKind::kEquality;
-  /// Of the way from one of the graph's configurations to the other one, 1e-4 m at least and 1e-3
-  /// at most [m]. With what wheels that steer may slip half-way of two steps, 1.9 mm each to either
-  /// side, it stays within the 5 mm that the judge allows in 0.1 m of their way, however many steps
-  /// lie in it.
-  double row_tolerance(int row, const VertexConfiguration& a, const VertexConfiguration& b) const;
+  /// m, of steps of 0.08 m or more: with what wheels that steer may slip half-way of two steps,
+  /// 1.9 mm each to either side, it stays within the 5 mm that the judge allows in 0.1 m of their
+  /// way. Where steps are shorter, plans say less for the edge (planners/plan/plan_edges.h).
+  static constexpr double kTolerance = 1e-3;
   int stance_number = 0;
   std::shared_ptr<const StanceParameter> stance;  ///< looked up by bind()
   auto fields() { return std::tie(stance_number); }

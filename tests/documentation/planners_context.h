@@ -616,6 +616,9 @@ struct Context : DriveContext {
   const int executed = 0;
 };
 }  // namespace online_braking_h
+namespace online_ball_slip_h {
+using Context = online_braking_h::Context;
+}  // namespace online_ball_slip_h
 namespace online_walk_ahead_h {
 struct Context : DriveContext {
   const WorldAt world_seen_at = [](int) { return nullptr; };

@@ -134,8 +134,9 @@ TEST_F(MotionGraph, BothStancesHoldWhereTheyChange) {
 }
 
 TEST_F(MotionGraph, ABallThatSlipsInThePlanMaySlipByAsMuch) {
-  const auto slips = [&](double by_m) {
+  const auto slips = [&](double by_m, double lifted_m = 0.0) {
     MotionPlan moved = plan;
+    moved.motion.configurations[3][2] += lifted_m;
     moved.motion.configurations[3].head<2>() += by_m * Eigen::Vector2d::Ones();
     Graph graph =
         read_graph_text(write_graph_text(motion_graph(task, moved)), "moved", ".", types());
@@ -146,6 +147,7 @@ TEST_F(MotionGraph, ABallThatSlipsInThePlanMaySlipByAsMuch) {
   EXPECT_EQ(slips(3e-5), 0);
   EXPECT_EQ(slips(2e-4), 0) << "the judge lets it";
   EXPECT_GT(slips(2e-3), 0) << "he does not";
+  EXPECT_GT(slips(2e-4, 1.5e-4), 0) << "nor a ball in the air";
 }
 
 TEST_F(MotionGraph, WrenchesBalanceEachConfigurationWhereTheyAreKnown) {

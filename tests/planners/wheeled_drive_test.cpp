@@ -210,6 +210,21 @@ TEST(WheeledDrive, RefusesAScenarioWithoutADrive) {
   EXPECT_THROW(planned_drive(scenario), Error);
 }
 
+TEST(WheeledDrive, SlipsLessInEachStepTheShorterSteps) {
+  const auto most_m = [](int configurations) {
+    const Graph graph = planned_drive(centauro_drive(4.0, 0.0, configurations));
+    double most = 0.0;
+    for (int e = 0; e < graph.edge_slots(); ++e) {
+      const Graph::EdgeRecord& record = graph.edge_record(e);
+      if (graph.edge_pools()[record.pool]->tag() != EdgeRolling::kTag) continue;
+      most = std::max(most, record.tolerance > 0.0 ? record.tolerance : EdgeRolling::kTolerance);
+    }
+    return most;
+  };
+  EXPECT_EQ(most_m(50), EdgeRolling::kTolerance);
+  EXPECT_NEAR(most_m(201), 0.0125 * 0.02, 1e-6) << "as much in 0.1 m of the way";
+}
+
 TEST(WheeledDrive, EndsWithItsDeadlineWhereverThatPasses) {
   const Scenario scenario = centauro_drive(1.0, 0.0, 5);
   std::vector<std::string> parts;

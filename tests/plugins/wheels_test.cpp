@@ -384,23 +384,6 @@ TEST_F(Wheels, ThatSteerWhileTheyRollSlipHalfWay) {
   EXPECT_EQ(error_between(robot, edge, at_fraction(0.4), at_fraction(0.6)).norm(), 0.0);
 }
 
-TEST_F(Wheels, MayBeOffTheLessTheShorterTheStep) {
-  const auto tolerance = [&](double way_m, double turn_rad) {
-    VertexConfiguration a(0, robot.robot, 0.0, home(robot)), b = a;
-    b.state = moved(shifted(a.state, way_m, 0.0),
-                    Eigen::Isometry3d(Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ())));
-    return rolling.row_tolerance(0, a, b);
-  };
-  EXPECT_DOUBLE_EQ(tolerance(0.0, 0.0), 1e-4);
-  EXPECT_NEAR(tolerance(0.04, 0.0), 5e-4, 1e-12);
-  EXPECT_DOUBLE_EQ(tolerance(0.2, 0.0), 1e-3);
-  EXPECT_DOUBLE_EQ(tolerance(0.0, 1.0), 1e-3);
-  // Over any 0.1 m of its way, in steps however short but for those of no way.
-  for (const double way_m : {0.01, 0.02, 0.05, 0.08}) {
-    EXPECT_LE(0.1 / way_m * tolerance(way_m, 0.0), 1.25e-3 + 1e-9);
-  }
-}
-
 TEST_F(Wheels, AreNotSteeredHalfRoundUnnoticed) {
   for (const double steer : {0.5, 2.0, 3.1}) {
     Eigen::VectorXd to = home(robot);

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <utility>
 
 namespace locograph {
 namespace {
@@ -137,32 +138,17 @@ class TreeSearch {
   }
 
  private:
-  /// Branches are looked at in steps: what is found may meet something in between, and other trees
-  /// may not.
   bool search(bool shortened, SegmentPath& path) {
-    constexpr std::uint64_t kTrees = 3, kOtherSeeds = 7919;
-    for (std::uint64_t k = 0; k < kTrees; ++k) {
-      if (k > 0 && (states_ > options_.max_states || options_.termination.ended(states_))) break;
-      bool found = false;
-      if (grow_trees(options_.seed + k * kOtherSeeds, shortened, path, found)) return true;
-      if (!found) break;
-    }
-    return false;
-  }
-
-  /// found: a way, whether or not it holds in between.
-  bool grow_trees(std::uint64_t seed, bool shortened, SegmentPath& path, bool& found) {
-    SeededTree<og::RRTConnect> trees(information_, seed + 1);
+    SeededTree<og::RRTConnect> trees(information_, options_.seed + 1);
     const ob::ProblemDefinitionPtr first = begin(trees);
     end(trees, options_.max_states);
     if (!first->hasExactSolution()) {
       path.reason = "no way among " + std::to_string(states_) + " states";
       return false;
     }
-    found = true;
     auto* way = first->getSolutionPath()->as<og::PathGeometric>();
     path.first_length = way->length();
-    ShorteningTree shortening(information_, seed + 2);
+    ShorteningTree shortening(information_, options_.seed + 2);
     const ob::ProblemDefinitionPtr second = begin(shortening);
     if (shortened) {
       way_.clear();
@@ -262,11 +248,33 @@ class TreePlanner : public SegmentPlanner {
     }
     const SilentOmpl silent;
     try {
-      return grow(space, options, path);
+      return grow_again(space, options, path);
     } catch (const ompl::Exception& error) {  // as where rows of the closure depend on each other
       path.reason = error.what();
       return false;
     }
+  }
+
+  /// Branches are looked at in steps: a way that is found may meet something in between, and that
+  /// of other trees may not.
+  bool grow_again(SegmentSpace& space, const SegmentOptions& options, SegmentPath& path) const {
+    constexpr std::uint64_t kTrees = 3, kOtherSeeds = 7919;
+    int states = 0;
+    bool holds = false, found = true;
+    for (std::uint64_t k = 0; k < kTrees && !holds && found; ++k) {
+      if (k > 0 && (states >= options.max_states || options.termination.ended(states))) break;
+      SegmentOptions own = options;
+      own.seed += k * kOtherSeeds;
+      own.max_states -= states;
+      own.termination = options.termination.after(states);
+      SegmentPath grown;
+      holds = grow(space, own, grown);
+      states += grown.statistics.iterations;
+      found = grown.tree_length > 0.0;
+      if (k == 0 || found) path = std::move(grown);
+    }
+    path.statistics.iterations = states;
+    return holds;
   }
   virtual bool grow(SegmentSpace& space, const SegmentOptions& options,
                     SegmentPath& path) const = 0;
