@@ -138,8 +138,8 @@ class Optimiser {
   /// Between iterations: costs have changed, as with other bindings, but no state. The run goes on
   /// with the damping and the count of iterations that it has.
   void costs_changed();
-  /// After an iteration that ended the run because all its steps were refused: it goes on with the
-  /// damping that it came to, and the linearisation that it has.
+  /// Continues a run that ended because every step of an iteration was refused. The next iteration
+  /// keeps the damping and reuses the linearisation.
   void go_on_refused();
   /// Whether the next iteration begins with what was linearised before.
   bool is_linearised() const { return linearised_; }

@@ -4,10 +4,10 @@
 //     box_campaign [SEED] [CASES] [--rate 50] [--iterations 1] [--every 25]
 //
 // Prints one JSON object: a row for each case, then the totals. The window of every n-th cycle is
-// judged. Cycles as `refine` has them, but
-// for what is asked for: --rate 0 is one cycle for each step, --iterations 0 all that a cycle
-// finds. A case counts as passed when every configuration was refined, the judge finds the result
-// feasible, and the base ends within 0.3 m of the plan's end along x.
+// judged. Cycles as `refine` has them, but for what is asked for: --rate 0 is one cycle for each
+// step, --iterations 0 all that a cycle finds. A case counts as passed when every configuration was
+// refined, the judge finds the result feasible, and the base ends within 0.3 m of the plan's end
+// along x.
 #include <locograph/check/judge.h>
 #include <locograph/planners/offline/drive/drive_graph.h>
 #include <locograph/planners/online/walk_plan.h>

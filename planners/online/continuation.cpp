@@ -159,18 +159,11 @@ int last_configuration(const Graph& graph) {
 }
 
 int held_balls_since(const Plan& plan, int configuration) {
-  const auto& stance_from = plan.stance_from;
-  const StanceParameter& here = *stance_from[static_cast<std::size_t>(configuration)];
+  const StanceParameter& here = *plan.stance_from[static_cast<std::size_t>(configuration)];
   int since = configuration;
   for (std::size_t k = 0; k < here.contacts.size(); ++k) {
     if (!is_ball(here.contacts[k]->contact.effector)) continue;
-    int first = configuration;
-    while (first > 0) {
-      const auto& held = stance_from[static_cast<std::size_t>(first) - 1]->contact_numbers;
-      if (std::ranges::find(held, here.contact_numbers[k]) == held.end()) break;
-      --first;
-    }
-    since = std::min(since, first);
+    since = std::min(since, held_since(plan.stance_from, here.contact_numbers[k], configuration));
   }
   return since;
 }

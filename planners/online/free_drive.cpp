@@ -140,13 +140,13 @@ double usual_step_s(const Motion& planned) {
 /// first. Steps that take longer there than others do are made in as many that do not: what moves
 /// is looked at in each, and wheels that steer while one speeds up slip less.
 std::optional<Rest> along_the_plan(const Robot& robot, const Motion& planned, int at,
-                                   const Eigen::VectorXd& stands, Wheels& wheels, double ramp_m) {
+                                   const Eigen::VectorXd& stands, Wheels& wheels, double ramp_m,
+                                   double usual_s) {
   constexpr double kLeast = 0.1, kRounding = 1e-3;
   const auto share_at = [&](double gone_m) {
     return std::clamp(std::sqrt(gone_m / ramp_m), kLeast, 1.0);
   };
   const auto slowed = [](double share, double after) { return 2.0 / (share + after); };
-  const double usual_s = usual_step_s(planned);
   Rest rest;
   rest.motion.time_s = {0.0};
   rest.add(planned.configurations[static_cast<std::size_t>(at)]);
@@ -230,9 +230,10 @@ ResumedPlan wait_for_free_drive(const Graph& stopped, const Motion& planned, con
   if (off_m > kSlant * std::min(kBack_m, left_m)) {
     return refused("the robot is too far beside the way that was planned");
   }
-  const double speed_m_s = task.drive->speed_m_s;
-  const std::optional<Rest> driven = along_the_plan(
-      robot, planned, at, stands, wheels, speed_m_s * speed_m_s / (2.0 * kAcceleration_m_s2));
+  const double speed_m_s = task.drive->speed_m_s, usual_s = usual_step_s(planned);
+  const double ramp_m = speed_m_s * speed_m_s / (2.0 * kAcceleration_m_s2);
+  const std::optional<Rest> driven =
+      along_the_plan(robot, planned, at, stands, wheels, ramp_m, usual_s);
   if (!driven) return refused("wheels do not stay on the ground on the way back to the plan");
   const Rest& rest = *driven;
   Eigen::VectorXd steered;
@@ -256,7 +257,7 @@ ResumedPlan wait_for_free_drive(const Graph& stopped, const Motion& planned, con
   const std::vector<Eigen::VectorXd>& way = rest.motion.configurations;
   if (steers_s > 0.0) add(steered, begin_s + steers_s, still);
   constexpr double kLeastWait_s = 0.5;  // of one step
-  const double step_s = std::max(2.0 * usual_step_s(planned), kLeastWait_s);
+  const double step_s = std::max(2.0 * usual_s, kLeastWait_s);
   const int waits = static_cast<int>(std::ceil(*after_s / step_s));
   for (int k = 1; k <= waits; ++k) {
     add(whole.configurations.back(), begin_s + steers_s + *after_s * k / waits, still);

@@ -191,7 +191,6 @@ void WindowSolver::end_run() {
 void WindowSolver::begin_run() {
   begins_ = rebound_ = false;
   if (run_ == RunKind::kRaising) {
-    quality_known_ = false;
     if (!std::exchange(goes_on_, false)) {
       raising_.start(workspace_, *linear_solver_, true, true);
       return;
@@ -241,7 +240,6 @@ bool WindowSolver::step_plain(const Termination& termination) {
   const OptimiserResult& now = optimiser_.result();
   if (more || now.iterations > before) {
     refused_ = 0;
-    quality_known_ = false;
     return more;
   }
   const bool refused = now.reason == Reason::kDeadline || now.reason == Reason::kSingular ||
@@ -252,7 +250,6 @@ bool WindowSolver::step_plain(const Termination& termination) {
 }
 
 bool WindowSolver::step_raising(const Termination& termination, WindowStatistics& statistics) {
-  quality_known_ = false;
   raising_.inner_options().deadline = deadline_of_step(termination);
   const bool more = raising_.iterate();
   statistics.rounds = raising_.rounds();
@@ -278,6 +275,8 @@ bool WindowSolver::step(const Termination& termination, WindowStatistics& statis
   const int accepted_before = accepted(), tried_before = tried();
   const bool more = raises ? step_raising(termination, statistics) : step_plain(termination);
   const OptimiserResult& now = raises ? raising_.inner() : optimiser_.result();
+  // Raising changes rows where it takes no step, too.
+  quality_known_ = quality_known_ && !raises && accepted() == accepted_before;
   gain_ = accepted() == accepted_before ? 1.0 : (before - now.final.robust) / before;
   statistics.iterations += tried() - tried_before;
   if (!now.statistics.empty()) add_times(now.statistics.back(), statistics);

@@ -69,9 +69,9 @@ class WindowSolver {
   void begin(Start start);
   void begin_raising();
   bool running() const { return run_ != RunKind::kNone; }
-  /// One iteration of the run. With a termination that counts iterations one whose steps are
-  /// refused tries one or two of them; the next one goes on with the linearisation and the damping.
-  /// False: the run is over.
+  /// One iteration of the run. With a termination that counts iterations it tries one or two steps;
+  /// if all are refused, the next iteration keeps the damping and reuses the linearisation. False:
+  /// the run is over.
   bool step(const Termination& termination, WindowStatistics& statistics);
   void end_run();
   /// By the last iteration. After one that took no step nobody knows yet how much there is to gain.

@@ -279,6 +279,16 @@ std::vector<Eigen::VectorXd> tracked_configurations(const Graph& graph, const Pl
   return tracked;
 }
 
+int held_since(const std::vector<std::shared_ptr<const StanceParameter>>& stance_from, int contact,
+               int configuration) {
+  const auto is_held = [&](int i) {
+    const auto& stance = stance_from[static_cast<std::size_t>(i)];
+    return stance && std::ranges::count(stance->contact_numbers, contact) > 0;
+  };
+  while (configuration > 0 && is_held(configuration - 1)) --configuration;
+  return configuration;
+}
+
 std::vector<int> contacts_at(const std::vector<std::shared_ptr<const StanceParameter>>& stance_from,
                              std::size_t i) {
   std::vector<int> numbers;

@@ -66,6 +66,11 @@ std::vector<Eigen::VectorXd> tracked_configurations(const Graph& graph, const Pl
 std::vector<int> contacts_at(const std::vector<std::shared_ptr<const StanceParameter>>& stance_from,
                              std::size_t i);
 
+/// The first of the configurations that hold a contact, by its number, without a break until this
+/// one is reached; this one where the step to it does not hold it.
+int held_since(const std::vector<std::shared_ptr<const StanceParameter>>& stance_from, int contact,
+               int configuration);
+
 /// Says in its PARAMS_PLAN that the plan ends before its goal, and ends its segments where the
 /// configurations end.
 void mark_incomplete(Graph& graph);
