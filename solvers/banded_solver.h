@@ -4,6 +4,9 @@
 /// Block column c is one dense panel over the rows from its diagonal block to the last block row
 /// that its band or the fill reaches (the profile of the matrix), so products are large and nothing
 /// is indexed inside them.
+///
+/// Blocks of the pattern whose values are all 0 count as none: most limits over three
+/// configurations are not reached, and what they would tie together then costs nothing.
 
 #include <locograph/core/linear_solver.h>
 #include <locograph/solvers/aligned_memory.h>
@@ -24,15 +27,20 @@ class BandedSolver final : public LinearSolver {
   static double seconds(const BlockPattern& pattern);
 
  private:
-  /// Last block row of each panel, fill included.
-  static std::vector<int> panel_ends(const BlockPattern& pattern);
+  /// Last block row of each panel, fill included, of the blocks of the pattern that count.
+  template <class Counts>
+  static void find_panel_ends(const BlockPattern& pattern, Counts&& counts, std::vector<int>& last);
+  void gather(const double* values);
 
   BlockPattern pattern_;
-  std::vector<int> last_;  ///< last block row of each panel
   std::vector<std::size_t> panel_begin_;
-  std::vector<int> height_;  ///< scalar rows of each panel
-  std::vector<int> fills_;   ///< panels with blocks that the pattern does not have
+  std::vector<int> stride_;  ///< scalar rows of each panel, with all blocks of the pattern
   AlignedMemory panels_;
+  // As it was factorised last.
+  std::vector<char> counts_;  ///< by block of the pattern: not all 0
+  std::vector<int> last_;     ///< last block row of each panel
+  std::vector<int> height_;   ///< scalar rows of each panel
+  std::vector<int> blocks_;   ///< of each panel that count
   int failed_row_ = -1;
 };
 

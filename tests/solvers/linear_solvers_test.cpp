@@ -103,6 +103,23 @@ TEST_P(EverySolver, AgreesWithDenseLdltDampingIncluded) {
   }
 }
 
+TEST_P(EverySolver, BlocksOfZerosAreSolvedAsTheyAre) {
+  const std::unique_ptr<LinearSolver> s = solver();
+  RandomSystem a = system();
+  s->analyse(a.pattern);
+  // None, some and all of those beside the diagonal are 0, and then none again.
+  for (const int of_three : {0, 1, 2, 3, 0}) {
+    RandomSystem b = a;
+    int i = 0;
+    b.for_each_block([&](int r, int c, auto block) {
+      if (r != c && i++ % 3 < of_three) block.setZero();
+    });
+    b.update_matrix();
+    ASSERT_TRUE(s->factorise(b.values.data(), b.damping.data()));
+    expect_solution(*s, b, kTolerance);
+  }
+}
+
 TEST_P(EverySolver, FactorisesAndSolvesWithoutAllocating) {
   if (!allocations_are_counted()) GTEST_SKIP() << "a sanitizer brings its own malloc";
   const std::unique_ptr<LinearSolver> s = solver();
