@@ -3,18 +3,18 @@
 include(CheckCXXCompilerFlag)
 check_cxx_compiler_flag(-march=x86-64-v4 LOCOGRAPH_X86_64_LEVELS)
 
-# locograph_levels(FOLDER CHOOSER source SOURCES kernels...)
+# locograph_levels(FOLDER CHOOSERS sources... SOURCES kernels...)
 # adds to locograph::FOLDER the kernels, each level in a namespace of its own: object libraries
-# locograph_FOLDER_v2, _v3 and _v4, or _portable. The chooser's source sees LOCOGRAPH_X86_64_LEVELS
-# where there are levels. Nothing is fused but what the kernels fuse. Source by source and without
+# locograph_FOLDER_v2, _v3 and _v4, or _portable. The choosers' sources see LOCOGRAPH_X86_64_LEVELS
+# where there are levels (common/level_table.h). Nothing is fused but what the kernels fuse. Source by source and without
 # precompiled headers: they share names in unnamed namespaces, and must not share an inline function
 # with anybody.
 function(locograph_levels folder)
-  cmake_parse_arguments(arg "" "CHOOSER" "SOURCES" ${ARGN})
+  cmake_parse_arguments(arg "" "" "CHOOSERS;SOURCES" ${ARGN})
   set(levels portable)
   if(LOCOGRAPH_X86_64_LEVELS)
     set(levels v2 v3 v4)
-    set_source_files_properties(${arg_CHOOSER} PROPERTIES
+    set_source_files_properties(${arg_CHOOSERS} PROPERTIES
       COMPILE_DEFINITIONS LOCOGRAPH_X86_64_LEVELS=1)
   endif()
   foreach(level ${levels})

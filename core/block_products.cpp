@@ -1,5 +1,6 @@
 #include <locograph/core/all_zero.h>
 #include <locograph/core/block_products.h>
+#include <locograph/core/row_kernels.h>
 
 #include <algorithm>
 #include <bit>
@@ -12,27 +13,11 @@ using Matrix = Eigen::Map<Eigen::MatrixXd>;
 using ConstMatrix = Eigen::Map<const Eigen::MatrixXd>;
 using ConstVector = Eigen::Map<const Eigen::VectorXd>;
 
-constexpr int kGroup = 8;    // rows added together
-constexpr int kNarrow = 12;  // rows of fewer entries are added one by one
+constexpr int kGroup = kMostRowsTogether;
+constexpr int kNarrow = 5;  // rows of fewer entries are added one by one
 
 using Word = std::uint64_t;  // a bit for each column
 constexpr int kBits = 64;
-
-/// sum (n) += Σ factor_r · row_r (n)
-template <int Rows>
-void add_rows_to(const double* const* rows, const double* factor, int n, double* __restrict sum) {
-  for (int k = 0; k < n; ++k) {
-    double all = sum[k];
-#pragma GCC unroll 8
-    for (int r = 0; r < Rows; ++r) all += factor[r] * rows[r][k];
-    sum[k] = all;
-  }
-}
-
-using AddRows = void (*)(const double* const*, const double*, int, double*);
-constexpr AddRows kAddRows[kGroup + 1] = {nullptr,        add_rows_to<1>, add_rows_to<2>,
-                                          add_rows_to<3>, add_rows_to<4>, add_rows_to<5>,
-                                          add_rows_to<6>, add_rows_to<7>, add_rows_to<8>};
 
 /// Adds the rows of one edge to H and b, with their entries in the first columns of each slot. Rows
 /// with few entries one by one; others, one after the other with mostly the same columns, as
@@ -96,14 +81,7 @@ class RowSum {
       const double* from = word_[s + 1] > word_[s] ? row(s, r) : nullptr;
       for (int w = word_[s], c = 0; w < word_[s + 1]; ++w, c += kBits) {
         const int end = std::min(searched(s) - c, kBits);
-        Word mask = 0;
-        for (int i = 0; i < end; ++i) {
-          if (i % 8 == 0 && end - i >= 8 && all_zero(from + c + i, 8)) {
-            i += 7;
-            continue;
-          }
-          mask |= static_cast<Word>(from[c + i] != 0.0) << i;
-        }
+        const Word mask = kernels_.entries(from + c, end);
         of_row_[w] = mask;
         entries += std::popcount(mask);
       }
@@ -158,37 +136,38 @@ class RowSum {
   }
 
   void add_group() {
+    static constexpr int kFirst[] = {0};
     const CompiledEdges::Block* block = blocks_;
-    const double* left[kGroup];
-    const double* right[kGroup];
-    double factor[kGroup];
-    const AddRows add = kAddRows[rows_];
+    const double *left[kGroup], *right[kGroup], *errors[kGroup];
     for (int i = 0; i < count_; ++i) {
       const int own = columns(of_group_, i, left_);
-      const int own_begin = own > 0 ? left_[0] : 0,
-                own_size = own > 0 ? left_[own - 1] + 1 - own_begin : 0;
-      for (int r = 0; r < rows_ && own > 0; ++r) {
-        left[r] = row(i, row_[r]) + own_begin;
-        factor[r] = weight_[r] * error_[r];
+      if (own == 0) {
+        block += count_ - i;
+        continue;
       }
-      if (own > 0) add(left, factor, own_size, gradient_ + slots_[i].gradient_offset + own_begin);
+      const int own_begin = left_[0], own_size = left_[own - 1] + 1 - own_begin;
+      for (int r = 0; r < rows_; ++r) {
+        left[r] = row(i, row_[r]) + own_begin;
+        errors[r] = error_ + r;
+      }
+      kernels_.add_products(rows_, left, own_size, errors, weight_, kFirst, 1,
+                            gradient_ + slots_[i].gradient_offset + own_begin, 0);
       for (int j = i; j < count_; ++j, ++block) {
-        const int other = own == 0 ? 0 : columns(of_group_, j, right_);
+        const int other = columns(of_group_, j, right_);
         if (other == 0) continue;
         double* h = hessian_ + (*block >> 1);
-        const int begin = right_[0], size = right_[other - 1] + 1 - begin;
-        for (int r = 0; r < rows_; ++r) right[r] = row(j, row_[r]) + begin;
         if ((*block & 1) != 0) {
-          for (int a = 0; a < own; ++a) {
-            for (int r = 0; r < rows_; ++r) factor[r] = weight_[r] * left[r][left_[a] - own_begin];
-            add(right, factor, size, h + static_cast<std::ptrdiff_t>(left_[a]) * width_[j] + begin);
+          const int begin = right_[0], size = right_[other - 1] + 1 - begin;
+          for (int r = 0; r < rows_; ++r) {
+            right[r] = row(j, row_[r]) + begin;
+            own_[r] = left[r] - own_begin;
           }
+          kernels_.add_products(rows_, right, size, own_, weight_, left_, own, h + begin,
+                                width_[j]);
         } else {
-          for (int b = 0; b < other; ++b) {
-            for (int r = 0; r < rows_; ++r) factor[r] = weight_[r] * right[r][right_[b] - begin];
-            add(left, factor, own_size,
-                h + static_cast<std::ptrdiff_t>(right_[b]) * width_[i] + own_begin);
-          }
+          for (int r = 0; r < rows_; ++r) right[r] = row(j, row_[r]);
+          kernels_.add_products(rows_, left, own_size, right, weight_, right_, other, h + own_begin,
+                                width_[i]);
         }
       }
     }
@@ -205,7 +184,9 @@ class RowSum {
   int* word_;   ///< first word of each slot in a mask
   Word *of_row_, *of_group_;
   int *left_, *right_;  ///< columns
+  const RowKernels& kernels_ = row_kernels();
   int rows_ = 0, row_[kGroup] = {};
+  const double* own_[kGroup] = {};
   double weight_[kGroup] = {}, error_[kGroup] = {};
 };
 

@@ -84,19 +84,19 @@ class TypedEdgePool final : public EdgePool {
     for (int k = begin; k < end; ++k) {
       x.scratch->reset();
       const E& edge = edges[compiled.edges[k]];
-      detail::LocalMatrix<Error> e = detail::make_local<Error>(edge.dimension(), 1, *x.scratch);
+      const int n = edge.dimension();
+      const Evaluator evaluator(edge, slots(compiled, k), x);
       const ConstraintRow* rows = constraint_rows(compiled, k, x);
-      double* errors = rows == nullptr ? nullptr : x.constraint_errors + compiled.constraint_row[k];
-      if (rows != nullptr && x.errors_known) {
-        std::copy_n(errors, edge.dimension(), e.data());
-      } else {
-        Evaluator(edge, slots(compiled, k), x).error(e);
-        if (rows != nullptr) std::copy_n(e.data(), edge.dimension(), errors);
-      }
+      detail::LocalMatrix<Error> e = detail::make_local<Error>(n, 1, *x.scratch);
       if (rows != nullptr) {
+        double* errors = x.constraint_errors + compiled.constraint_row[k];
+        if (!x.errors_known) evaluator.error(Eigen::Map<Error>(errors, n));
         // Inside all of its limits: it has no shifts (constraint.h), and its cost is 0.
-        if (kHinged && all_zero(e.data(), edge.dimension())) continue;
-        constrain_error(rows, compiled.one_sided[k] != 0, edge.dimension(), e.data());
+        if (kHinged && all_zero(errors, n)) continue;
+        std::copy_n(errors, n, e.data());
+        constrain_error(rows, compiled.one_sided[k] != 0, n, e.data());
+      } else {
+        evaluator.error(e);
       }
       const double chi2 = weighted_square(edge, e.data());
       total += {robust_weights(edge, rows, chi2).cost, chi2};

@@ -1,3 +1,4 @@
+#include <locograph/core/row_kernels.h>
 #include <locograph/core/weighted_square.h>
 #include <locograph/core/workspace.h>
 
@@ -8,6 +9,7 @@
 namespace locograph {
 
 void Workspace::allocate(const Problem& problem) {
+  row_kernels();  // chosen before anything is evaluated, for choosing allocates
   problem_ = &problem;
   bindings_.clear();
   state_.resize(problem.state_size());

@@ -1,5 +1,5 @@
+#include <locograph/common/simd.h>
 #include <locograph/solvers/level_tables.h>
-#include <locograph/solvers/simd.h>
 
 #include <utility>
 

@@ -1,5 +1,5 @@
+#include <locograph/common/simd.h>
 #include <locograph/solvers/level_tables.h>
-#include <locograph/solvers/simd.h>
 
 namespace locograph::LOCOGRAPH_SIMD_NAMESPACE {
 namespace {

@@ -2,6 +2,7 @@
 #include <locograph/common/error.h>
 #include <locograph/world/distance_field.h>
 #include <locograph/world/node_distances.h>
+#include <locograph/world/point_kernels.h>
 #include <locograph/world/require_metres.h>
 
 #include <algorithm>
@@ -258,6 +259,18 @@ double DistanceField::distance(const Eigen::Vector3d& point) const {
   return sample(point).distance;
 }
 
+void DistanceField::lower(const PointList& points, double* nearest) const {
+  if (empty()) {
+    for (int i = 0; i < points.count; ++i) nearest[i] = std::min(nearest[i], max_distance_);
+    return;
+  }
+  FieldNodes nodes{values_.data(), {}, {}, {}, inverse_resolution_, max_distance_};
+  std::ranges::copy(dimensions_, nodes.dimensions);
+  std::ranges::copy(lower_, nodes.lower);
+  std::ranges::copy(upper_, nodes.upper);
+  point_kernels().field(nodes, points, nearest);
+}
+
 DistanceSample WorldDistance::sample_map(const Eigen::Vector3d& point) const {
   if (map) return map->sample(point);
   if (source) return source->sample(point);
@@ -275,6 +288,25 @@ DistanceSample WorldDistance::sample_map(const Eigen::Vector3d& point) const {
       sample.distance > 0.0 ? point - query.best.on_second : query.best.on_second - point;
   if (out.norm() > 10.0 * kDot_m) sample.gradient = out.normalized();
   return sample;
+}
+
+void WorldDistance::lower_to_map(const PointList& points, double* nearest) const {
+  if (map) {
+    map->lower(points, nearest);
+    return;
+  }
+  for (int i = 0; i < points.count; ++i) {
+    const Eigen::Vector3d point(points.x[i], points.y[i], points.z[i]);
+    nearest[i] = std::min(nearest[i], sees_map() ? sample_map(point).distance : max_distance());
+  }
+}
+
+void WorldDistance::distances(const PointList& points, double time_s, double* distances) const {
+  std::fill_n(distances, points.count, std::numeric_limits<double>::infinity());
+  lower_to_map(points, distances);
+  for (const Obstacle& obstacle : obstacles) {
+    if (obstacle.is_there(time_s)) obstacle.lower_to_shape(points, time_s, distances);
+  }
 }
 
 DistanceSample WorldDistance::sample(const Eigen::Vector3d& point, double time_s) const {

@@ -27,6 +27,7 @@
 #include <locograph/world/distance_sample.h>
 #include <locograph/world/distance_source.h>
 #include <locograph/world/obstacles.h>
+#include <locograph/world/point_list.h>
 #include <locograph/world/voxel_tree.h>
 #include <octomap/OcTree.h>
 
@@ -62,6 +63,8 @@ class DistanceField {
 
   DistanceSample sample(const Eigen::Vector3d& point) const;
   double distance(const Eigen::Vector3d& point) const;
+  /// nearest[i] = min(nearest[i], distance(point i)) up to rounding, several points at a time.
+  void lower(const PointList& points, double* nearest) const;
 
   /// No obstacle within max_distance_m of the box: max_distance_m everywhere, gradient zero.
   bool empty() const { return values_.empty(); }
@@ -109,10 +112,14 @@ struct WorldDistance {
   bool is_known(const Eigen::Vector3d& point) const { return !source || source->is_known(point); }
   /// To the map alone.
   DistanceSample sample_map(const Eigen::Vector3d& point) const;
+  /// nearest[i] = min(nearest[i], sample_map(point i).distance), as DistanceField::lower().
+  void lower_to_map(const PointList& points, double* nearest) const;
   DistanceSample sample(const Eigen::Vector3d& point, double time_s) const;
   double distance(const Eigen::Vector3d& point, double time_s) const {
     return sample(point, time_s).distance;
   }
+  /// The same of many points, several at a time; up to rounding.
+  void distances(const PointList& points, double time_s, double* distances) const;
 };
 
 }  // namespace locograph

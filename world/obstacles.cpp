@@ -1,5 +1,6 @@
 #include <locograph/common/error.h>
 #include <locograph/world/obstacle_way.h>
+#include <locograph/world/point_kernels.h>
 #include <locograph/world/require_metres.h>
 
 #include <algorithm>
@@ -171,6 +172,30 @@ DistanceSample Obstacle::sample(const Eigen::Vector3d& point, double time_s) con
 DistanceSample Obstacle::sample_shape(const Eigen::Vector3d& point, double time_s) const {
   return motion.empty() ? sample_at(*this, world_from_obstacle, point)
                         : sample_at(*this, pose_at(time_s), point);
+}
+
+void Obstacle::lower_to_shape(const PointList& points, double time_s, double* nearest) const {
+  const Eigen::Isometry3d moved = motion.empty() ? Eigen::Isometry3d() : pose_at(time_s);
+  const Eigen::Isometry3d& pose = motion.empty() ? world_from_obstacle : moved;
+  PlacedShape placed;
+  Eigen::Map<Eigen::Matrix3d>(placed.axes) = pose.linear();
+  Eigen::Map<Eigen::Vector3d>(placed.origin) = pose.translation();
+  Eigen::Map<Eigen::Vector3d> extents(placed.size);
+  extents = size;
+  const PointKernels& kernels = point_kernels();
+  switch (shape) {
+    case Shape::kBox:
+      extents *= 0.5;
+      kernels.box(placed, points, nearest);
+      break;
+    case Shape::kSphere:
+      kernels.sphere(placed, points, nearest);
+      break;
+    case Shape::kCylinder:
+      extents[1] *= 0.5;
+      kernels.cylinder(placed, points, nearest);
+      break;
+  }
 }
 
 void Obstacle::validate() const {

@@ -28,6 +28,7 @@
 /// line.
 
 #include <locograph/world/distance_sample.h>
+#include <locograph/world/point_list.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -77,6 +78,9 @@ struct Obstacle {
 
   /// The same of its shape at its pose, whether it is there or not.
   DistanceSample sample_shape(const Eigen::Vector3d& point, double time_s) const;
+  /// nearest[i] = min(nearest[i], sample_shape(point i).distance) up to rounding, several points at
+  /// a time.
+  void lower_to_shape(const PointList& points, double time_s, double* nearest) const;
 
   /// Throws Error when a size is not positive and finite, a pose is not finite or not a rotation,
   /// times do not increase, or the obstacle vanishes before it appears.

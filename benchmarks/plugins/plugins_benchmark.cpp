@@ -442,7 +442,7 @@ void Derive(benchmark::State& run) {
     benchmark::DoNotOptimize(state.sphere_centres.data());
     benchmark::ClobberMemory();
   }
-  run.counters["spheres"] = static_cast<double>(state.sphere_centres.size());
+  run.counters["spheres"] = static_cast<double>(state.sphere_centres.rows());
 }
 BENCHMARK(Derive);
 

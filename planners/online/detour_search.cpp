@@ -1,5 +1,6 @@
 #include <locograph/planners/online/detour_search.h>
 #include <locograph/planners/online/heading.h>
+#include <locograph/plugins/configuration/near_spheres.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,25 +20,19 @@ DetourSearch::DetourSearch(std::shared_ptr<const RobotParameter> robot,
   half_ = static_cast<int>(std::ceil(options.largest_offset_m / options.grid_m));
   half_ += half_ % kCoarse;
   slopes_ = 2 * options.steepest + 1;
-  centres_.resize(robot_->spheres.size());
-  bound_centres_.resize(robot_->bounds.size());
+  centres_.resize(static_cast<Eigen::Index>(robot_->spheres.size()), 3);
+  bound_centres_.resize(static_cast<Eigen::Index>(robot_->bounds.size()), 3);
 }
 
 double DetourSearch::obstacle_cost(const WorldDistance& world, double time_s,
                                    const Eigen::Vector3d& shift) const {
   double sum = 0.0;
-  for (std::size_t b = 0; b < robot_->bounds.size(); ++b) {
-    const RobotParameter::LinkBound& bound = robot_->bounds[b];
-    const double reach = bound.radius + options_.margin_m;
-    if (reach < world.max_distance() && world.distance(bound_centres_[b] + shift, time_s) > reach) {
-      continue;
-    }
-    for (int s = bound.begin; s < bound.end; ++s) {
-      const double distance = world.distance(centres_[s] + shift, time_s);
-      const double short_by = options_.margin_m + robot_->spheres[s].radius - distance;
-      if (short_by > 0.0) sum += short_by * short_by;
-    }
-  }
+  each_near_sphere(*robot_, {bound_centres_, centres_, shift}, world, time_s, options_.margin_m,
+                   [&](int s, double distance) {
+                     const double short_by =
+                         options_.margin_m + robot_->spheres[s].radius - distance;
+                     if (short_by > 0.0) sum += short_by * short_by;
+                   });
   return options_.obstacle_weight * sum;
 }
 
@@ -51,13 +46,13 @@ void DetourSearch::place(const double* planned, int yaw) {
   turned_ = Eigen::Map<const Eigen::VectorXd>(planned, robot_->robot->configuration_size());
   turn_base(yaw * options_.yaw_grid_rad, turned_.data());
   state_.update(turned_.data());
-  for (std::size_t s = 0; s < centres_.size(); ++s) {
-    const CollisionSphere& sphere = robot_->spheres[s];
-    centres_[s] = state_.world_from_link(sphere.link) * sphere.center;
+  for (Eigen::Index s = 0; s < centres_.rows(); ++s) {
+    const CollisionSphere& sphere = robot_->spheres[static_cast<std::size_t>(s)];
+    centres_.row(s) = (state_.world_from_link(sphere.link) * sphere.center).transpose();
   }
-  for (std::size_t b = 0; b < bound_centres_.size(); ++b) {
-    const RobotParameter::LinkBound& bound = robot_->bounds[b];
-    bound_centres_[b] = state_.world_from_link(bound.link) * bound.center;
+  for (Eigen::Index b = 0; b < bound_centres_.rows(); ++b) {
+    const RobotParameter::LinkBound& bound = robot_->bounds[static_cast<std::size_t>(b)];
+    bound_centres_.row(b) = (state_.world_from_link(bound.link) * bound.center).transpose();
   }
 }
 

@@ -112,7 +112,7 @@ class DetourSearch {
   RobotState state_;
   int half_ = 0;    ///< offsets run from −half_ to half_ grid steps
   int slopes_ = 0;  ///< 2 · steepest + 1
-  std::vector<Eigen::Vector3d> centres_, bound_centres_;
+  Eigen::MatrixX3d centres_, bound_centres_;
   Eigen::VectorXd turned_;
   std::vector<Costs> obstacle_;  ///< as many as configurations: each has its place, by its index
   Progress progress_;

@@ -431,7 +431,7 @@ void TransitionRows::add_obstacles() {
     int nearest = -1;
     for (int i = bound.begin; i < bound.end; ++i) {
       const std::size_t k = static_cast<std::size_t>(i);
-      const DistanceSample found = in_the_way_.sample(state_.sphere_centres[k], 0.0);
+      const DistanceSample found = in_the_way_.sample(state_.sphere_centre(k), 0.0);
       if (found.distance - robot_->spheres[k].radius >= least) continue;
       least = found.distance - robot_->spheres[k].radius;
       worst = found;
@@ -440,9 +440,8 @@ void TransitionRows::add_obstacles() {
     if (nearest < 0) continue;
     double* row = add(TransitionFailure::kObstacle, static_cast<int>(b), 0,
                       least - options_.obstacle_margin_m);
-    state_.kinematics.add_point_gradient(bound.link,
-                                         state_.sphere_centres[static_cast<std::size_t>(nearest)],
-                                         worst.gradient, 1.0, row);
+    state_.kinematics.add_point_gradient(bound.link, state_.sphere_centre(nearest), worst.gradient,
+                                         1.0, row);
   }
 }
 

@@ -52,15 +52,15 @@ ConfigurationState::ConfigurationState(std::shared_ptr<const RobotParameter> par
     : robot(known(std::move(parameter))),
       kinematics(*robot->robot),
       q(robot->robot->configuration_size()),
-      sphere_centres(robot->spheres.size()),
+      sphere_centres(static_cast<Eigen::Index>(robot->spheres.size()), 3),
       bound_centres(static_cast<Eigen::Index>(robot->bounds.size()), 3) {}
 
 void ConfigurationState::update(const double* configuration) {
   std::copy_n(configuration, q.size(), q.data());
   kinematics.update(configuration);
-  for (std::size_t i = 0; i < sphere_centres.size(); ++i) {
-    const CollisionSphere& sphere = robot->spheres[i];
-    sphere_centres[i] = kinematics.world_from_link(sphere.link) * sphere.center;
+  for (Eigen::Index i = 0; i < sphere_centres.rows(); ++i) {
+    const CollisionSphere& sphere = robot->spheres[static_cast<std::size_t>(i)];
+    sphere_centres.row(i) = (kinematics.world_from_link(sphere.link) * sphere.center).transpose();
   }
   for (Eigen::Index i = 0; i < bound_centres.rows(); ++i) {
     const RobotParameter::LinkBound& bound = robot->bounds[static_cast<std::size_t>(i)];

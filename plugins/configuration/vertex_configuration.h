@@ -32,13 +32,16 @@ struct ConfigurationState {
   RobotState kinematics;
   Eigen::VectorXd q;
   double time_s = 0.0;
-  std::vector<Eigen::Vector3d> sphere_centres;  ///< world frame, as RobotParameter::spheres
-  Eigen::MatrixX3d bound_centres;               ///< by row, likewise, as RobotParameter::bounds
+  Eigen::MatrixX3d sphere_centres;  ///< by row, world frame, as RobotParameter::spheres
+  Eigen::MatrixX3d bound_centres;   ///< likewise, as RobotParameter::bounds
 
   explicit ConfigurationState(std::shared_ptr<const RobotParameter> parameter);
   void update(const double* configuration);
 
   const Robot& model() const { return kinematics.robot(); }
+  Eigen::Vector3d sphere_centre(Eigen::Index sphere) const {
+    return sphere_centres.row(sphere).transpose();
+  }
   Eigen::Vector3d bound_centre(std::size_t bound) const {
     return bound_centres.row(static_cast<Eigen::Index>(bound)).transpose();
   }

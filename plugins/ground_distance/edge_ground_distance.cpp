@@ -11,19 +11,18 @@ EdgeGroundDistance::EdgeGroundDistance(const RobotParameter& robot, double margi
 
 void EdgeGroundDistance::error(const ConfigurationState& q, Eigen::Ref<Eigen::VectorXd> e) const {
   require_rows(kTag, e.size(), static_cast<long>(q.robot->spheres.size()));
-  for (std::size_t i = 0; i < q.sphere_centres.size(); ++i) {
-    e[static_cast<Eigen::Index>(i)] =
-        std::max(0.0, margin_m + q.robot->spheres[i].radius - q.sphere_centres[i].z());
+  for (Eigen::Index i = 0; i < q.sphere_centres.rows(); ++i) {
+    e[i] = std::max(0.0, margin_m + q.robot->spheres[i].radius - q.sphere_centre(i).z());
   }
 }
 
 void EdgeGroundDistance::jacobians(const ConfigurationState& q,
                                    JacobianRef<EdgeGroundDistance, 0> j) const {
-  for (std::size_t i = 0; i < q.sphere_centres.size(); ++i) {
+  for (Eigen::Index i = 0; i < q.sphere_centres.rows(); ++i) {
     const CollisionSphere& sphere = q.robot->spheres[i];
-    if (margin_m + sphere.radius - q.sphere_centres[i].z() <= 0.0) continue;
-    q.kinematics.add_point_gradient(sphere.link, q.sphere_centres[i], Eigen::Vector3d::UnitZ(),
-                                    -1.0, j.row(static_cast<Eigen::Index>(i)).data());
+    if (margin_m + sphere.radius - q.sphere_centre(i).z() <= 0.0) continue;
+    q.kinematics.add_point_gradient(sphere.link, q.sphere_centre(i), Eigen::Vector3d::UnitZ(), -1.0,
+                                    j.row(i).data());
   }
 }
 

@@ -13,14 +13,13 @@ std::optional<PlaceRow> row_apart(const ConfigurationState& q, const TouchablePl
   for (int i = bound.begin; i < bound.end; ++i) {
     const std::size_t k = static_cast<std::size_t>(i);
     const TouchablePlaces::Distance found =
-        places.distance(place, q.sphere_centres[k], q.robot->spheres[k].radius);
+        places.distance(place, q.sphere_centre(k), q.robot->spheres[k].radius);
     if (found.value >= worst.value) continue;
     worst = found;
     nearest = i;
   }
   if (nearest < 0) return std::nullopt;
-  return PlaceRow{worst.value - bands.margin_m, q.sphere_centres[static_cast<std::size_t>(nearest)],
-                  worst.gradient};
+  return PlaceRow{worst.value - bands.margin_m, q.sphere_centre(nearest), worst.gradient};
 }
 
 std::optional<PlaceRow> row_touching(const ConfigurationState& q, const TouchablePlaces& places,

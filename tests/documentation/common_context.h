@@ -6,6 +6,7 @@
 
 #include <documentation/example_context.h>
 #include <locograph/common/error.h>
+#include <locograph/common/simd.h>
 #include <locograph/common/uniform.h>
 
 #include <csignal>
@@ -30,6 +31,14 @@ struct Context : in_common::Context {
   Context() { write_example_file("robot.urdf", text); }
 };
 }  // namespace input_file_h
+namespace simd_h {
+using namespace simd_portable;
+struct Context {
+  std::vector<double> numbers = std::vector<double>(8, 1.0), results = numbers;
+  const double* from = numbers.data();
+  double* to = results.data();
+};
+}  // namespace simd_h
 namespace stop_signals_h {
 struct Context : in_common::Context {
   /// As if somebody pressed Ctrl-C.

@@ -116,6 +116,13 @@ struct Context : in_plugins::Context {
   const Robot& model = robot;
 };
 }  // namespace configuration_frame_parameter_h
+namespace configuration_near_spheres_h {
+struct Context : in_plugins::Context {
+  const WorldDistance world;
+  const double margin_m = 0.05;
+  Eigen::VectorXd e = Eigen::VectorXd::Zero(q.sphere_centres.rows());
+};
+}  // namespace configuration_near_spheres_h
 namespace configuration_path_field_h {
 struct Context {
   const FileLine where{"plan.g2o", 12, "maps"};

@@ -14,7 +14,6 @@
 #include <locograph/solvers/pcg_block_jacobi.h>
 #include <locograph/solvers/pcg_block_product.h>
 #include <locograph/solvers/pcg_options.h>
-#include <locograph/solvers/simd.h>
 
 #include <Eigen/SparseCore>
 #include <utility>
@@ -111,9 +110,6 @@ struct Context : in_solvers::Context {
   }
 };
 }  // namespace schur_structure_h
-namespace simd_h {
-using namespace simd_portable;
-}
 namespace supernodes_h {
 struct Context : in_solvers::Context {
   const BlockGraph graph = block_graph(pattern);

@@ -8,7 +8,7 @@
 #include <locograph/robots/robot.h>
 #include <locograph/world/collision_world.h>
 #include <locograph/world/convex_shape.h>
-#include <locograph/world/distance_field.h>
+#include <locograph/world/distance_view.h>
 #include <locograph/world/octree.h>
 #include <locograph/world/perception/camera_noise.h>
 #include <locograph/world/perception/configuration_buffer.h>
@@ -76,6 +76,13 @@ struct Context : in_world::Context {
   const std::vector<Bar> bars = world.bars;
 };
 }  // namespace leftover_map_h
+namespace point_list_h {
+struct Context : in_world::Context {
+  const WorldDistance seen = distance_view(world);
+  const std::vector<double> x = {0.0, 1.0}, y = x, z = x;
+  std::vector<double> distances = x;
+};
+}  // namespace point_list_h
 namespace distance_source_h {
 struct Context : in_world::Context {
   LocalMap map;

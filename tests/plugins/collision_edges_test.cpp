@@ -93,7 +93,7 @@ struct SweptReference {
   SweptReference(const WorldDistance& world, const ConfigurationState& a,
                  const ConfigurationState& b, int sphere, double margin, int samples) {
     const double rho = a.robot->spheres[sphere].radius + margin;
-    const Eigen::Vector3d from = a.sphere_centres[sphere], to = b.sphere_centres[sphere];
+    const Eigen::Vector3d from = a.sphere_centre(sphere), to = b.sphere_centre(sphere);
     worst = second = -1e3;
     for (int k = 0; k < samples; ++k) {
       const double s = (2 * k + 1) / (2.0 * samples), t = (1.0 - s) * a.time_s + s * b.time_s;
@@ -356,7 +356,7 @@ TEST_F(SweptObstacleDistance, IsTheKnownOneForASphereThatPassesABall) {
   ball.shape = Obstacle::Shape::kSphere;
   ball.size << 0.2, 0.0, 0.0;
   ball.world_from_obstacle.translation() =
-      middle.sphere_centres[0] + (0.2 + r + 0.04) * Eigen::Vector3d::UnitZ();
+      middle.sphere_centre(0) + (0.2 + r + 0.04) * Eigen::Vector3d::UnitZ();
   world = world_of({ball});
   // Three samples: the middle one is where the sphere is nearest, 0.04 m away; h = 0.1.
   EXPECT_NEAR(between(-0.3, 0.3, 0.05, 3)[0], std::hypot(r + 0.05, 0.1) - (r + 0.04), 1e-12);
@@ -373,7 +373,7 @@ TEST_F(SweptObstacleDistance, HasAGradientJustInsideTheMargin) {
   ball.shape = Obstacle::Shape::kSphere;
   ball.size << 0.2, 0.0, 0.0;
   ball.world_from_obstacle.translation() =
-      middle.sphere_centres[0] + (0.2 + needed - kBeyond) * Eigen::Vector3d::UnitZ();
+      middle.sphere_centre(0) + (0.2 + needed - kBeyond) * Eigen::Vector3d::UnitZ();
   world = world_of({ball});
   Graph graph = graph_of(robot);
   graph.parameters().set(kWorld, world);
@@ -487,7 +487,7 @@ TEST_F(SweptObstacleDistance, MissesNothingThatALookEverywhereFinds) {
     const Eigen::VectorXd e = Evaluated(graph).error(0);
     for (int s = 0; s < e.size(); ++s) {
       const auto room = [&](double f) {
-        return seen.distance((1.0 - f) * a.sphere_centres[s] + f * b.sphere_centres[s], 1.0 + f) -
+        return seen.distance((1.0 - f) * a.sphere_centre(s) + f * b.sphere_centre(s), 1.0 + f) -
                robot.robot->spheres[s].radius - 0.05;
       };
       double least = 0.0;

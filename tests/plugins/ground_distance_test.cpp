@@ -14,8 +14,8 @@ class GroundDistance : public RobotCaseTest {
     ConfigurationState state(robot.robot);
     state.update(q.data());
     std::vector<double> result;
-    for (std::size_t i = 0; i < state.sphere_centres.size(); ++i) {
-      result.push_back(state.sphere_centres[i].z() - robot.robot->spheres[i].radius);
+    for (Eigen::Index i = 0; i < state.sphere_centres.rows(); ++i) {
+      result.push_back(state.sphere_centre(i).z() - robot.robot->spheres[i].radius);
     }
     return result;
   }

@@ -208,7 +208,7 @@ void compare_distances(const RobotCase& robot, const std::shared_ptr<const World
   for (int k = 0; k < kStates; ++k) {
     const ConfigurationState& state = states[k];
     const auto smooth = [&](int row) {
-      const Eigen::Vector3d& centre = state.sphere_centres[row];
+      const Eigen::Vector3d& centre = state.sphere_centre(row);
       std::vector<double> distances = {now.max_distance()};
       if (now.map) {
         if (kink_distance(*now.map, centre) < kKink) return false;
@@ -308,7 +308,7 @@ TEST(HingeGradient, DoesNotVanishJustInsideTheMarginOfAnObstacle) {
   ball.shape = Obstacle::Shape::kSphere;
   ball.size << 0.2, 0.0, 0.0;
   ball.world_from_obstacle.translation() =
-      state.sphere_centres[0] +
+      state.sphere_centre(0) +
       (0.2 + kMargin + robot.robot->spheres[0].radius - kBeyond) * Eigen::Vector3d::UnitX();
   graph.parameters().set(kWorld, world_of({ball}));
   graph.add_edge(EdgeObstacleDistance(*robot.robot, kWorld, kMargin, 1.0),

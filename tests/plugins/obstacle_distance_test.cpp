@@ -34,7 +34,7 @@ TEST_F(ObstacleDistance, IsWhatTheMarginLacksForEverySphere) {
   for (int i = 0; i < e.size(); ++i) {
     double nearest = 1.0;
     for (const Obstacle& obstacle : world->snapshot->world().obstacles) {
-      nearest = std::min(nearest, obstacle.distance(q.sphere_centres[i], 4.0));
+      nearest = std::min(nearest, obstacle.distance(q.sphere_centre(i), 4.0));
     }
     const double lacks = kMargin - (nearest - robot.robot->spheres[i].radius);
     EXPECT_NEAR(e[i], std::max(0.0, lacks), 1e-14);
@@ -53,7 +53,7 @@ TEST_F(ObstacleDistance, GrowsWithTheDepthInsideAndPointsOutwards) {
     const Eigen::VectorXd e = at(x, 0.0);
     const ConfigurationState q = state(x, 0.0);
     for (int i = 0; i < e.size(); ++i) {
-      const double depth = q.sphere_centres[i].x() - 2.0;
+      const double depth = q.sphere_centre(i).x() - 2.0;
       EXPECT_NEAR(e[i], std::max(0.0, kMargin + robot.robot->spheres[i].radius + depth), 1e-12);
       if (before[i] > 0.0) {
         EXPECT_NEAR(e[i] - before[i], 0.1, 1e-12);
@@ -82,7 +82,7 @@ TEST_F(ObstacleDistance, GrowsWithTheDepthInsideAMapToo) {
   boxes[0].size << 1.0, 3.0, 2.0;
   world = world_of({}, octree_from_boxes(boxes, 0.05));
   // One sphere of the pelvis, from outside to 0.4 m inside.
-  const Eigen::Vector3d centre = state(0.0, 0.0).sphere_centres[0];
+  const Eigen::Vector3d centre = state(0.0, 0.0).sphere_centre(0);
   double before = 0.0;
   for (double depth = 0.0; depth <= 0.4; depth += 0.05) {
     const double e = at(2.0 + depth - centre.x(), 0.0)[0];

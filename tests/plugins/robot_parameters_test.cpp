@@ -110,8 +110,8 @@ TEST_F(RobotParameters, GiveEveryConfigurationItsKinematicsSpheresAndTime) {
   state.update(vertex.state.data());
   for (std::size_t i = 0; i < centauro.robot->spheres.size(); ++i) {
     const CollisionSphere& sphere = centauro.robot->spheres[i];
-    EXPECT_TRUE(
-        derived.sphere_centres[i].isApprox(state.world_from_link(sphere.link) * sphere.center));
+    EXPECT_TRUE(derived.sphere_centre(static_cast<Eigen::Index>(i))
+                    .isApprox(state.world_from_link(sphere.link) * sphere.center));
   }
 }
 

@@ -117,8 +117,7 @@ class SurfaceDistance : public testing::Test {
   Eigen::Vector3d centre(int row, const Eigen::VectorXd& q) const {
     ConfigurationState state(robot.robot);
     state.update(q.data());
-    return state.sphere_centres[static_cast<std::size_t>(
-        robot.robot->bounds[static_cast<std::size_t>(row)].begin)];
+    return state.sphere_centre(robot.robot->bounds[static_cast<std::size_t>(row)].begin);
   }
   double radius(int row) const {
     return robot.robot

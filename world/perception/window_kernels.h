@@ -9,6 +9,8 @@
 /// (x, y, z) of the window is stored at ((x + ring) mod size) of each axis. size[0] is a multiple
 /// of kVoxelBlock; rings are multiples of 8.
 
+#include <locograph/common/level_table.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -122,17 +124,6 @@ struct WindowKernels {
 const WindowKernels& window_kernels_at(const std::string& level);
 
 // What window_kernels.cpp leaves behind, compiled for each level.
-namespace simd_v2 {
-extern const WindowKernels window_kernels;
-}
-namespace simd_v3 {
-extern const WindowKernels window_kernels;
-}
-namespace simd_v4 {
-extern const WindowKernels window_kernels;
-}
-namespace simd_portable {
-extern const WindowKernels window_kernels;
-}
+LOCOGRAPH_DECLARE_LEVELS(WindowKernels, window_kernels);
 
 }  // namespace locograph

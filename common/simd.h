@@ -1,7 +1,7 @@
 #pragma once
 /// The widest vector of doubles that a source is compiled for. Only for sources that are compiled
-/// once for each level (level_tables.h): the width follows the flags, so no header but these
-/// sources includes this one.
+/// once for each level (cmake/LocographLevels.cmake): the width follows the flags, so no header but
+/// these sources includes this one.
 ///
 ///     Vector v = load(from);  v = minus_product(v, v, broadcast<Vector>(2.0));  store(to, v);
 ///     store_partial(to, v, 3);                  // the first three lanes
@@ -15,6 +15,7 @@
 /// - Nothing here or in these sources has linkage that the linker could use elsewhere, not even
 ///   std::min: a program has one copy of an inline function, and it would be any of them.
 
+#include <cstdint>
 #include <cstring>
 
 #if defined(__AVX__)
