@@ -13,6 +13,7 @@
 #include <locograph/planners/online/changing_obstacles.h>
 #include <locograph/planners/online/free_drive.h>
 #include <locograph/planners/online/free_way.h>
+#include <locograph/planners/online/resumed_drive.h>
 #include <locograph/planners/online/resumed_plan.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/seen_world.h>
@@ -195,10 +196,12 @@ double end_of(const Graph& graph) {
 }
 
 /// Throws UsageError where `--replan` makes no sense.
-void check_replan(const PlanFile& file, const Judging& judging) {
-  if (!judging.task || judging.task->drive) {
-    throw UsageError("--replan: " + file.name + " is no plan of a scenario's contact task");
-  }
+void check_replan(const PlanFile& file, const Judging& judging, bool by_eye) {
+  if (!judging.task) throw UsageError("--replan: " + file.name + " is no plan of a scenario");
+  if (!judging.task->drive || !by_eye) return;
+  throw UsageError(
+      "--replan: not of drives with --cameras or --clouds, as they would go back and "
+      "to the side, where cameras do not look");
 }
 
 /// What a robot does where it has had to stop: it waits, or plans on.
@@ -236,11 +239,12 @@ class GoingOn {
       }
     }
     if (!resumed.success() && options_.replan) {
-      resumed =
-          resume_plan(stopped, *judging_.task, world_now(stopped),
-                      {.termination = {.deadline = Deadline::of_limit(options_.replan_timeout_s),
-                                       .stop = &stop_flag()},
-                       .threads = options_.threads});
+      const Termination termination{.deadline = Deadline::of_limit(options_.replan_timeout_s),
+                                    .stop = &stop_flag()};
+      const Task& task = *judging_.task;
+      resumed = task.drive ? resume_drive(stopped, planned_, task, world_now(stopped), termination)
+                           : resume_plan(stopped, task, world_now(stopped),
+                                         {.termination = termination, .threads = options_.threads});
       resume_s_ += resumed.total_s;
       why_not_ = resumed.success() ? "" : why_not_ + "; planning on: " + resumed.reason;
     }
@@ -299,7 +303,7 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
   if (!file.plan.world) throw Error(file.name, 0, "the plan has no world", "a PARAMS_WORLD line");
   check_not_input(options.output, files_of(file));
   const Judging judging = judging_of(file, options.world);
-  if (options.replan) check_replan(file, judging);
+  if (options.replan) check_replan(file, judging, options.perception.given());
   if (!options.replan && parser.given("--replan-timeout")) {
     throw UsageError("--replan-timeout: not without --replan");
   }
@@ -400,8 +404,7 @@ Command add_refine(OptionParser& app) {
   parser.add_option("--deadline-ms", o.deadline_ms, "Time one cycle may take; 0: no limit")
       .not_negative()
       .show_default();
-  parser.add_flag("--replan", o.replan,
-                  "Where a plan on legs is blocked, plan on from where the robot has stopped");
+  parser.add_flag("--replan", o.replan, "Where the robot has stopped, plan on from there");
   parser
       .add_option("--replan-timeout", o.replan_timeout_s,
                   "Seconds that planning on may take each time; 0: no limit")

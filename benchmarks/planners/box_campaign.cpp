@@ -1,15 +1,17 @@
 // Boxes at random in a walled corridor: how often the local planner gets the CENTAURO drive past
 // them, judged by the judge.
 //
-//     box_campaign [SEED] [CASES] [--rate 50] [--iterations 1] [--every 25]
+//     box_campaign [SEED] [CASES] [--rate 50] [--iterations 1] [--every 25] [--replan]
 //
 // Prints one JSON object: a row for each case, then the totals. The window of every n-th cycle is
-// judged. Cycles as `refine` has them, but for what is asked for: --rate 0 is one cycle for each
+// judged. With --replan the robot plans on from where it has stopped, and where it has ended beside
+// its goal. Cycles as `refine` has them, but for what is asked for: --rate 0 is one cycle for each
 // step, --iterations 0 all that a cycle finds. A case counts as passed when every configuration was
 // refined, the judge finds the result feasible, and the base ends within 0.3 m of the plan's end
 // along x.
 #include <locograph/check/judge.h>
 #include <locograph/planners/offline/drive/drive_graph.h>
+#include <locograph/planners/online/resumed_drive.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/plan.h>
 
@@ -28,8 +30,8 @@ namespace {
 
 class Campaign : public BoxDrives {
  public:
-  Campaign(double rate_hz, int iterations, int every)
-      : rate_hz_(rate_hz), iterations_(iterations), every_(every) {}
+  Campaign(double rate_hz, int iterations, int every, bool replan)
+      : rate_hz_(rate_hz), iterations_(iterations), every_(every), replan_(replan) {}
 
   nlohmann::ordered_json run(const BoxScene& scene) {
     const World world = world_of(scene, true);
@@ -41,6 +43,16 @@ class Campaign : public BoxDrives {
     WalkOptions options = walk_options_for(plan_of(graph));
     options.rate_hz = rate_hz_;
     options.cycle_iterations = iterations_;
+    double resume_s = 0.0;
+    if (replan_) {
+      options.resume = [&](const Graph& stopped) {
+        constexpr double kMost_s = 20.0;
+        ResumedPlan resumed =
+            resume_drive(stopped, motion(), task(), seen, {.deadline = Deadline::after(kMost_s)});
+        resume_s += resumed.total_s;
+        return std::move(resumed.graph);
+      };
+    }
     JudgedWindows windows(graph, judge, check_, every_);
     options.on_cycle = [&](const CycleReport& cycle) { windows.look(cycle); };
     const WalkReport report = walk_plan(
@@ -68,6 +80,10 @@ class Campaign : public BoxDrives {
             {"refine_success", report.success()},
             {"reason", report.reason},
             {"configurations", report.configurations},
+            {"resumed", report.resumed},
+            {"resume_s", resume_s},
+            {"goal_distance_m", report.goal_distance_m},
+            {"time_ratio", refined.time_s.back() / motion().time_s.back()},
             {"feasible_cycles", report.feasible_cycles},
             {"windows_called_feasible", windows.counts().called_feasible},
             {"windows_wrongly_feasible", windows.counts().wrongly_feasible},
@@ -99,13 +115,15 @@ class Campaign : public BoxDrives {
 
   double rate_hz_;
   int iterations_, every_;
+  bool replan_;
   std::vector<double> all_times_;
   CheckOptions check_ = {.known = task().end_effectors()};
 };
 
-void run(unsigned long long seed, int cases, double rate_hz, int iterations, int every) {
+void run(unsigned long long seed, int cases, double rate_hz, int iterations, int every,
+         bool replan) {
   std::mt19937_64 random(seed);
-  Campaign campaign(rate_hz, iterations, every);
+  Campaign campaign(rate_hz, iterations, every, replan);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   int redrawn = 0;
   while (static_cast<int>(rows.size()) < cases) {
@@ -127,16 +145,22 @@ void run(unsigned long long seed, int cases, double rate_hz, int iterations, int
     for (const nlohmann::ordered_json& row : rows) total += row[field].get<int>();
     return total;
   };
+  std::vector<double> ratios;
+  for (const nlohmann::ordered_json& row : rows) ratios.push_back(row["time_ratio"].get<double>());
+  std::ranges::sort(ratios);
   const nlohmann::ordered_json result = {
       {"seed", seed},
       {"cases", cases},
       {"redrawn", redrawn},
       {"rate_hz", rate_hz},
       {"iterations", iterations},
+      {"replan", replan},
       {"original_feasible", count("original_feasible")},
       {"refine_success", count("refine_success")},
       {"feasible", count("feasible")},
       {"passed", count("passed")},
+      {"time_ratio_median", ratios[ratios.size() / 2]},
+      {"time_ratio_most", ratios.back()},
       {"windows_called_feasible", sum("windows_called_feasible")},
       {"windows_wrongly_feasible", sum("windows_wrongly_feasible")},
       {"cycle_ms", campaign.all_cycles()},
@@ -150,6 +174,7 @@ void run(unsigned long long seed, int cases, double rate_hz, int iterations, int
 int main(int argc, char** argv) {
   unsigned long long seed = 1;
   int cases = 20, iterations = 1, every = 25;
+  bool replan = false;
   double rate_hz = 50.0;
   locograph::OptionParser app("Boxes at random in a walled corridor", "box_campaign");
   app.add_option("SEED", seed, "Of the boxes");
@@ -158,6 +183,7 @@ int main(int argc, char** argv) {
       .not_negative();
   app.add_option("--iterations", iterations, "Of a cycle at most; 0: any number").not_negative();
   app.add_option("--every", every, "Judge the window of every n-th cycle").positive();
-  return locograph::run_benchmark(app, argc, argv,
-                                  [&] { locograph::run(seed, cases, rate_hz, iterations, every); });
+  app.add_flag("--replan", replan, "Plan on from where the robot has come to rest");
+  return locograph::run_benchmark(
+      app, argc, argv, [&] { locograph::run(seed, cases, rate_hz, iterations, every, replan); });
 }

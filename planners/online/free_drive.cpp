@@ -1,11 +1,10 @@
 #include <locograph/planners/offline/drive/drive_graph.h>
-#include <locograph/planners/offline/drive/wheel_motion.h>
 #include <locograph/planners/online/changing_obstacles.h>
+#include <locograph/planners/online/driven_way.h>
 #include <locograph/planners/online/free_drive.h>
 #include <locograph/planners/online/heading.h>
 #include <locograph/planners/online/led_wrenches.h>
 #include <locograph/planners/plan/plan.h>
-#include <locograph/planners/posture/contact_projection.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,76 +14,10 @@
 namespace locograph {
 namespace {
 
-/// Of the base while it speeds up, at most; the way on which it is led back to its plan.
-constexpr double kAcceleration_m_s2 = 0.3, kBack_m = 1.5;
+/// The way on which the base is led back to its plan.
+constexpr double kBack_m = 1.5;
 /// Of a step while the robot speeds up.
 constexpr int kMostParts = 32;
-
-/// The wheels of a stance, kept on the ground and steered along their way.
-struct Wheels {
-  Wheels(const Robot& robot, const Stance& stance)
-      : contacts_(stance.contacts), motion_(robot, stance), state_(robot), closed_(robot) {}
-
-  /// Over a way on which the robot is placed already, but for its wheels, which are as they are in
-  /// its first configuration. Whether they can be put on the ground.
-  bool drive(std::vector<Eigen::VectorXd>& way) {
-    for (std::size_t k = 1; k < way.size(); ++k) {
-      if (!put_down(way[k])) return false;
-    }
-    // Steering hardly moves a wheel's centre.
-    std::vector<std::vector<Eigen::Vector3d>> centres;
-    for (const Eigen::VectorXd& q : way) {
-      std::vector<Eigen::Vector3d>& here = centres.emplace_back();
-      for (int w = 0; w < motion_.wheels(); ++w) here.push_back(motion_.pose(q, w).centre);
-    }
-    for (std::size_t k = 1; k < way.size(); ++k) {
-      if (!steer(way[k], centres[k - 1], centres[std::min(k + 1, way.size() - 1)])) return false;
-      motion_.roll(way[k - 1], way[k]);
-    }
-    return true;
-  }
-
-  /// As it begins; false: it cannot be done.
-  bool steer_along(const std::vector<Eigen::VectorXd>& way, Eigen::VectorXd& steered) {
-    std::vector<Eigen::Vector3d> from, to;
-    for (int w = 0; w < motion_.wheels(); ++w) {
-      from.push_back(motion_.pose(way[0], w).centre);
-      to.push_back(motion_.pose(way[1], w).centre);
-    }
-    steered = way.front();
-    if (!steer(steered, from, to)) return false;
-    motion_.roll(way.front(), steered);
-    return true;
-  }
-
- private:
-  /// Steering axes are not quite upright: some times over.
-  bool steer(Eigen::VectorXd& q, const std::vector<Eigen::Vector3d>& from,
-             const std::vector<Eigen::Vector3d>& to) {
-    constexpr int kTimes = 3;
-    constexpr double kLeast_m = 1e-3;
-    for (int time = 0; time < kTimes; ++time) {
-      for (int w = 0; w < motion_.wheels(); ++w) {
-        const auto k = static_cast<std::size_t>(w);
-        const Eigen::Vector3d way = to[k] - from[k];
-        if (way.norm() > kLeast_m) motion_.steer(q, w, way);
-      }
-      if (!put_down(q)) return false;
-    }
-    return true;
-  }
-
-  bool put_down(Eigen::VectorXd& q) {
-    state_.update(q.data());
-    closed_.set(contacts_, held_balls(state_, contacts_, [](const Contact&) { return true; }));
-    return closed_.project(q);
-  }
-
-  const std::vector<Contact>& contacts_;
-  WheelMotion motion_;
-  RobotState state_;
-  ContactProjection closed_;
-};
 
 /// Way and times from 0 on, from where the robot stands at rest.
 struct Rest {
@@ -124,24 +57,12 @@ Eigen::VectorXd between(const Robot& robot, const Eigen::VectorXd& a, const Eige
   return q;
 }
 
-/// How long a step of a plan takes, in the middle of all that move.
-double usual_step_s(const Motion& planned) {
-  std::vector<double> steps_s;
-  for (std::size_t i = 1; i < planned.time_s.size(); ++i) {
-    if (planned.configurations[i] == planned.configurations[i - 1]) continue;
-    steps_s.push_back(planned.time_s[i] - planned.time_s[i - 1]);
-  }
-  if (steps_s.empty()) return planned.time_s.back();
-  std::ranges::sort(steps_s);
-  return steps_s[steps_s.size() / 2];
-}
-
 /// Along the rest of what was planned, in its time but for the beginning, as the root of the way at
 /// first. Steps that take longer there than others do are made in as many that do not: what moves
 /// is looked at in each, and wheels that steer while one speeds up slip less.
 std::optional<Rest> along_the_plan(const Robot& robot, const Motion& planned, int at,
-                                   const Eigen::VectorXd& stands, Wheels& wheels, double ramp_m,
-                                   double usual_s) {
+                                   const Eigen::VectorXd& stands, DrivenWheels& wheels,
+                                   double ramp_m, double usual_s) {
   constexpr double kLeast = 0.1, kRounding = 1e-3;
   const auto share_at = [&](double gone_m) {
     return std::clamp(std::sqrt(gone_m / ramp_m), kLeast, 1.0);
@@ -175,27 +96,6 @@ std::optional<Rest> along_the_plan(const Robot& robot, const Motion& planned, in
   return rest;
 }
 
-/// Wheels steered along the first step, from rest to rest, at half of the velocity that joints
-/// allow at most; seconds that it takes.
-double steer_first(const Task& task, const Rest& rest, Wheels& wheels, Eigen::VectorXd& steered) {
-  constexpr double kAcceleration_rad_s2 = 5.0, kShareOfLimit = 0.8;
-  const Robot& robot = *task.robot->robot;
-  const double limit = task.check.joint_acceleration_rad_s2;
-  const double acceleration =
-      limit > 0.0 ? std::min(kAcceleration_rad_s2, kShareOfLimit * limit) : kAcceleration_rad_s2;
-  const std::vector<Eigen::VectorXd>& way = rest.motion.configurations;
-  if (!wheels.steer_along(way, steered)) steered = way.front();
-  double needs_s = 0.0;
-  const int base = robot.base_configuration_size();
-  for (int j = 0; j < robot.active_joint_count(); ++j) {
-    const double moves = std::abs(steered[base + j] - way.front()[base + j]);
-    const double most = robot.active_joint(j).max_velocity;
-    needs_s = std::max(needs_s, std::sqrt(6.0 * moves / acceleration));
-    if (std::isfinite(most) && most > 0.0) needs_s = std::max(needs_s, 3.0 * moves / most);
-  }
-  return needs_s;
-}
-
 }  // namespace
 
 ResumedPlan wait_for_free_drive(const Graph& stopped, const Motion& planned, const Task& task,
@@ -216,7 +116,7 @@ ResumedPlan wait_for_free_drive(const Graph& stopped, const Motion& planned, con
   const Robot& robot = *task.robot->robot;
   const int stance = whole.stance_from.back();
   const Eigen::VectorXd stands = whole.configurations.back();
-  Wheels wheels(robot, whole.stances[static_cast<std::size_t>(stance)]);
+  DrivenWheels wheels(robot, whole.stances[static_cast<std::size_t>(stance)]);
   const int last = static_cast<int>(planned.configurations.size()) - 1;
   if (at >= last) return refused("nothing is left of the plan");
   double left_m = 0.0;
@@ -231,13 +131,14 @@ ResumedPlan wait_for_free_drive(const Graph& stopped, const Motion& planned, con
     return refused("the robot is too far beside the way that was planned");
   }
   const double speed_m_s = task.drive->speed_m_s, usual_s = usual_step_s(planned);
-  const double ramp_m = speed_m_s * speed_m_s / (2.0 * kAcceleration_m_s2);
+  const double ramp_m = speed_m_s * speed_m_s / (2.0 * kDriveAcceleration_m_s2);
   const std::optional<Rest> driven =
       along_the_plan(robot, planned, at, stands, wheels, ramp_m, usual_s);
   if (!driven) return refused("wheels do not stay on the ground on the way back to the plan");
   const Rest& rest = *driven;
   Eigen::VectorXd steered;
-  const double steers_s = steer_first(task, rest, wheels, steered);
+  if (!wheels.steer_along(rest.motion.configurations, steered)) steered = stands;
+  const double steers_s = steering_s(task, stands, steered);
   const double begin_s = whole.time_s.back();
   const auto after_s = obstacles.free_after(rest.motion, begin_s + steers_s);
   if (!after_s) {

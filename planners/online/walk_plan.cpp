@@ -98,6 +98,7 @@ class Walk {
   }
 
   WalkReport& report() { return report_; }
+  bool rolls(int i) const { return planner_.online_plan().rolls(i); }
 
  private:
   void find_end() {
@@ -225,8 +226,6 @@ class Walk {
     report_.verify_s.push_back(watch.seconds());
     return executed < follows_to_;
   }
-
-  bool rolls(int i) const { return planner_.online_plan().rolls(i); }
 
   /// Whether the window leads far from the plan, where something that moves meets it, and will have
   /// left it while the robot waits.
@@ -461,14 +460,16 @@ struct PlanWalk::Own {
   /// From where it has stopped; whether that could be planned.
   bool plan_on() {
     const WalkReport& stopped = walk->report();
-    if (!options.resume || !stopped.stopped_at || !stopped.at_rest ||
-        *stopped.stopped_at <= resumed_at || before.resumed >= options.most_resumed ||
-        options.termination.stopped()) {
+    if (!options.resume || stopped.success() || !stopped.at_rest ||
+        before.resumed >= options.most_resumed || options.termination.stopped()) {
       return false;
     }
+    const int last = static_cast<int>(walk->plan().slots.size()) - 1;
+    if (!stopped.stopped_at && !walk->rolls(last)) return false;
+    const int at = stopped.stopped_at.value_or(last);
+    if (at <= resumed_at) return false;
     std::optional<Graph> resumed = options.resume(graph);
     if (!resumed) return false;
-    const int at = *stopped.stopped_at;
     resumed_at = at;
     put_before(before, walk->report());
     before = std::move(walk->report());

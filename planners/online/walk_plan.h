@@ -37,8 +37,9 @@ struct WalkOptions {
   int cycle_iterations = 0;
   /// Of the walk, which ends between two cycles where the robot is.
   Termination termination = {};
-  /// Asked where a robot on legs has stopped: the plan as far as it was executed, and how it goes
-  /// on from there (resumed_plan.h). Nothing: the walk ends. May be empty.
+  /// Asked where a robot has stopped, or on wheels has ended beside its goal: the plan as far as it
+  /// was executed, and how it goes on from there (resumed_plan.h, resumed_drive.h). Nothing: the
+  /// walk ends. May be empty.
   std::function<std::optional<Graph>(const Graph& stopped)> resume = {};
   int most_resumed = 5;  ///< how often
   /// Called after each cycle, e.g. to show progress; may be empty.

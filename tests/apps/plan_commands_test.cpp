@@ -405,6 +405,23 @@ TEST(PlanCommands, RefinePlansOnWhereARobotOnLegsHadToStop) {
   EXPECT_FALSE(runner.exists("alone.g2o"));
 }
 
+TEST(PlanCommands, RefinePlansADriveOnAroundADeadEnd) {
+  const PlanRunner runner;
+  runner.write("dead_end.xml",
+               "<obstacles version=\"1\">\n"
+               "<box center=\"2.4 0 0.5\" size=\"0.2 2 1\"/>\n"
+               "<box center=\"1.6 1.2 0.5\" size=\"1.6 0.2 1\"/>\n"
+               "<box center=\"1.6 -1.2 0.5\" size=\"1.6 0.2 1\"/>\n"
+               "</obstacles>\n");
+  const std::string refine = "refine plan.g2o --obstacles dead_end.xml --json ";
+  EXPECT_EQ(runner.run(refine + "-o blocked.g2o").exit_code, 1);
+  const Outcome around = runner.run(refine + "--replan -o around.g2o");
+  EXPECT_EQ(around.exit_code, 0) << around.err << around.out;
+  EXPECT_EQ(around.json()["resumed"], 1);
+  EXPECT_GT(around.json()["resume_s"], 0.0);
+  EXPECT_EQ(runner.run("check around.g2o --obstacles dead_end.xml").exit_code, 0);
+}
+
 TEST(PlanCommands, ARefinedPlanPassesTheBoxAndTakesItsWorldAlong) {
   const PlanRunner runner;
   runner.write("box.xml", kBoxOnThePath);
@@ -564,7 +581,7 @@ TEST(PlanCommands, RefuseWrongUsageInOneLineAndWriteNothing) {
                             "refine plan.g2o -o out.g2o --rate 0",
                             "refine plan.g2o -o out.g2o --rate 1e9",
                             "refine plan.g2o -o out.g2o --rate nan",
-                            "refine plan.g2o -o out.g2o --replan",
+                            "refine plan.g2o -o out.g2o --replan --cameras",
                             "refine plan.g2o -o out.g2o --deadline-ms -1",
                             "refine plan.g2o -o out.g2o --threads 0",
                             "check",

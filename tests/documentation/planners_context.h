@@ -562,6 +562,20 @@ struct Context : in_planners::Context {
   Context() { cut_plan(stopped_graph, plan_of(stopped_graph), 1); }
 };
 }  // namespace online_free_drive_h
+namespace online_resumed_drive_h {
+struct Context : in_planners::online_free_drive_h::Context {
+  const std::shared_ptr<const WorldSnapshot>& world_now = world;
+};
+}  // namespace online_resumed_drive_h
+namespace online_driven_way_h {
+struct Context : in_planners::Context {
+  const Task task = drive_task(0.32, 5);
+  const Robot& robot = *task.robot->robot;
+  Motion motion = plan_wheeled_drive(task).motion;
+  const Stance& stance = motion.stances.front();
+  std::vector<Eigen::VectorXd> way = motion.configurations;
+};
+}  // namespace online_driven_way_h
 namespace online_sideways_detour_h {
 struct Context {
   LocalPlannerOptions options;

@@ -22,6 +22,12 @@ WheelPose WheelMotion::pose(const Eigen::VectorXd& q, int number) {
   return {state_, wheel(number).wheel};
 }
 
+int WheelMotion::steering_joint(int number) const {
+  const int carrier = wheel(number).wheel.carrier;
+  const int above = robot_.links()[static_cast<std::size_t>(carrier)].parent_joint;
+  return above < 0 ? -1 : robot_.joints()[static_cast<std::size_t>(above)].index;
+}
+
 bool WheelMotion::steer(Eigen::VectorXd& q, int number, const Eigen::Vector3d& direction) {
   const Eigen::Vector3d& normal = wheel(number).normal;
   const Eigen::Vector3d heading = pose(q, number).heading(normal);
@@ -29,9 +35,7 @@ bool WheelMotion::steer(Eigen::VectorXd& q, int number, const Eigen::Vector3d& d
   // The angle from the heading to the direction, about the normal.
   const double turn = std::atan2(normal.dot(heading.cross(direction)), heading.dot(direction));
   const double other = turn - std::copysign(pi, turn);
-  const int carrier = wheel(number).wheel.carrier;
-  const int above = robot_.links()[static_cast<std::size_t>(carrier)].parent_joint;
-  const int active = above < 0 ? -1 : robot_.joints()[static_cast<std::size_t>(above)].index;
+  const int active = steering_joint(number);
   if (active < 0) return std::min(std::abs(turn), std::abs(other)) < 1e-9;
   const double upright = state_.joint_axis(robot_.axes_of(active).front()).dot(normal);
   if (std::abs(upright) < kUpright) return false;

@@ -23,6 +23,8 @@ class WheelMotion {
     return wheels_[static_cast<std::size_t>(number)];
   }
 
+  /// The active joint above a wheel's carrier, which steers it; -1: none.
+  int steering_joint(int wheel) const;
   /// Turns the joint above a wheel's carrier until the wheel heads along a direction of its plane,
   /// either way round, whichever turn is smaller and within the joint's limits. Returns false, q
   /// unchanged, when there is none: no such joint, one that is not normal to the plane, or limits
