@@ -227,7 +227,7 @@ class GoingOn {
     ResumedPlan resumed;
     resumed.status = PlannerStatus::kNotFound;
     why_not_.clear();
-    if (waits_) {
+    if (waits_ && plan_of(stopped).slots.size() < planned_.configurations.size()) {
       const Task& task = *judging_.task;
       resumed = task.drive ? wait_for_free_drive(stopped, planned_, task, judging_.world)
                            : wait_for_free_way(stopped, planned_, segments_, task, judging_.world);
@@ -310,6 +310,7 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
   const Stopwatch watch;
   std::optional<RefinePerception> eyes;
   std::shared_ptr<const WorldSnapshot> seen;
+  bool shown = true;  // as much of it as the plan goes through
   WorldAt world_at;
   if (options.perception.given()) {
     eyes.emplace(file, judging, options.perception);
@@ -319,7 +320,9 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
   } else {
     seen = seen_world(file.graph, file.plan, judging.world->world());
     seen->distance();
-    world_at = [&seen](int executed) { return executed == 0 ? seen : nullptr; };
+    world_at = [&seen, &shown](int executed) {
+      return executed == 0 || !std::exchange(shown, true) ? seen : nullptr;
+    };
     walk_options.verify = step_check(judging);
   }
   const double field_s = watch.seconds();
@@ -330,6 +333,11 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
     walk_options.resume = [&](const Graph& stopped) {
       progress.emplace("planning on");
       std::optional<Graph> graph = going_on.from(stopped);
+      if (graph && seen) {
+        seen = seen_world(*graph, plan_of(*graph), judging.world->world());
+        seen->distance();
+        shown = false;
+      }
       progress.emplace("refining " + options.input);
       return graph;
     };

@@ -264,6 +264,13 @@ void DistanceField::lower(const PointList& points, double* nearest) const {
     for (int i = 0; i < points.count; ++i) nearest[i] = std::min(nearest[i], max_distance_);
     return;
   }
+  if (values_.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+    for (int i = 0; i < points.count; ++i) {  // more nodes than the kernels can tell apart
+      const Eigen::Vector3d point(points.x[i], points.y[i], points.z[i]);
+      nearest[i] = std::min(nearest[i], distance(point));
+    }
+    return;
+  }
   FieldNodes nodes{values_.data(), {}, {}, {}, inverse_resolution_, max_distance_};
   std::ranges::copy(dimensions_, nodes.dimensions);
   std::ranges::copy(lower_, nodes.lower);

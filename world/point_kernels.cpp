@@ -162,8 +162,8 @@ LOCOGRAPH_INLINE Pair pair_at(const float* values, const Nodes& nodes) {
 
 /// Whether a lane is above 0.
 LOCOGRAPH_INLINE bool any_above_zero(const Vector& v) {
-  double highest = v[0];
-  for (int i = 1; i < kLanes; ++i) highest = v[i] > highest ? v[i] : highest;
+  double highest = 0.0;
+  for (int i = 0; i < kLanes; ++i) highest = v[i] > highest ? v[i] : highest;
   return highest > 0.0;
 }
 

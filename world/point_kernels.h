@@ -4,7 +4,8 @@
 /// them.
 ///
 /// They agree with Obstacle::sample() and DistanceField::sample() up to rounding, and lower what is
-/// there: nearest[i] = min(nearest[i], distance of point i).
+/// there: nearest[i] = min(nearest[i], distance of point i). A point that is no number changes
+/// nothing.
 
 #include <locograph/common/level_table.h>
 #include <locograph/world/point_list.h>

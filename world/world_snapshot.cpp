@@ -1,4 +1,5 @@
 #include <locograph/world/distance_view.h>
+#include <locograph/world/point_kernels.h>
 #include <locograph/world/world_snapshot.h>
 #include <locograph/world/world_solids.h>
 
@@ -13,11 +14,13 @@ WorldSnapshot::WorldSnapshot(World world, double stamp_s, WorldFiles files,
       files_(std::move(files)),
       view_(std::move(view)) {
   view_.validate();
+  point_kernels();  // chosen before anything is asked, for choosing allocates
 }
 
 WorldSnapshot::WorldSnapshot(World world, WorldDistance seen, double stamp_s)
     : world_(std::move(world)), stamp_s_(stamp_s) {
   std::call_once(distance_made_, [&] { distance_.emplace(std::move(seen)); });
+  point_kernels();
 }
 
 WorldSnapshot::~WorldSnapshot() = default;

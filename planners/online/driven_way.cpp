@@ -59,6 +59,7 @@ bool DrivenWheels::steer_standing(const Eigen::VectorXd& stands, const Eigen::Ve
     contact.position =
         lowest_point(motion_.pose(stands, wheel++), standing.wheel.radius_m, standing.normal);
   }
+  state_.update(stands.data());
   closed_.set(locked, held_balls(state_, locked, [](const Contact&) { return true; }));
   return closed_.project(q);
 }
@@ -74,10 +75,9 @@ double DrivenWheels::largest_turn(const Eigen::VectorXd& from, const Eigen::Vect
   return largest_rad;
 }
 
-bool DrivenWheels::steer_other_way(const std::vector<Eigen::VectorXd>& way,
+void DrivenWheels::steer_other_way(const std::vector<Eigen::VectorXd>& way,
                                    Eigen::VectorXd& steered) const {
   constexpr double kHalfRound_rad = 2.0;  // in a step: more than wheels are steered while they roll
-  bool any = false;
   for (int w = 0; w < motion_.wheels(); ++w) {
     const int joint = motion_.steering_joint(w);
     if (joint < 0) continue;
@@ -87,9 +87,7 @@ bool DrivenWheels::steer_other_way(const std::vector<Eigen::VectorXd>& way,
     });
     if (turned == way.end()) continue;
     steered[at] = (*std::next(turned))[at];
-    any = true;
   }
-  return any;
 }
 
 double DrivenWheels::longest_way(const Eigen::VectorXd& from, const Eigen::VectorXd& to) {

@@ -36,8 +36,8 @@ class DrivenWheels {
   /// Of the centre of a wheel, from one configuration to another [m].
   double longest_way(const Eigen::VectorXd& from, const Eigen::VectorXd& to);
   /// Wheels that are turned half round on the way, as a joint has come to its limit, are steered so
-  /// from the start. Whether there are any.
-  bool steer_other_way(const std::vector<Eigen::VectorXd>& way, Eigen::VectorXd& steered) const;
+  /// from the start.
+  void steer_other_way(const std::vector<Eigen::VectorXd>& way, Eigen::VectorXd& steered) const;
   /// The joints that steer and turn wheels are in `to` as they are in `from`.
   void keep(const Eigen::VectorXd& from, Eigen::VectorXd& to) const;
 

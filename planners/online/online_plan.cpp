@@ -254,10 +254,17 @@ void OnlinePlan::go_as_led(const PlanRange& range, int back) {
 }
 
 double OnlinePlan::behind_m(int index) const {
-  const Eigen::VectorXd& planned = planned_.configurations[static_cast<std::size_t>(index)];
+  constexpr double kLeast_m = 1e-6;
+  const auto at = static_cast<std::size_t>(index);
+  const Eigen::VectorXd& planned = planned_.configurations[at];
   const Eigen::Vector3d behind = planned.head<3>() - configuration(index).head<3>();
-  const Eigen::Vector3d left = left_of(planned.data());
-  return behind.dot(left.cross(Eigen::Vector3d::UnitZ()));
+  Eigen::Vector3d way = left_of(planned.data()).cross(Eigen::Vector3d::UnitZ());
+  if (index > 0) {  // wherever it heads
+    Eigen::Vector3d moved = (planned - planned_.configurations[at - 1]).head<3>();
+    moved.z() = 0.0;
+    if (moved.norm() > kLeast_m) way = moved.normalized();
+  }
+  return behind.dot(way);
 }
 
 int OnlinePlan::first_index_on(int slot) const {

@@ -23,6 +23,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kGrid_m = 0.1, kBeyond_m = 3.0;  // how far beyond start and goal is looked
+constexpr double kFar_m = 50.0;                   // a million nodes
 constexpr double kBetween_m = 0.05;               // places that are looked at on a straight line
 constexpr double kNear_m = 0.3;                   // of start and goal, which may be less clear
 
@@ -86,13 +87,15 @@ class Grid {
       : places_(places),
         start_(start),
         goal_(goal),
-        half_(static_cast<int>(
-            std::ceil(((goal - start).lpNorm<Eigen::Infinity>() + kBeyond_m) / kGrid_m))),
-        nodes_(static_cast<std::size_t>(side()) * static_cast<std::size_t>(side())) {}
+        half_(static_cast<int>(std::ceil(
+            (std::min((goal - start).lpNorm<Eigen::Infinity>(), kFar_m) + kBeyond_m) / kGrid_m))) {}
 
-  /// Corners from the start to the goal, both included; none where there is no way.
+  /// Corners from the start to the goal, both included; none where there is no way. Goals that are
+  /// farther than kFar_m are reached in a straight line or not at all.
   std::vector<Vector2d> find(const Termination& termination) {
     if (places_.is_free_between(start_, goal_)) return {start_, goal_};
+    if ((goal_ - start_).lpNorm<Eigen::Infinity>() > kFar_m) return {};
+    nodes_.resize(static_cast<std::size_t>(side()) * static_cast<std::size_t>(side()));
     std::priority_queue<Open> open;
     const int first = index(half_, half_);
     node(first).way_m = 0.0;
@@ -175,13 +178,28 @@ double lean_rad(const Eigen::VectorXd& q, const Eigen::VectorXd& other) {
   return std::acos(std::clamp(up(q).dot(up(other)), -1.0, 1.0));
 }
 
-/// The last configuration that leans over as the goal does: steering axes that lean take the wheels
-/// off the ground as they are turned far.
-int upright_at(const std::vector<Eigen::VectorXd>& way, const Eigen::VectorXd& goal) {
+/// The last configuration on this stance that leans over as the goal does, or its first one:
+/// steering axes that lean take the wheels off the ground as they are turned far.
+int upright_at(const Motion& executed, const Eigen::VectorXd& goal) {
+  const std::vector<Eigen::VectorXd>& way = executed.configurations;
+  const std::vector<int>& stances = executed.stance_from;
   constexpr double kMost_rad = 0.004;
   int at = static_cast<int>(way.size()) - 1;
-  while (at > 0 && lean_rad(way[static_cast<std::size_t>(at)], goal) > kMost_rad) --at;
+  while (at > 0 && lean_rad(way[static_cast<std::size_t>(at)], goal) > kMost_rad &&
+         stances[static_cast<std::size_t>(at) - 1] == stances.back()) {
+    --at;
+  }
   return at;
+}
+
+/// Counter-clockwise, from where the robot stands to its goal, full turns of the plan included: the
+/// judge counts them.
+double turn_left(const Motion& planned, const Eigen::VectorXd& stands, int at) {
+  const std::vector<Eigen::VectorXd>& way = planned.configurations;
+  auto k = std::min(static_cast<std::size_t>(at), way.size() - 1);
+  double turn_rad = turn_between(stands.data(), way[k].data());
+  for (; k + 1 < way.size(); ++k) turn_rad += turn_between(way[k].data(), way[k + 1].data());
+  return turn_rad;
 }
 
 /// A way from rest to rest: its speed grows as 3 t² − 2 t³ at first, and gets less so at the end.
@@ -214,14 +232,13 @@ class Cruise {
 class Drive {
  public:
   Drive(const Task& task, const std::shared_ptr<const StanceParameter>& stance, Motion& motion,
-        const Eigen::VectorXd& goal, double step_s)
+        double step_s)
       : task_(task),
         robot_(*task.robot->robot),
         motion_(motion),
         stance_(motion.stance_from.back()),
         wheels_(robot_, motion.stances[static_cast<std::size_t>(stance_)]),
-        goal_(goal),
-        step_s_(step_s),
+        step_s_(std::max(step_s, kLeastStep_s)),
         still_(Eigen::VectorXd::Zero(robot_.tangent_size())),
         rolling_(*stance, 0, 1.0),
         before_(task.robot),
@@ -255,17 +272,20 @@ class Drive {
     motion_.slopes.back() = still_;
   }
 
-  /// From where it stands now. False where wheels cannot be put on the ground.
-  bool along(const std::vector<Vector2d>& corners) {
+  /// From where it stands now, and turns by so much at the end. False where wheels cannot be put on
+  /// the ground.
+  bool along(const std::vector<Vector2d>& corners, double turn_rad) {
     stands_ = motion_.configurations.back();
-    turn_ = turn_between(stands_.data(), goal_.data());
+    turn_rad_ = turn_rad;
     for (std::size_t k = 1; k < corners.size(); ++k) {
       const Vector2d from = corners[k - 1], way = corners[k] - from;
       const auto at = [&](double s) { return placed(from + s * way, 0.0); };
-      if (!go(at, way.norm())) return false;
+      if (!go(at, way.norm(), step_s_)) return false;
     }
     const auto at = [&](double s) { return placed(corners.back(), s); };
-    return go(at, wheels_.longest_way(at(0.0), at(1.0)));
+    // Wheels slip by the square of what they turn in a step.
+    constexpr double kTurnStep_s = 0.2;
+    return go(at, wheels_.longest_way(at(0.0), at(1.0)), std::min(step_s_, kTurnStep_s));
   }
 
  private:
@@ -273,18 +293,18 @@ class Drive {
   Eigen::VectorXd placed(const Vector2d& at, double share) const {
     Eigen::VectorXd q = stands_;
     q.head<2>() = at;
-    turn_base(share * turn_, q.data());
+    turn_base(share * turn_rad_, q.data());
     return q;
   }
 
   /// From rest to rest. at(s): the robot, but for wheels and what steers them; way_m: of what moves
-  /// farthest.
+  /// farthest; most_step_s: between two configurations.
   template <class At>
-  bool go(At&& at, double way_m) {
-    constexpr double kLeast_m = 2e-3, kSeen_m = 5e-3, kFirst = 0.1;
+  bool go(At&& at, double way_m, double most_step_s) {
+    constexpr double kLeast_m = 2e-3, kSeen_m = 5e-3;
     constexpr int kFewestSteps = 8;
     if (way_m < kLeast_m) return true;
-    const double first = std::clamp(kSeen_m / way_m, kFirst, 1.0);  // where it heads
+    const double first = std::min(kSeen_m / way_m, 1.0);  // where it heads
     const Eigen::VectorXd rests = motion_.configurations.back();
     const auto with_wheels_of = [&](const Eigen::VectorXd& wheels, double s) {
       Eigen::VectorXd q = at(s);
@@ -294,7 +314,7 @@ class Drive {
     Eigen::VectorXd steered;
     if (!wheels_.steer_along({rests, with_wheels_of(rests, first)}, steered)) return false;
     const Cruise cruise(way_m, task_.drive->speed_m_s);
-    const double takes_s = cruise.takes_s(), step_s = std::min(step_s_, 0.5 * cruise.ramp_s());
+    const double takes_s = cruise.takes_s(), step_s = std::min(most_step_s, 0.5 * cruise.ramp_s());
     const int steps = std::max(kFewestSteps, static_cast<int>(std::ceil(takes_s / step_s)));
     std::vector<Eigen::VectorXd> way;
     const auto driven_from = [&](const Eigen::VectorXd& begins) {
@@ -367,13 +387,13 @@ class Drive {
   Motion& motion_;
   const int stance_;
   DrivenWheels wheels_;
-  const Eigen::VectorXd goal_;
+  static constexpr double kLeastStep_s = 0.05;
   const double step_s_;
   const Eigen::VectorXd still_;
   EdgeRolling rolling_;
   ConfigurationState before_, after_;
   Eigen::VectorXd stands_;  ///< where the way begins
-  double turn_ = 0.0;       ///< from there to the goal
+  double turn_rad_ = 0.0;   ///< at the end
 };
 
 }  // namespace
@@ -388,7 +408,7 @@ ResumedPlan resume_drive(const Graph& stopped, const Motion& planned, const Task
   const Plan plan = plan_of(stopped);
   const Motion executed = motion_of(stopped, plan);
   const Eigen::VectorXd& goal = planned.configurations.back();
-  const int upright = upright_at(executed.configurations, goal);
+  const int upright = upright_at(executed, goal);
   const Eigen::VectorXd& stands = executed.configurations[static_cast<std::size_t>(upright)];
   const Vector2d start = stands.head<2>(), end = goal.head<2>();
   const Judge judge(task.robot->robot, world);
@@ -398,9 +418,9 @@ ResumedPlan resume_drive(const Graph& stopped, const Motion& planned, const Task
     const std::vector<Vector2d> corners = Grid(places, start, end).find(termination);
     if (corners.empty()) continue;
     Motion whole = executed;
-    Drive drive(task, plan.stance_from.back(), whole, goal, usual_step_s(planned));
+    Drive drive(task, plan.stance_from.back(), whole, usual_step_s(planned));
     if (upright + 1 < static_cast<int>(executed.configurations.size())) drive.back_to(upright);
-    if (!drive.along(corners)) {
+    if (!drive.along(corners, turn_left(planned, stands, upright))) {
       resumed.reason = "wheels do not stay on the ground on the way to the goal";
       continue;
     }

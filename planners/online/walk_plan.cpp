@@ -50,6 +50,7 @@ class Walk {
         planner_(graph, options.planner),
         model_(*planner_.plan().robot->robot),
         planned_(motion_of(graph, planner_.plan())),
+        goal_(planned_.configurations.back()),
         braking_(graph, planner_.online_plan(), options.verify) {
     const MotionCurve curve(model_, planned_);
     for (int i = 0; i < planner_.plan_size(); ++i) {
@@ -98,7 +99,10 @@ class Walk {
   }
 
   WalkReport& report() { return report_; }
-  bool rolls(int i) const { return planner_.online_plan().rolls(i); }
+
+  /// Where the plan ends, and where one does that is planned on.
+  const Eigen::VectorXd& goal() const { return goal_; }
+  void set_goal(const Eigen::VectorXd& goal) { goal_ = goal; }
 
  private:
   void find_end() {
@@ -227,6 +231,8 @@ class Walk {
     return executed < follows_to_;
   }
 
+  bool rolls(int i) const { return planner_.online_plan().rolls(i); }
+
   /// Whether the window leads far from the plan, where something that moves meets it, and will have
   /// left it while the robot waits.
   bool is_led_off(int executed) const {
@@ -315,7 +321,7 @@ class Walk {
   void measure_goal(int at) {
     const int slot = planner_.plan().slots[static_cast<std::size_t>(at)];
     const Eigen::Map<const Eigen::VectorXd> is(graph_.state(slot), graph_.state_size(slot));
-    const Eigen::VectorXd& goal = planner_.online_plan().planned().back();
+    const Eigen::VectorXd& goal = goal_;
     report_.goal_distance_m = (is.head<3>() - goal.head<3>()).norm();
     report_.goal_angle_rad =
         Eigen::Quaterniond(is.data() + 3).angularDistance(Eigen::Quaterniond(goal.data() + 3));
@@ -388,6 +394,7 @@ class Walk {
   LocalPlanner planner_;
   const Robot& model_;
   const Motion planned_;
+  Eigen::VectorXd goal_;
   Braking braking_;
   std::vector<double> faster_;  // than careful, of slopes of the plan
   double pace_ = 1.0;           // how many times as long as planned steps take
@@ -401,6 +408,11 @@ class Walk {
   int verified_to_ = 0;    // steps up to this configuration hold for the judge
   WalkReport report_;
 };
+
+bool is_drive(const Plan& plan) {
+  return std::ranges::all_of(plan.stance_from,
+                             [](const auto& stance) { return stance && rolls_on_wheels(*stance); });
+}
 
 /// Adds what a walk did before it stopped and was planned on.
 void put_before(const WalkReport& before, WalkReport& report) {
@@ -432,9 +444,7 @@ WalkOptions walk_options_for(const Plan& plan) {
   WalkOptions options;
   options.rate_hz = 50.0;
   options.cycle_iterations = 1;
-  const bool drives = std::ranges::all_of(
-      plan.stance_from, [](const auto& stance) { return stance && rolls_on_wheels(*stance); });
-  if (drives) return options;
+  if (is_drive(plan)) return options;
   options.planner.horizon_s = 2.0;
   return options;
 }
@@ -465,7 +475,8 @@ struct PlanWalk::Own {
       return false;
     }
     const int last = static_cast<int>(walk->plan().slots.size()) - 1;
-    if (!stopped.stopped_at && !walk->rolls(last)) return false;
+    const bool drives = is_drive(walk->plan());
+    if (!stopped.stopped_at && !drives) return false;
     const int at = stopped.stopped_at.value_or(last);
     if (at <= resumed_at) return false;
     std::optional<Graph> resumed = options.resume(graph);
@@ -474,10 +485,12 @@ struct PlanWalk::Own {
     put_before(before, walk->report());
     before = std::move(walk->report());
     ++before.resumed;
+    const Eigen::VectorXd goal = walk->goal();
     walk.reset();
     graph = std::move(*resumed);
     goes_on = true;
     walk.emplace(graph, options);
+    if (drives) walk->set_goal(goal);
     walk->start_at(at);
     return true;
   }

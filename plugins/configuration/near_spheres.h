@@ -64,7 +64,7 @@ class DistanceBatch {
   int index_[PointBuffer::kMost], count_ = 0;
 };
 
-/// Where RobotParameter::bounds and RobotParameter::spheres are, by row, less a shift.
+/// Where RobotParameter::bounds and RobotParameter::spheres are, by row, before they are shifted.
 struct SphereCentres {
   const Eigen::MatrixX3d& of_bounds;
   const Eigen::MatrixX3d& of_spheres;

@@ -151,6 +151,14 @@ TEST_P(PointKernelsTest, WhatIsNoNumberReadsNothingBeyondTheField) {
   std::vector<double> nearest(points.x.size(), 1.0);
   kernels_.field(nodes_of(field), points.list(static_cast<int>(nearest.size())), nearest.data());
   EXPECT_LT(nearest.back(), 1.0);  // the one point that is there
+  // Beside one that is none, beyond the field as ever.
+  Points beyond;
+  beyond.add({kNot, 0.1, 0.1});
+  beyond.add(field.upper() + Eigen::Vector3d::Constant(0.1));
+  std::vector<double> two(2, 1.0);
+  kernels_.field(nodes_of(field), beyond.list(2), two.data());
+  EXPECT_EQ(two[0], 1.0);
+  EXPECT_NEAR(two[1], field.distance(beyond.at(1)), 1e-13);
 }
 
 TEST(PointKernels, AWorldTellsDistancesOfPointsAsOfEach) {

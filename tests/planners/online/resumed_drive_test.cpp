@@ -1,6 +1,8 @@
+#include <locograph/planners/online/heading.h>
 #include <locograph/planners/online/resumed_drive.h>
 #include <locograph/planners/online/walk_plan.h>
 #include <locograph/planners/plan/plan_edges.h>
+#include <locograph/world/octree.h>
 
 #include <atomic>
 
@@ -91,6 +93,41 @@ TEST(ResumedDrive, BeginsAnywhereEvenBeforeTheFirstStep) {
     for (std::size_t i = 0; i < before.size(); ++i) EXPECT_EQ(after[i], before[i]) << i;
     expect_feasible(check_plan(*resumed.graph, {}));
   }
+}
+
+TEST(ResumedDrive, TurnsAsFarAsThePlanDoes) {
+  const Task task = task_of(centauro_drive(4.0, 1.0));
+  const Motion planned = plan_wheeled_drive(task).motion;
+  Graph stopped = *drive_graph(task, planned);
+  cut_plan(stopped, plan_of(stopped), 0);
+  const ResumedPlan resumed = resume_drive(stopped, planned, task, seeing({}));
+  ASSERT_TRUE(resumed.success()) << resumed.reason;
+  // 4 rad: more than half round, which the judge of the drive counts.
+  const std::vector<Eigen::VectorXd> all = configurations(*resumed.graph);
+  double turned = 0.0;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    turned += turn_between(all[i - 1].data(), all[i].data());
+  }
+  EXPECT_NEAR(turned, 4.0, 1e-6);
+  EXPECT_LT((all.back() - planned.configurations.back()).head<2>().norm(), 1e-6);
+}
+
+TEST(ResumedDrive, GoesAroundWhatAMapShows) {
+  if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
+  const Drive drive;
+  std::vector<Box> boxes;
+  for (const Obstacle& one : trap()) {
+    boxes.emplace_back();
+    boxes.back().world_from_box = one.world_from_obstacle;
+    boxes.back().size = one.size;
+  }
+  World world;
+  world.map = octree_from_boxes(boxes, 0.05);
+  const auto seen = std::make_shared<const WorldSnapshot>(std::move(world));
+  const ResumedPlan resumed = resume_drive(drive.stopped_at(12), drive.planned, drive.task, seen);
+  ASSERT_TRUE(resumed.success()) << resumed.reason;
+  EXPECT_LT(drive.off_goal_m(*resumed.graph), 1e-6);
+  expect_feasible(check_plan(*resumed.graph, trap()));
 }
 
 TEST(ResumedDrive, SaysWhenThereIsNoWay) {
