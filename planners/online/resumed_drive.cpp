@@ -1,4 +1,5 @@
 #include <locograph/check/judge.h>
+#include <locograph/check/limits.h>
 #include <locograph/planners/offline/drive/drive_graph.h>
 #include <locograph/planners/online/continuation.h>
 #include <locograph/planners/online/driven_way.h>
@@ -192,6 +193,15 @@ int upright_at(const Motion& executed, const Eigen::VectorXd& goal) {
   return at;
 }
 
+/// The configuration from which on slip of wheels counts at the end of a way.
+int stretch_before_end(const std::vector<Eigen::VectorXd>& way) {
+  auto first = way.size() - 1;
+  for (double way_m = 0.0; first > 0 && way_m < limits::kSlipStretch_m; --first) {
+    way_m += (way[first] - way[first - 1]).head<3>().norm();
+  }
+  return static_cast<int>(first);
+}
+
 /// Counter-clockwise, from where the robot stands to its goal, full turns of the plan included: the
 /// judge counts them.
 double turn_left(const Motion& planned, const Eigen::VectorXd& stands, int at) {
@@ -253,6 +263,8 @@ class Drive {
     const std::vector<Eigen::VectorXd> way(motion_.configurations.begin() + configuration,
                                            motion_.configurations.end());
     const std::vector<double> times_s(motion_.time_s.begin() + configuration, motion_.time_s.end());
+    const std::vector<Eigen::VectorXd> slopes(motion_.slopes.begin() + configuration,
+                                              motion_.slopes.end());
     std::vector<double> left_m = {0.0};
     for (std::size_t k = 1; k < way.size(); ++k) {
       left_m.push_back(left_m.back() + wheels_.longest_way(way[k - 1], way[k]));
@@ -267,7 +279,9 @@ class Drive {
     for (std::size_t k = way.size() - 1; k > 0; --k) {
       if (way[k - 1] == way[k]) continue;  // it waited there
       time_s += (times_s[k] - times_s[k - 1]) * 2.0 / (share(k) + share(k - 1));
-      add(way[k - 1], time_s, k == 1 ? still_ : Eigen::VectorXd());
+      const bool ends = k == 1 || slopes[k - 1].size() == 0;
+      add(way[k - 1], time_s,
+          ends ? Eigen::VectorXd() : Eigen::VectorXd(-share(k - 1) * slopes[k - 1]));
     }
     motion_.slopes.back() = still_;
   }
@@ -412,6 +426,7 @@ ResumedPlan resume_drive(const Graph& stopped, const Motion& planned, const Task
   const Eigen::VectorXd& stands = executed.configurations[static_cast<std::size_t>(upright)];
   const Vector2d start = stands.head<2>(), end = goal.head<2>();
   const Judge judge(task.robot->robot, world);
+  const int slipped_from = stretch_before_end(executed.configurations);
   for (const double clear_m : {0.15, 0.1, 0.06}) {
     if (termination.ended()) break;
     FreePlaces places(task.robot, stands, end, world->distance(), clear_m);
@@ -426,7 +441,8 @@ ResumedPlan resume_drive(const Graph& stopped, const Motion& planned, const Task
     }
     std::optional<Graph> graph = drive_graph(task, whole);
     if (plan.world) graph->replace_parameter(kWorldNumber, plan.world);
-    const CheckReport report = judged_on(plan, *graph, judge, task);
+    const CheckReport report =
+        judged_from(slipped_from, last_configuration(*graph), *graph, judge, task.check);
     if (!report.feasible) {
       resumed.reason = "refused: " + violation_text(report.worst());
       continue;

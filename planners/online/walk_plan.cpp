@@ -100,9 +100,12 @@ class Walk {
 
   WalkReport& report() { return report_; }
 
-  /// Where the plan ends, and where one does that is planned on.
+  /// Where the plan ends; of a drive that is planned on, where it did before.
   const Eigen::VectorXd& goal() const { return goal_; }
-  void set_goal(const Eigen::VectorXd& goal) { goal_ = goal; }
+  void set_goal(const Eigen::VectorXd& goal) {
+    goal_ = goal;
+    planned_on_ = true;
+  }
 
  private:
   void find_end() {
@@ -212,18 +215,22 @@ class Walk {
            " mm since it touched down";
   }
 
-  /// Whether the robot goes on as the window is, before any search. Since it was off its plan it
-  /// does on legs where the edges ask for more than the judge, who lets it: where balls have rolled
-  /// elsewhere, tenths of a millimetre would have to be moved for newtons.
+  /// Whether the robot goes on as the window is, before any search, where the edges ask for more
+  /// than the judge, who lets it. Since it was off its plan it does on legs: where balls have
+  /// rolled elsewhere, tenths of a millimetre would have to be moved for newtons. On wheels where
+  /// it was planned on: it may have stopped nearer to something than edges keep it.
   bool follows(int executed) {
     if (executed < follows_to_) return true;
-    if (!off_plan_ || rolls(executed) || !options_.verify) return false;
+    const bool may = rolls(executed) ? planned_on_ : off_plan_;
+    if (!may || !options_.verify) return false;
     if (planner_.begin_window(executed)) return false;
     const Stopwatch watch;
     constexpr int kFewestSteps = 5;
     for (int last = planner_.last_of_window(executed); last >= executed + kFewestSteps;
          last = executed + (last - executed) / 2) {
-      if (!options_.verify(motion_of(graph_, planner_.plan(), executed, last)).feasible) continue;
+      // Slip of wheels counts over a stretch.
+      const int first = rolls(executed) ? stretch_before(executed) : executed;
+      if (!options_.verify(motion_of(graph_, planner_.plan(), first, last)).feasible) continue;
       verified_to_ = follows_to_ = last;
       break;
     }
@@ -403,9 +410,10 @@ class Walk {
   bool over_ = false;
   bool measured_ = false;  // since the last step
   bool off_plan_ = false;  // it was
-  int measured_at_ = 0;    // the robot was found there; before it the plan is another one
-  int follows_to_ = 0;     // likewise; until there the robot does as it is judged
-  int verified_to_ = 0;    // steps up to this configuration hold for the judge
+  bool planned_on_ = false;
+  int measured_at_ = 0;  // the robot was found there; before it the plan is another one
+  int follows_to_ = 0;   // likewise; until there the robot does as it is judged
+  int verified_to_ = 0;  // steps up to this configuration hold for the judge
   WalkReport report_;
 };
 

@@ -9,6 +9,7 @@ namespace {
 
 /// Cosine of the largest angle between a steering axis and the normal of the plane.
 constexpr double kUpright = 0.95;
+constexpr double kRoom_rad = 0.02;
 
 }  // namespace
 
@@ -42,11 +43,14 @@ bool WheelMotion::steer(Eigen::VectorXd& q, int number, const Eigen::Vector3d& d
   const Joint& limits = robot_.active_joint(active);
   double& joint = q[robot_.base_configuration_size() + active];
   const double smaller = std::abs(turn) <= std::abs(other) ? turn : other;
-  for (const double option : {smaller, smaller == turn ? other : turn}) {
-    const double position = joint + option * std::copysign(1.0, upright);
-    if (position < limits.lower || position > limits.upper) continue;
-    joint = position;
-    return true;
+  // With some room to its limits if there is a way: whatever closes contacts after that moves it.
+  for (const double room_rad : {kRoom_rad, 0.0}) {
+    for (const double option : {smaller, smaller == turn ? other : turn}) {
+      const double position = joint + option * std::copysign(1.0, upright);
+      if (position < limits.lower + room_rad || position > limits.upper - room_rad) continue;
+      joint = position;
+      return true;
+    }
   }
   return false;
 }
