@@ -354,7 +354,7 @@ ExitCode refine_plan(const OptionParser& parser, const CommandOptions& options) 
   progress.emplace("judging " + options.input);
   const Stopwatch judge_watch;
   std::optional<CheckReport> check;
-  if (report.success() || ((eyes || report.resumed > 0) && report.configurations > 1)) {
+  if (report.success() || report.configurations > 1) {
     check = final_check(file, judging.task);
     take_verdict(*check, report);
   }
