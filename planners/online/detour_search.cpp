@@ -16,19 +16,17 @@ constexpr int kCoarse = 2;  // obstacle costs are worked out on every other offs
 
 DetourSearch::DetourSearch(std::shared_ptr<const RobotParameter> robot,
                            const DetourOptions& options)
-    : robot_(std::move(robot)), options_(options), state_(*robot_->robot) {
+    : robot_(std::move(robot)), options_(options), state_(robot_) {
   half_ = static_cast<int>(std::ceil(options.largest_offset_m / options.grid_m));
   half_ += half_ % kCoarse;
   slopes_ = 2 * options.steepest + 1;
-  centres_.resize(static_cast<Eigen::Index>(robot_->spheres.size()), 3);
-  bound_centres_.resize(static_cast<Eigen::Index>(robot_->bounds.size()), 3);
 }
 
 double DetourSearch::obstacle_cost(const WorldDistance& world, double time_s,
                                    const Eigen::Vector3d& shift) const {
   double sum = 0.0;
-  each_near_sphere(*robot_, {bound_centres_, centres_, shift}, world, time_s, options_.margin_m,
-                   [&](int s, double distance) {
+  each_near_sphere(*robot_, {state_.bound_centres, state_.sphere_centres, shift}, world, time_s,
+                   options_.margin_m, [&](int s, double distance) {
                      const double short_by =
                          options_.margin_m + robot_->spheres[s].radius - distance;
                      if (short_by > 0.0) sum += short_by * short_by;
@@ -46,14 +44,6 @@ void DetourSearch::place(const double* planned, int yaw) {
   turned_ = Eigen::Map<const Eigen::VectorXd>(planned, robot_->robot->configuration_size());
   turn_base(yaw * options_.yaw_grid_rad, turned_.data());
   state_.update(turned_.data());
-  for (Eigen::Index s = 0; s < centres_.rows(); ++s) {
-    const CollisionSphere& sphere = robot_->spheres[static_cast<std::size_t>(s)];
-    centres_.row(s) = (state_.world_from_link(sphere.link) * sphere.center).transpose();
-  }
-  for (Eigen::Index b = 0; b < bound_centres_.rows(); ++b) {
-    const RobotParameter::LinkBound& bound = robot_->bounds[static_cast<std::size_t>(b)];
-    bound_centres_.row(b) = (state_.world_from_link(bound.link) * bound.center).transpose();
-  }
 }
 
 /// Whether the costs of a configuration are there.

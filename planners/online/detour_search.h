@@ -19,8 +19,7 @@
 /// more: a long robot gets slantwise between two obstacles that it does not get between head on.
 
 #include <locograph/common/termination.h>
-#include <locograph/plugins/configuration/robot_parameters.h>
-#include <locograph/robots/robot_state.h>
+#include <locograph/plugins/configuration/vertex_configuration.h>
 
 #include <cstdint>
 #include <memory>
@@ -109,10 +108,9 @@ class DetourSearch {
 
   std::shared_ptr<const RobotParameter> robot_;
   DetourOptions options_;
-  RobotState state_;
+  ConfigurationState state_;
   int half_ = 0;    ///< offsets run from −half_ to half_ grid steps
   int slopes_ = 0;  ///< 2 · steepest + 1
-  Eigen::MatrixX3d centres_, bound_centres_;
   Eigen::VectorXd turned_;
   std::vector<Costs> obstacle_;  ///< as many as configurations: each has its place, by its index
   Progress progress_;

@@ -130,6 +130,12 @@ bool DrivenWheels::put_down(Eigen::VectorXd& q) {
   return closed_.project(q);
 }
 
+double share_of_speed(double way_m, double speed_m_s) {
+  constexpr double kLeast = 0.1;
+  const double ramp_m = speed_m_s * speed_m_s / (2.0 * kDriveAcceleration_m_s2);
+  return std::clamp(std::sqrt(way_m / ramp_m), kLeast, 1.0);
+}
+
 double usual_step_s(const Motion& planned) {
   std::vector<double> steps_s;
   for (std::size_t i = 1; i < planned.time_s.size(); ++i) {

@@ -53,6 +53,10 @@ class DrivenWheels {
   ContactProjection closed_;
 };
 
+/// How fast a robot drives that is so far from where it was, or will be, at rest: of its speed, as
+/// the root of the way, and never so slow that it stands.
+double share_of_speed(double way_m, double speed_m_s);
+
 /// How long a step of a plan takes, in the middle of all that move.
 double usual_step_s(const Motion& planned);
 

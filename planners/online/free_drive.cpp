@@ -62,11 +62,9 @@ Eigen::VectorXd between(const Robot& robot, const Eigen::VectorXd& a, const Eige
 /// is looked at in each, and wheels that steer while one speeds up slip less.
 std::optional<Rest> along_the_plan(const Robot& robot, const Motion& planned, int at,
                                    const Eigen::VectorXd& stands, DrivenWheels& wheels,
-                                   double ramp_m, double usual_s) {
-  constexpr double kLeast = 0.1, kRounding = 1e-3;
-  const auto share_at = [&](double gone_m) {
-    return std::clamp(std::sqrt(gone_m / ramp_m), kLeast, 1.0);
-  };
+                                   double speed_m_s, double usual_s) {
+  constexpr double kRounding = 1e-3;
+  const auto share_at = [&](double gone_m) { return share_of_speed(gone_m, speed_m_s); };
   const auto slowed = [](double share, double after) { return 2.0 / (share + after); };
   Rest rest;
   rest.motion.time_s = {0.0};
@@ -130,10 +128,9 @@ ResumedPlan wait_for_free_drive(const Graph& stopped, const Motion& planned, con
   if (off_m > kSlant * std::min(kBack_m, left_m)) {
     return refused("the robot is too far beside the way that was planned");
   }
-  const double speed_m_s = task.drive->speed_m_s, usual_s = usual_step_s(planned);
-  const double ramp_m = speed_m_s * speed_m_s / (2.0 * kDriveAcceleration_m_s2);
+  const double usual_s = usual_step_s(planned);
   const std::optional<Rest> driven =
-      along_the_plan(robot, planned, at, stands, wheels, ramp_m, usual_s);
+      along_the_plan(robot, planned, at, stands, wheels, task.drive->speed_m_s, usual_s);
   if (!driven) return refused("wheels do not stay on the ground on the way back to the plan");
   const Rest& rest = *driven;
   Eigen::VectorXd steered;

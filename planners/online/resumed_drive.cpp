@@ -10,7 +10,6 @@
 #include <locograph/plugins/rolling/edge_rolling.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -269,11 +268,8 @@ class Drive {
     for (std::size_t k = 1; k < way.size(); ++k) {
       left_m.push_back(left_m.back() + wheels_.longest_way(way[k - 1], way[k]));
     }
-    constexpr double kLeast = 0.1;
-    const double speed_m_s = task_.drive->speed_m_s;
-    const double ramp_m = speed_m_s * speed_m_s / (2.0 * kDriveAcceleration_m_s2);
     const auto share = [&](std::size_t k) {
-      return std::clamp(std::sqrt(left_m[k] / ramp_m), kLeast, 1.0);
+      return share_of_speed(left_m[k], task_.drive->speed_m_s);
     };
     double time_s = motion_.time_s.back();
     for (std::size_t k = way.size() - 1; k > 0; --k) {
