@@ -8,7 +8,13 @@ set -u
 binary=$1 runs=$2
 RANDOM=${3:-14}
 folder=$(mktemp -d)
-trap 'mountpoint -q "$folder/disk" && umount "$folder/disk"; rm -rf "$folder"' EXIT
+# A job that a signal ends before it is a program of its own still is this shell, with its trap.
+clean_up() {
+  [ "$BASHPID" = $$ ] || return
+  mountpoint -q "$folder/disk" && umount "$folder/disk"
+  rm -rf "$folder"
+}
+trap clean_up EXIT
 cd "$folder" || exit 1
 mkdir out disk
 set -m # else what runs in the background ignores SIGINT
