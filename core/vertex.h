@@ -26,6 +26,11 @@
 ///
 /// What was made for one vertex must serve every other of the type with a state of the same size.
 ///
+/// A type that fills several of them at once faster than one by one may offer, besides,
+/// static void derive_together(std::span<const Derivation<V>>), which its pool calls instead. Each
+/// vertex is to get what derive() gives it, to the bit, whatever stands beside it. It must not
+/// allocate, and several threads call it.
+///
 /// Optional: static void ominus(const double* a, const double* b, double* d), the difference a ⊟ b:
 /// b ⊞ d = a. What needs differences (marginalisation) solves b ⊞ d = a numerically without it.
 /// A type whose ⊞ adds, wrapped angles included, says so: static constexpr bool kFlat = true.
@@ -78,6 +83,14 @@ struct VertexId {
 template <class V>
 concept HasDerived = requires {
   typename V::Derived;
+};
+
+/// Derived quantities that are to be filled, of a vertex at a state.
+template <class V>
+struct Derivation {
+  const V* vertex;
+  const double* state;
+  typename V::Derived* derived;
 };
 
 namespace detail {

@@ -8,6 +8,7 @@
 #include <locograph/core/vertex.h>
 #include <locograph/core/vertex_difference.h>
 
+#include <array>
 #include <memory>
 #include <span>
 #include <string>
@@ -187,8 +188,22 @@ class TypedVertexPool final : public VertexPool {
               [[maybe_unused]] DerivedStore& derived) const override {
     if constexpr (HasDerived<V>) {
       std::vector<typename V::Derived>& values = static_cast<TypedDerivedStore<V>&>(derived).values;
-      for (std::size_t i = begin; i < end; ++i) {
-        vertices[active[i].index].derive(state + active[i].state_offset, values[i]);
+      const auto derivation = [&](std::size_t i) -> Derivation<V> {
+        return {&vertices[active[i].index], state + active[i].state_offset, &values[i]};
+      };
+      if constexpr (requires(std::span<const Derivation<V>> some) { V::derive_together(some); }) {
+        constexpr std::size_t kMost = 32;
+        std::array<Derivation<V>, kMost> some;
+        for (std::size_t i = begin; i < end;) {
+          std::size_t count = 0;
+          for (; count < kMost && i < end; ++count, ++i) some[count] = derivation(i);
+          V::derive_together(std::span(some).first(count));
+        }
+      } else {
+        for (std::size_t i = begin; i < end; ++i) {
+          const Derivation<V> one = derivation(i);
+          one.vertex->derive(one.state, *one.derived);
+        }
       }
     }
   }

@@ -51,6 +51,12 @@ void Workspace::allocate(const Problem& problem) {
   for (std::size_t p = 0; p < edge_costs_.size(); ++p) {
     edge_costs_[p].resize(problem.edges()[p].edges.size());
   }
+  // Written to now rather than when rows are kept first, which may be in a cycle that has no time.
+  if (kept_.rows.capacity() < constraint_rows_.size()) {
+    const std::size_t rows = kept_.rows.size();
+    kept_.rows.resize(constraint_rows_.size());
+    kept_.rows.resize(rows);
+  }
 }
 
 void Workspace::keep() {
@@ -282,8 +288,10 @@ void Workspace::derive(const std::vector<double>& state) {
     const std::vector<ActiveVertex>& active = problem_->active()[p];
     const VertexPool& pool = *problem_->graph().vertex_pools()[p];
     if (partly_ == state.data()) {
-      for (std::size_t i = 0; i < active.size(); ++i) {
-        if (known_vertices_[p][i] == 0) pool.derive(active, i, i + 1, state.data(), *derived_[p]);
+      const std::vector<char>& known = known_vertices_[p];
+      for (std::size_t i = 0, end = 0; i < active.size(); i = end + 1) {
+        for (end = i; end < active.size() && known[end] == 0;) ++end;
+        pool.derive(active, i, end, state.data(), *derived_[p]);
       }
       continue;
     }

@@ -2,6 +2,8 @@
 #include <locograph/robots/kinematic_tree.h>
 #include <locograph/robots/robot.h>
 
+#include <algorithm>
+
 namespace locograph {
 namespace {
 
@@ -36,6 +38,30 @@ Eigen::Isometry3d frozen_pose(const Joint& joint) {
     motion.linear() = Eigen::AngleAxisd(joint.frozen_position, joint.axis).toRotationMatrix();
   }
   return joint.parent_from_joint * motion;
+}
+
+void copy_rows(const Eigen::Matrix4d& from, double (&to)[12]) {
+  Eigen::Map<Eigen::Matrix<double, 3, 4>>(to, 3, 4) = from.topRows<3>();
+}
+
+TreeAxis flat(const KinematicTree& tree, const KinematicTree::Body& body, const Axis& axis,
+              int link) {
+  TreeAxis flat{};
+  copy_rows(body.A, flat.a);
+  copy_rows(body.B, flat.b);
+  copy_rows(body.C, flat.c);
+  std::copy_n(body.axis.data(), 3, flat.axis);
+  std::copy_n(body.moment.data(), 3, flat.moment);
+  flat.mass = body.moment[3];
+  flat.subtree_mass = body.subtree_mass;
+  flat.multiplier = axis.multiplier;
+  flat.offset = axis.offset;
+  flat.active = axis.active;
+  flat.parent_body = body.parent;
+  flat.parent_link = tree.link_of_body[static_cast<std::size_t>(body.parent)];
+  flat.link = link;
+  flat.revolute = body.revolute;
+  return flat;
 }
 
 }  // namespace
@@ -83,6 +109,15 @@ KinematicTree KinematicTree::build(const std::vector<Link>& links, const std::ve
   for (std::size_t b = tree.bodies.size() - 1; b > 0; --b) {
     tree.bodies[static_cast<std::size_t>(tree.bodies[b].parent)].subtree_mass +=
         tree.bodies[b].subtree_mass;
+  }
+
+  for (std::size_t b = 1; b < tree.bodies.size(); ++b) {
+    tree.flat_axes.push_back(flat(tree, tree.bodies[b], axes[b - 1], tree.link_of_body[b]));
+  }
+  for (const RigidLink& rigid : tree.rigid_links) {
+    const int carrier = tree.link_of_body[static_cast<std::size_t>(rigid.body)];
+    tree.flat_links.push_back({rigid.link, carrier, {}});
+    copy_rows(rigid.body_from_link, tree.flat_links.back().pose);
   }
 
   tree.support_begin.push_back(0);

@@ -10,6 +10,8 @@
 /// C, with (u, w) = (sin q, cos q) for rotations, from Rodrigues' formula R(a, q) = a a^T + sin q
 /// [a] - cos q [a]^2, and (q, 0) for translations.
 
+#include <locograph/robots/tree_kernels.h>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <vector>
@@ -40,6 +42,10 @@ struct KinematicTree {
   std::vector<RigidLink> rigid_links;  ///< links whose frame is not the body frame
   std::vector<int> support_begin;      ///< links + 1 offsets into support
   std::vector<int> support;            ///< axes from the root to each link
+
+  /// The same for tree_kernels.h.
+  std::vector<TreeAxis> flat_axes;
+  std::vector<TreeLink> flat_links;
 
   Eigen::Isometry3d body_from_link(int link) const;
 

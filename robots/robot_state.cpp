@@ -9,7 +9,6 @@ namespace locograph {
 RobotState::RobotState(const Robot& robot)
     : robot_(&robot),
       tree_(&robot.tree()),
-      world_from_body_(robot.tree().bodies.size(), Eigen::Isometry3d::Identity()),
       world_from_link_(robot.links().size(), Eigen::Isometry3d::Identity()),
       joint_origin_(robot.tree().bodies.size() - 1),
       joint_axis_(joint_origin_.size()),
@@ -22,12 +21,15 @@ void RobotState::update(const double* q) {
   const KinematicTree& tree = *tree_;
   const std::size_t axis_count = joint_origin_.size();
   if (robot_->floating_base()) {
-    world_from_body_[0].linear() = Eigen::Quaterniond(q[6], q[3], q[4], q[5]).toRotationMatrix();
-    world_from_body_[0].translation() << q[0], q[1], q[2];
+    world_from_link_[0].linear() = Eigen::Quaterniond(q[6], q[3], q[4], q[5]).toRotationMatrix();
+    world_from_link_[0].translation() << q[0], q[1], q[2];
     q += 7;
   }
-  world_from_link_[0] = world_from_body_[0];
-  subtree_moment_[0].noalias() = world_from_body_[0].matrix() * tree.bodies[0].moment;
+  const auto world_from_body = [&](int body) -> Eigen::Matrix4d& {
+    const int link = tree.link_of_body[static_cast<std::size_t>(body)];
+    return world_from_link_[static_cast<std::size_t>(link)].matrix();
+  };
+  subtree_moment_[0].noalias() = world_from_body(0) * tree.bodies[0].moment;
 
   for (std::size_t i = 0; i < axis_count; ++i) {
     const bool revolute = tree.bodies[i + 1].revolute;
@@ -40,18 +42,17 @@ void RobotState::update(const double* q) {
     const KinematicTree::Body& body = tree.bodies[i + 1];
     Eigen::Matrix4d local;
     local.noalias() = body.A + coefficients_[2 * i] * body.B + coefficients_[2 * i + 1] * body.C;
-    Eigen::Matrix4d& pose = world_from_body_[i + 1].matrix();
-    pose.noalias() = world_from_body_[static_cast<std::size_t>(body.parent)].matrix() * local;
+    Eigen::Matrix4d& pose = world_from_body(static_cast<int>(i) + 1);
+    pose.noalias() = world_from_body(body.parent) * local;
     Eigen::Vector4d axis;
     axis.noalias() = pose * body.axis;
     joint_axis_[i] = axis.head<3>();
     joint_origin_[i] = pose.col(3).head<3>();
     subtree_moment_[i + 1].noalias() = pose * body.moment;
-    world_from_link_[static_cast<std::size_t>(tree.link_of_body[i + 1])].matrix() = pose;
   }
   for (const KinematicTree::RigidLink& rigid : tree.rigid_links) {
     world_from_link_[static_cast<std::size_t>(rigid.link)].matrix().noalias() =
-        world_from_body_[static_cast<std::size_t>(rigid.body)].matrix() * rigid.body_from_link;
+        world_from_body(rigid.body) * rigid.body_from_link;
   }
   for (std::size_t b = axis_count; b > 0; --b) {
     subtree_moment_[static_cast<std::size_t>(tree.bodies[b].parent)] += subtree_moment_[b];
@@ -65,8 +66,8 @@ void RobotState::frame_jacobian(
   const Eigen::Vector3d point = world_from_link(link) * link_from_frame.translation();
   const int base = robot_->base_tangent_size();
   if (base > 0) {
-    const Eigen::Matrix3d rotation = world_from_body_[0].linear();
-    const Eigen::Vector3d arm = point - world_from_body_[0].translation();
+    const Eigen::Matrix3d rotation = world_from_base().linear();
+    const Eigen::Vector3d arm = point - world_from_base().translation();
     jacobian.topLeftCorner<3, 3>() = rotation;
     jacobian.block<3, 3>(3, 3) = rotation;
     for (int k = 0; k < 3; ++k) jacobian.block<3, 1>(0, 3 + k) = rotation.col(k).cross(arm);
@@ -89,8 +90,8 @@ void RobotState::point_jacobian(
     Eigen::Ref<Eigen::Matrix<double, 3, Eigen::Dynamic>> jacobian) const {
   const int base = robot_->base_tangent_size();
   if (base > 0) {
-    const Eigen::Matrix3d rotation = world_from_body_[0].linear();
-    const Eigen::Vector3d arm = point_world - world_from_body_[0].translation();
+    const Eigen::Matrix3d rotation = world_from_base().linear();
+    const Eigen::Vector3d arm = point_world - world_from_base().translation();
     jacobian.leftCols<3>() = rotation;
     for (int k = 0; k < 3; ++k) jacobian.col(3 + k) = rotation.col(k).cross(arm);
   }
@@ -114,11 +115,10 @@ void RobotState::add_base_gradient(const Eigen::Vector3d& point_world,
                                    const Eigen::Vector3d& force_world,
                                    const Eigen::Vector3d& moment_world, double* row,
                                    int stride) const {
-  const Eigen::Matrix3d world_from_base = world_from_body_[0].linear();
-  const Eigen::Vector3d arm = point_world - world_from_body_[0].translation();
-  const Eigen::Vector3d linear = world_from_base.transpose() * force_world;
-  const Eigen::Vector3d angular =
-      world_from_base.transpose() * (arm.cross(force_world) + moment_world);
+  const Eigen::Matrix3d rotation = world_from_base().linear();
+  const Eigen::Vector3d arm = point_world - world_from_base().translation();
+  const Eigen::Vector3d linear = rotation.transpose() * force_world;
+  const Eigen::Vector3d angular = rotation.transpose() * (arm.cross(force_world) + moment_world);
   for (int k = 0; k < 3; ++k) {
     row[k * stride] += linear[k];
     row[(3 + k) * stride] += angular[k];
@@ -160,7 +160,7 @@ void RobotState::add_rotation_gradient(int link, const Eigen::Vector3d& directio
                                        double scale, double* row, int stride) const {
   const Eigen::Vector3d direction = scale * direction_world;
   if (robot_->floating_base()) {
-    const Eigen::Vector3d angular = world_from_body_[0].linear().transpose() * direction;
+    const Eigen::Vector3d angular = world_from_base().linear().transpose() * direction;
     for (int k = 0; k < 3; ++k) row[(3 + k) * stride] += angular[k];
     row += 6 * stride;
   }
@@ -205,8 +205,8 @@ void RobotState::center_of_mass_jacobian(
   const double inverse_mass = 1.0 / tree_->bodies[0].subtree_mass;
   const int base = robot_->base_tangent_size();
   if (base > 0) {
-    const Eigen::Matrix3d rotation = world_from_body_[0].linear();
-    const Eigen::Vector3d arm = com - world_from_body_[0].translation();
+    const Eigen::Matrix3d rotation = world_from_base().linear();
+    const Eigen::Vector3d arm = com - world_from_base().translation();
     jacobian.leftCols<3>() = rotation;
     for (int k = 0; k < 3; ++k) jacobian.col(3 + k) = rotation.col(k).cross(arm);
   }

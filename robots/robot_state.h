@@ -17,9 +17,15 @@
 #include <locograph/robots/robot.h>
 
 #include <Eigen/Geometry>
+#include <span>
 #include <vector>
 
 namespace locograph {
+
+class RobotState;
+struct LinkPoint;
+struct StateUpdate;
+struct TreeKernels;
 
 class RobotState {
  public:
@@ -94,13 +100,16 @@ class RobotState {
                                    double* row, int stride = 1) const;
 
  private:
+  friend void update_together(std::span<const StateUpdate> updates,
+                              std::span<const LinkPoint> first, std::span<const LinkPoint> second,
+                              const TreeKernels& kernels);
+  const Eigen::Isometry3d& world_from_base() const { return world_from_link_[0]; }
   /// The columns of the base in the gradient of what moves with it.
   void add_base_gradient(const Eigen::Vector3d& point_world, const Eigen::Vector3d& force_world,
                          const Eigen::Vector3d& moment_world, double* row, int stride) const;
 
   const Robot* robot_;
   const KinematicTree* tree_;
-  std::vector<Eigen::Isometry3d> world_from_body_;
   std::vector<Eigen::Isometry3d> world_from_link_;
   std::vector<Eigen::Vector3d> joint_origin_, joint_axis_;
   std::vector<Eigen::Vector4d> subtree_moment_;  // sum of mass * com of all bodies below, [kg m]

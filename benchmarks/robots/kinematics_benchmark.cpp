@@ -2,6 +2,7 @@
 #include <benchmark/benchmark.h>
 #include <locograph/robots/collision_model.h>
 #include <locograph/robots/robot_state.h>
+#include <locograph/robots/states_together.h>
 
 #include <filesystem>
 
@@ -25,6 +26,57 @@ void BM_Update(benchmark::State& run) {
   }
 }
 BENCHMARK(BM_Update);
+
+/// Link poses and centres of covering spheres (20 mm) of `range(0)` configurations.
+struct Window {
+  explicit Window(benchmark::State& run)
+      : states(static_cast<std::size_t>(run.range(0)), locograph::RobotState(robot)),
+        q(states.size(), robot.named_configuration("home")),
+        centres(states.size()) {
+    for (const locograph::CollisionSphere& sphere : locograph::covering_spheres(robot, 0.02)) {
+      points.push_back({sphere.link, {sphere.center[0], sphere.center[1], sphere.center[2]}});
+    }
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      centres[i].resize(static_cast<Eigen::Index>(points.size()), 3);
+      updates.push_back({&states[i], q[i].data(), {centres[i].data()}});
+    }
+  }
+  locograph::Robot robot = centauro();
+  std::vector<locograph::RobotState> states;
+  std::vector<Eigen::VectorXd> q;
+  std::vector<Eigen::MatrixX3d> centres;
+  std::vector<locograph::LinkPoint> points;
+  std::vector<locograph::StateUpdate> updates;
+};
+
+void BM_OneByOne(benchmark::State& run) {
+  Window window(run);
+  for (auto _ : run) {
+    for (std::size_t i = 0; i < window.states.size(); ++i) {
+      window.q[i][8] += 1e-9;
+      window.states[i].update(window.q[i].data());
+      for (std::size_t k = 0; k < window.points.size(); ++k) {
+        const locograph::LinkPoint& point = window.points[k];
+        window.centres[i].row(static_cast<Eigen::Index>(k)) =
+            (window.states[i].world_from_link(point.link) *
+             Eigen::Vector3d(point.at[0], point.at[1], point.at[2]))
+                .transpose();
+      }
+    }
+    benchmark::ClobberMemory();
+  }
+}
+BENCHMARK(BM_OneByOne)->Arg(1)->Arg(20);
+
+void BM_Together(benchmark::State& run) {
+  Window window(run);
+  for (auto _ : run) {
+    for (Eigen::VectorXd& q : window.q) q[8] += 1e-9;
+    locograph::update_together(window.updates, window.points, {});
+    benchmark::ClobberMemory();
+  }
+}
+BENCHMARK(BM_Together)->Arg(1)->Arg(20);
 
 /// One distance-gradient row for every covering sphere, with an overshoot of `range(0)` mm.
 void BM_AllSphereGradients(benchmark::State& run) {

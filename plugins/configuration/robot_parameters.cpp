@@ -42,6 +42,13 @@ void RobotParameter::load() {
     }
     bounds.push_back(bound);
   }
+  const auto point = [](const auto& of) {
+    return LinkPoint{of.link, {of.center[0], of.center[1], of.center[2]}};
+  };
+  sphere_points.clear();
+  bound_points.clear();
+  for (const CollisionSphere& sphere : spheres) sphere_points.push_back(point(sphere));
+  for (const LinkBound& bound : bounds) bound_points.push_back(point(bound));
   self_collision = SelfCollisionShapes(*this);
 }
 

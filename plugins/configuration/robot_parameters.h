@@ -12,6 +12,7 @@
 #include <locograph/plugins/configuration/self_collision_shapes.h>
 #include <locograph/robots/collision_model.h>
 #include <locograph/robots/robot.h>
+#include <locograph/robots/tree_kernels.h>
 #include <locograph/world/world_snapshot.h>
 
 #include <filesystem>
@@ -38,6 +39,7 @@ struct RobotParameter final : Parameter {
     int begin, end;  ///< its spheres
   };
   std::vector<LinkBound> bounds;
+  std::vector<LinkPoint> sphere_points, bound_points;  ///< their centres
   SelfCollisionShapes self_collision;
 
   RobotParameter() = default;

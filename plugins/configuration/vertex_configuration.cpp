@@ -2,7 +2,10 @@
 #include <locograph/plugins/configuration/plan_parameters.h>
 #include <locograph/plugins/configuration/stance_parameter.h>
 #include <locograph/plugins/configuration/vertex_configuration.h>
+#include <locograph/robots/states_together.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -46,6 +49,11 @@ void require_range(const FieldReader& in, const char* what, double value, double
   in.fail(found, expected);
 }
 
+StateUpdate update_of(ConfigurationState& state) {
+  return {
+      &state.kinematics, state.q.data(), {state.sphere_centres.data(), state.bound_centres.data()}};
+}
+
 }  // namespace
 
 ConfigurationState::ConfigurationState(std::shared_ptr<const RobotParameter> parameter)
@@ -57,15 +65,8 @@ ConfigurationState::ConfigurationState(std::shared_ptr<const RobotParameter> par
 
 void ConfigurationState::update(const double* configuration) {
   std::copy_n(configuration, q.size(), q.data());
-  kinematics.update(configuration);
-  for (Eigen::Index i = 0; i < sphere_centres.rows(); ++i) {
-    const CollisionSphere& sphere = robot->spheres[static_cast<std::size_t>(i)];
-    sphere_centres.row(i) = (kinematics.world_from_link(sphere.link) * sphere.center).transpose();
-  }
-  for (Eigen::Index i = 0; i < bound_centres.rows(); ++i) {
-    const RobotParameter::LinkBound& bound = robot->bounds[static_cast<std::size_t>(i)];
-    bound_centres.row(i) = (kinematics.world_from_link(bound.link) * bound.center).transpose();
-  }
+  const StateUpdate one = update_of(*this);
+  update_together({&one, 1}, robot->sphere_points, robot->bound_points);
 }
 
 Eigen::Vector3d relative_base_rotation(const ConfigurationState& a, const ConfigurationState& b) {
@@ -82,6 +83,26 @@ VertexConfiguration::VertexConfiguration(int number,
                 std::to_string(robot->robot->configuration_size()));
   }
   state = q;
+}
+
+void VertexConfiguration::derive_together(
+    std::span<const Derivation<VertexConfiguration>> vertices) {
+  constexpr std::size_t kMost = 32;
+  std::array<StateUpdate, kMost> updates;
+  for (std::size_t i = 0; i < vertices.size();) {
+    const RobotParameter* robot = vertices[i].vertex->robot.get();
+    std::size_t count = 0;
+    for (; count < kMost && i < vertices.size(); ++count, ++i) {
+      const auto& [vertex, state, derived] = vertices[i];
+      if (vertex->robot.get() != robot) break;
+      // Made for a vertex of another robot whose state has the same size.
+      if (derived->robot != vertex->robot) *derived = vertex->make_derived();
+      derived->time_s = vertex->time_s;
+      std::copy_n(state, derived->q.size(), derived->q.data());
+      updates[count] = update_of(*derived);
+    }
+    update_together(std::span(updates).first(count), robot->sphere_points, robot->bound_points);
+  }
 }
 
 void VertexConfiguration::read(FieldReader& in) {

@@ -22,6 +22,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace locograph {
@@ -76,11 +77,10 @@ struct VertexConfiguration : Vertex<Eigen::Dynamic, Eigen::Dynamic> {
   }
   Derived make_derived() const { return ConfigurationState(robot); }
   void derive(const double* s, Derived& derived) const {
-    // Made for a vertex of another robot whose state has the same size.
-    if (derived.robot != robot) derived = make_derived();
-    derived.time_s = time_s;
-    derived.update(s);
+    const Derivation<VertexConfiguration> one{this, s, &derived};
+    derive_together({&one, 1});
   }
+  static void derive_together(std::span<const Derivation<VertexConfiguration>> vertices);
 
   void read(FieldReader& in);
   void write(FieldWriter& out) const;

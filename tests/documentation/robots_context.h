@@ -113,6 +113,12 @@ struct Context : FilesContext {
   const UrdfModel urdf = read_urdf("centauro.urdf");
 };
 }  // namespace srdf_reader_h
+namespace states_together_h {
+struct Context : in_robots::Context {
+  std::vector<RobotState> states{4, RobotState(robot)};
+  const std::vector<Eigen::VectorXd> q{4, robot.named_configuration("home")};
+};
+}  // namespace states_together_h
 namespace fit_cache_h {
 struct Context {
   const TriangleTree mesh = TriangleTree({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
