@@ -12,8 +12,7 @@
 namespace locograph {
 namespace {
 
-/// Least wrenches with as much of the margin as there is, more at one configuration than at another
-/// one only where it has to be.
+/// Least wrenches with as much of the margin as there was at every configuration so far.
 class Least {
  public:
   Least(const Robot& robot, const Stance& stance) : robot_(robot) {
@@ -45,20 +44,53 @@ class Least {
   std::size_t part_ = 0;
 };
 
-/// Moves a vertex by a share towards wrenches at the contacts of a stance.
-void mix(const StanceParameter& stance, const StanceWrenches& wrenches, double share,
-         VertexWrenches& vertex) {
+/// Wrenches at the contacts of a stance as the numbers of a vertex, which keeps those of others.
+Eigen::VectorXd components_of(const StanceParameter& stance, const StanceWrenches& wrenches,
+                              const VertexWrenches& vertex) {
+  Eigen::VectorXd components = vertex.state;
   Eigen::Index at = 0;
   for (std::size_t c = 0; c < vertex.contact_numbers.size(); ++c) {
     const auto found = std::ranges::find(stance.contact_numbers, vertex.contact_numbers[c]);
     const bool known = found != stance.contact_numbers.end();
+    const auto k = static_cast<std::size_t>(found - stance.contact_numbers.begin());
     for (const int component : (*vertex.contacts)[c]->cone->components()) {
-      double& is = vertex.state[at++];
-      if (!known) continue;
-      const auto k = static_cast<std::size_t>(found - stance.contact_numbers.begin());
-      is += share * (wrenches[k][component] - is);
+      if (known) components[at] = wrenches[k][component];
+      ++at;
     }
   }
+  return components;
+}
+
+/// Whether every contact can bear them.
+bool inside_cones(const VertexWrenches& vertex, const Eigen::VectorXd& components) {
+  const double* w = components.data();
+  for (const auto& contact : *vertex.contacts) {
+    const auto count = static_cast<Eigen::Index>(contact->cone->components().size());
+    for (int i = 0; i < contact->cone->rows(); ++i) {
+      const WrenchRow row = contact->cone->row(i, w);
+      const Eigen::Map<const Eigen::VectorXd> of(w, count);
+      if (row.gradient.head(count).dot(of) + row.offset > 0.0) return false;
+    }
+    w += count;
+  }
+  return true;
+}
+
+/// Moves a vertex by a share towards what its contacts can bear, and further as long as they cannot
+/// bear what comes of it.
+void mix(const Eigen::VectorXd& least, double share, VertexWrenches& vertex) {
+  constexpr int kHalved = 20;
+  const Eigen::VectorXd way = least - vertex.state;
+  const auto bears = [&](double part) { return inside_cones(vertex, vertex.state + part * way); };
+  if (!bears(share)) {
+    double most = 1.0;
+    for (int k = 0; k < kHalved; ++k) {
+      const double middle = 0.5 * (share + most);
+      (bears(middle) ? most : share) = middle;
+    }
+    share = most;
+  }
+  vertex.state += share * way;
 }
 
 }  // namespace
@@ -81,16 +113,22 @@ void lead_wrenches(const Plan& plan, Graph& graph, const PlanRange& range) {
   RobotState state(robot);
   RobotDynamics dynamics(robot);
   Eigen::VectorXd asked(robot.tangent_size());
-  for (int k = 0; k < range.last - range.first; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const CurvePoint point = curve.through_vertex(k);
+  const auto solve = [&](std::size_t i) {
+    const CurvePoint point = curve.through_vertex(static_cast<int>(i));
     state.update(motion.configurations[i].data());
     dynamics.inverse_dynamics(state, point.velocity, point.acceleration, {}, asked);
-    const StanceWrenches* wrenches = least.solve(state, asked);
+    return least.solve(state, asked);
+  };
+  const auto count = static_cast<std::size_t>(range.last - range.first);
+  // All with the part of the margin that there is everywhere: forces jump where it changes.
+  for (std::size_t i = 0; i < count; ++i) solve(i);
+  for (std::size_t i = 0; i < count; ++i) {
+    const StanceWrenches* wrenches = solve(i);
     if (wrenches == nullptr) continue;
     const double share = share_left((motion.time_s[i] - begin_s) / duration_s);
     for (const int slot : plan.index.wrenches[first + i]) {
-      mix(stance, *wrenches, share, graph.vertex(VertexId<VertexWrenches>{slot}));
+      VertexWrenches& vertex = graph.vertex(VertexId<VertexWrenches>{slot});
+      mix(components_of(stance, *wrenches, vertex), share, vertex);
     }
   }
 }

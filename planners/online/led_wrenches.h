@@ -8,7 +8,8 @@
 /// Centimetres off, what a plan's contacts bear and what is added to it leave their cones. The
 /// least wrenches of where the robot is (balance/least_wrenches.h) are inside, but are not those
 /// that the plan goes on with. Both balance the robot, so each share of both does: from the least
-/// ones at the beginning to the plan's at the end, as what the robot is off fades.
+/// ones at the beginning to the plan's at the end, as what the robot is off fades; less of the
+/// plan's where contacts could not bear it.
 
 #include <locograph/planners/plan/plan.h>
 #include <locograph/planners/plan/slope_limits.h>

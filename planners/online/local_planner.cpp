@@ -39,10 +39,14 @@ LocalPlanner::LocalPlanner(Graph& graph, const LocalPlannerOptions& options)
   // Memory, the lists of edges and the order of elimination now rather than in the first cycle.
   if (plan_.size() < 2) return;
   Window first = window_;  // a copy: nothing has entered the planner's own
-  first.move_to(0);
-  solver_.compile(first, false);
-  solver_.load_state();
-  solver_.prepare();
+  // Windows away from the start have a few rows more than the first one.
+  constexpr int kAway = 4;
+  for (const int executed : {std::min(kAway, plan_.size() - 2), 0}) {
+    first.move_to(executed);
+    solver_.compile(first, false);
+    solver_.load_state();
+    solver_.prepare();
+  }
   // As a window that slides is, some times over: what is taken over has its memory, too.
   constexpr int kTimes = 4;
   for (int times = 0; times < kTimes; ++times) {
@@ -66,7 +70,7 @@ void LocalPlanner::show(std::shared_ptr<const WorldSnapshot> world) {
 }
 
 void LocalPlanner::measure(const Eigen::VectorXd& configuration) {
-  constexpr double kUnit = 1e-3;
+  constexpr double kUnit = 1e-3, kRounding = 1e-14;
   const Robot& robot = plan_.robot();
   const std::string what = "a measured configuration";
   if (configuration.size() != robot.configuration_size()) {
@@ -80,7 +84,7 @@ void LocalPlanner::measure(const Eigen::VectorXd& configuration) {
     if (!(std::abs(norm - 1.0) <= kUnit)) {
       throw Error(what + " whose quaternion has the norm " + std::to_string(norm), "1");
     }
-    q.segment<4>(3) /= norm;
+    if (std::abs(norm - 1.0) > kRounding) q.segment<4>(3) /= norm;
   }
   const std::lock_guard lock(showing_);
   measured_ = std::move(q);

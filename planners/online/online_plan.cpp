@@ -232,7 +232,8 @@ void OnlinePlan::follow_times() {
 }
 
 void OnlinePlan::go_as_led(const PlanRange& range, int back) {
-  const int moved = std::min(range.last + 1, last());
+  // The configuration after the range has moved, and the one after that has it beside it.
+  const int moved = std::min(range.last + 2, last());
   if (!planned_.slopes.empty()) {
     carry_slopes(planned_, plan_, graph_, {range.first, moved}, Rests::kMove);
   }

@@ -14,7 +14,7 @@ namespace locograph {
 
 class PlanWheels {
  public:
-  /// Of the stance that a configuration is in, which has wheels.
+  /// Of the stance that a configuration is in; it may have none.
   WheelMotion& at(const OnlinePlan& plan, int index) {
     const auto& stance = plan.plan().stance_from[static_cast<std::size_t>(index)];
     if (stance != stance_) {

@@ -61,12 +61,19 @@ void WayBack::set_contacts(int index, int beside) {
                 }));
 }
 
+/// Moves q to the contacts of a configuration, from one beside it. Whether it could be.
+bool WayBack::close_contacts(int index, int beside, Eigen::VectorXd& q) {
+  set_contacts(index, beside);
+  if (!contacts_.project(q)) return false;
+  wheels_.at(plan_, std::min(index, beside)).hold(plan_.configuration(beside), q);
+  return true;
+}
+
 /// Brings a configuration to its contacts, balls where they have rolled to; planned: where
 /// it was planned.
 void WayBack::close(int index, const Eigen::VectorXd& planned) {
-  set_contacts(index, index - 1);
   Eigen::VectorXd closed = plan_.configuration(index);
-  if (contacts_.project(closed)) plan_.configuration(index) = closed;
+  if (close_contacts(index, index - 1, closed)) plan_.configuration(index) = closed;
   plan_.robot().difference(planned.data(), plan_.configuration(index).data(), off_.data());
   end_ = index + 1;
 }
@@ -114,18 +121,17 @@ void WayBack::add(int index) {
 Eigen::VectorXd WayBack::least_off(int index, int from) {
   const Robot& robot = plan_.robot();
   Eigen::VectorXd q = plan_.configuration(index), off = off_;
-  set_contacts(index, from);
-  if (contacts_.project(q))
+  if (close_contacts(index, from, q)) {
     robot.difference(plan_.configuration(index).data(), q.data(), off.data());
+  }
   return off;
 }
 
 /// Configurations that came before the executed one: on their contacts.
 void WayBack::close_before(const Window& window) {
   for (int i = window.executed() - 1; i >= window.first_held() && !plan_.rolls(i); --i) {
-    set_contacts(i, i + 1);
     Eigen::VectorXd closed = plan_.configuration(i);
-    if (contacts_.project(closed)) plan_.configuration(i) = closed;
+    if (close_contacts(i, i + 1, closed)) plan_.configuration(i) = closed;
   }
 }
 
@@ -141,19 +147,28 @@ void WayBack::begin(const Window& window, const Eigen::VectorXd& was) {
   if (plan_.time_s(back) - from_s < least_s && in_time) plan_.slow_down(executed, back, least_s);
   const double duration_s = std::min(kBack_s, plan_.time_s(back) - from_s);
   off_ = off_rate_ = Eigen::VectorXd::Zero(robot.tangent_size());
-  const Eigen::VectorXd there = least_off(back, executed);
-  for (int i = window.first(); i < window.end() && !plan_.rolls(i - 1); ++i) {
-    if (plan_.is_fixed(i)) continue;
-    const Eigen::VectorXd planned = plan_.configuration(i);
-    const double share = duration_s > 0.0 ? (plan_.time_s(i) - from_s) / duration_s : 1.0;
-    constexpr double kSame = 1e-9;
-    if (share > 1.0 + kSame) {
-      add(i);
-      continue;
+  Eigen::VectorXd there = least_off(back, executed);
+  std::vector<Eigen::VectorXd> planned;
+  for (int i = window.first(); i < window.end(); ++i) planned.push_back(plan_.configuration(i));
+  const auto planned_at = [&](int i) -> const Eigen::VectorXd& {
+    return planned[static_cast<std::size_t>(i - window.first())];
+  };
+  // Where balls have rolled to on the way is known once it is gone: it ends there the second time.
+  for (const bool last_time : {false, true}) {
+    for (int i = window.first(); i < window.end() && !plan_.rolls(i - 1); ++i) {
+      if (plan_.is_fixed(i)) continue;
+      const double share = duration_s > 0.0 ? (plan_.time_s(i) - from_s) / duration_s : 1.0;
+      constexpr double kSame = 1e-9;
+      if (share > 1.0 + kSame) {
+        if (!last_time) break;
+        add(i);
+        continue;
+      }
+      const Eigen::VectorXd left = there + share_left(share) * (off - there);
+      robot.integrate(planned_at(i).data(), left.data(), plan_.configuration(i).data());
+      close(i, planned_at(i));
     }
-    const Eigen::VectorXd left = there + share_left(share) * (off - there);
-    robot.integrate(planned.data(), left.data(), plan_.configuration(i).data());
-    close(i, planned);
+    if (end_ > back) there = off_;
   }
   int is_back = executed + 1;
   while (is_back < window.last() && plan_.time_s(is_back) < from_s + duration_s) ++is_back;

@@ -10,10 +10,12 @@
 /// What it is off gets less as 1 - 10 t^3 + 15 t^4 - 6 t^5 within 1.6 s, so that it begins and ends
 /// without another velocity or acceleration, each configuration on its contacts. It is back before
 /// contacts change, or, where that is too soon, before the next one closes; if there is not enough
-/// time until then the plan is slowed down. Balls have rolled elsewhere then, by tenths of a
-/// millimetre: as long as they are held it stays beside its plan by as much, and goes over to it
-/// without a jump once they are lifted. Wrenches are those of led_wrenches.h.
+/// time until then the plan is slowed down. Wheels that stand do not turn on the ground. Balls have
+/// rolled elsewhere then, by tenths of a millimetre: as long as they are held it stays beside its
+/// plan by as much, and goes over to it without a jump once they are lifted. Wrenches are those of
+/// led_wrenches.h.
 
+#include <locograph/planners/online/plan_wheels.h>
 #include <locograph/planners/online/window.h>
 #include <locograph/planners/posture/contact_projection.h>
 
@@ -40,6 +42,7 @@ class WayBack {
   int back_at(int executed) const;
   int closes_next(int index) const;
   void set_contacts(int index, int beside);
+  bool close_contacts(int index, int beside, Eigen::VectorXd& q);
   void close(int index, const Eigen::VectorXd& planned);
   void close_before(const Window& window);
   Eigen::VectorXd least_off(int index, int from);
@@ -47,6 +50,7 @@ class WayBack {
 
   OnlinePlan& plan_;
   ContactProjection contacts_;
+  PlanWheels wheels_;
   int end_ = 0;
   /// What the last configuration is off where it was planned, and how fast that changes.
   Eigen::VectorXd off_, off_rate_;

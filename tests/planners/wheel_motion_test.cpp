@@ -174,5 +174,27 @@ TEST(WheelMotion, LeavesALockedWheelAsItIs) {
   EXPECT_NE(to[drive.spin(1)], drive.q[drive.spin(1)]);
 }
 
+TEST(WheelMotion, HoldsALockedWheelOnTheGroundAsItsCarrierPitches) {
+  Drive drive;
+  Stance stance = drive.plan.stance_from.front()->stance;
+  stance.contacts[2].locked = true;
+  WheelMotion motion(drive.robot, stance);
+  Eigen::VectorXd to = drive.q;
+  Eigen::VectorXd pitch = Eigen::VectorXd::Zero(drive.robot.tangent_size());
+  pitch[4] = 0.3;
+  drive.robot.integrate(drive.q.data(), pitch.data(), to.data());
+  motion.hold(drive.q, to);
+  EXPECT_NEAR(std::abs(to[drive.spin(2)] - drive.q[drive.spin(2)]), 0.3, 1e-9);
+  RobotState before(drive.robot), after(drive.robot);
+  before.update(drive.q.data());
+  after.update(to.data());
+  const Wheel& wheel = motion.wheel(2).wheel;
+  const Eigen::AngleAxisd turned(after.world_from_link(wheel.link).linear() *
+                                 before.world_from_link(wheel.link).linear().transpose());
+  const Eigen::Vector3d axle = WheelPose(before, wheel).axle;
+  EXPECT_NEAR(turned.angle() * turned.axis().dot(axle), 0.0, 1e-9) << "it turns on the ground";
+  for (const int other : {0, 1, 3}) EXPECT_EQ(to[drive.spin(other)], drive.q[drive.spin(other)]);
+}
+
 }  // namespace
 }  // namespace locograph

@@ -14,7 +14,10 @@ constexpr double kRoom_rad = 0.02;
 }  // namespace
 
 WheelMotion::WheelMotion(const Robot& robot, const Stance& stance)
-    : robot_(robot), wheels_(standing_wheels(robot, stance)), state_(robot) {
+    : robot_(robot),
+      wheels_(standing_wheels(robot, stance)),
+      state_(robot),
+      pitch_before_(wheels_.size()) {
   for (const auto& standing : wheels_) before_.emplace_back(state_, standing.wheel);
 }
 
@@ -65,6 +68,23 @@ void WheelMotion::drive(const Eigen::Ref<const Eigen::VectorXd>& from, const Eig
     }
   }
   roll(from, to);
+}
+
+void WheelMotion::hold(const Eigen::Ref<const Eigen::VectorXd>& from,
+                       Eigen::Ref<Eigen::VectorXd> to) {
+  const auto pitch = [this](int w) {
+    return carrier_pitch(state_, wheel(w).wheel, wheel(w).normal);
+  };
+  const int base = robot_.base_configuration_size();
+  state_.update(from.data());
+  for (int w = 0; w < wheels(); ++w) pitch_before_[static_cast<std::size_t>(w)] = pitch(w);
+  state_.update(to.data());
+  for (int w = 0; w < wheels(); ++w) {
+    const int joint = wheel(w).wheel.joint;
+    if (joint < 0 || !wheel(w).locked) continue;
+    const double pitched = pitch(w) - pitch_before_[static_cast<std::size_t>(w)];
+    to[base + joint] = from[base + joint] - std::remainder(pitched, 2.0 * std::numbers::pi);
+  }
 }
 
 void WheelMotion::roll(const Eigen::Ref<const Eigen::VectorXd>& from,

@@ -35,6 +35,10 @@ class WheelMotion {
   /// along its mean heading over its radius. A locked wheel's stays.
   void roll(const Eigen::Ref<const Eigen::VectorXd>& from, Eigen::Ref<Eigen::VectorXd> to);
 
+  /// Sets the joints of locked wheels of `to` so that they do not turn on the ground: what their
+  /// carriers pitch from `from` to `to`, they turn back.
+  void hold(const Eigen::Ref<const Eigen::VectorXd>& from, Eigen::Ref<Eigen::VectorXd> to);
+
   /// Steers the wheels that can be along a way of the base, which turns by an angle about the
   /// vertical meanwhile, and rolls them from the configuration before: `to` is on that way.
   void drive(const Eigen::Ref<const Eigen::VectorXd>& from, const Eigen::Vector3d& way, double turn,
@@ -47,6 +51,7 @@ class WheelMotion {
   std::vector<StanceParameter::StandingWheel> wheels_;
   RobotState state_;
   std::vector<WheelPose> before_;
+  std::vector<double> pitch_before_;
 };
 
 }  // namespace locograph

@@ -279,25 +279,42 @@ TEST_F(WalkOnLegs, SaysWhyItIsNotPlannedOn) {
   EXPECT_TRUE(check().feasible);
 }
 
-/// A configuration of the plan that is off by as much in each coordinate, on its contacts, balls
-/// where they have rolled to. aside_m: of contacts that do not roll, along what they are on.
+/// A configuration of a plan that is off by as much in each coordinate, on its contacts, balls
+/// where they have rolled to.
+struct Off {
+  std::vector<Contact> contacts;
+  Eigen::VectorXd q;
+};
+
+/// aside_m: of contacts that do not roll, along what they are on.
+Off put_off(const Robot& robot, const Motion& planned, int at, double by, double aside_m) {
+  const auto i = static_cast<std::size_t>(at);
+  const Eigen::VectorXd& was = planned.configurations[i];
+  Off off;
+  RobotState state(robot);
+  state.update(was.data());
+  off.contacts = planned.stances[planned.stance_from[i]].contacts;
+  const HeldBalls balls = held_balls(state, off.contacts, [](const Contact&) { return true; });
+  for (std::size_t k = 0; k < off.contacts.size(); ++k) {
+    Contact& contact = off.contacts[k];
+    if (!balls[k]) contact.position += aside_m * axes_in_world(contact).col(0);
+  }
+  Eigen::VectorXd step(robot.tangent_size());
+  for (Eigen::Index k = 0; k < step.size(); ++k) step[k] = k % 2 == 0 ? by : -by;
+  off.q.resize(robot.configuration_size());
+  robot.integrate(was.data(), step.data(), off.q.data());
+  ContactProjection closed(robot);
+  closed.set(off.contacts, balls);
+  EXPECT_TRUE(closed.project(off.q));
+  return off;
+}
+
 class OffItsPlan : public WalkOnLegs {
  protected:
   void put_off(double by, double aside_m) {
-    RobotState state(robot());
-    state.update(was().data());
-    contacts_ = planned().stances[planned().stance_from[kAt]].contacts;
-    const HeldBalls balls = held_balls(state, contacts_, [](const Contact&) { return true; });
-    for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      if (!balls[i]) contacts_[i].position += aside_m * axes_in_world(contacts_[i]).col(0);
-    }
-    Eigen::VectorXd off(robot().tangent_size());
-    for (Eigen::Index k = 0; k < off.size(); ++k) off[k] = k % 2 == 0 ? by : -by;
-    q_.resize(robot().configuration_size());
-    robot().integrate(was().data(), off.data(), q_.data());
-    ContactProjection closed(robot());
-    closed.set(contacts_, balls);
-    ASSERT_TRUE(closed.project(q_));
+    Off off = test::put_off(robot(), planned(), kAt, by, aside_m);
+    contacts_ = std::move(off.contacts);
+    q_ = std::move(off.q);
   }
 
   const Robot& robot() const { return *task_->robot->robot; }
@@ -350,6 +367,24 @@ TEST_F(OffItsPlan, ByCentimetresIsLedBackToo) {
   plan_of(graph_);  // holds segments against configurations, or throws
 }
 
+/// What enters the window later is beside its plan by tenths of a millimetre, too.
+TEST_F(OffItsPlan, GoesOnEvenlyWhereTheFirstWindowEnded) {
+  put_off(0.01, 0.0);
+  judging_ = judging_of(task_);
+  LocalPlanner planner(graph_, walk_options_for(plan_of(graph_)).planner);
+  planner.measure(q_);
+  planner.begin_window(kAt);
+  const int end = planner.last_of_window(kAt);
+  for (int executed = kAt + 1; planner.last_of_window(executed) < end + 6; ++executed) {
+    planner.begin_window(executed);
+  }
+  const CheckReport check =
+      step_check(judging_)(motion_of(graph_, planner.plan(), end - 4, end + 4));
+  for (const Violation& violation : check.violations) {
+    EXPECT_FALSE(violation.violated) << violation_text(violation);
+  }
+}
+
 TEST_F(OffItsPlan, IsPassedMoreSlowlyInTheMiddle) {
   OnlinePlan plan(graph_);
   const Motion before = planned();
@@ -393,6 +428,26 @@ TEST_F(OffItsPlan, HasItsContactsWhereTheyAre) {
     if (!held) {
       EXPECT_EQ(last.contacts[c].position, goal.contacts[c].position) << c;
     }
+  }
+}
+
+/// Legs that end in wheels: what their carriers pitch on the way back, wheels that stand turn back.
+TEST_F(WalkOnLegs, WheelsThatStandDoNotTurnOnTheWayBack) {
+  const auto task =
+      std::make_shared<const Task>(started_task(changed_scenario("centauro_platform", {})).task);
+  const MotionPlan plan = plan_motion(*task, {.seed = 1});
+  ASSERT_TRUE(plan.success()) << plan.reason;
+  Graph graph = motion_graph(*task, plan);
+  const Motion& planned = plan.motion;
+  const int at = static_cast<int>(planned.configurations.size() / 2);
+  const Off off = put_off(*task->robot->robot, planned, at, 0.01, 0.0);
+  WalkOptions options = walk_options_for(plan_of(graph));
+  judging_ = judging_of(task);
+  options.verify = step_check(judging_);
+  PlanWalk walk(graph, {}, options, at);
+  walk.measure(off.q);
+  while (walk.time_s(walk.executed()) < planned.time_s[static_cast<std::size_t>(at)] + 2.0) {
+    ASSERT_TRUE(walk.step()) << walk.report().reason;
   }
 }
 
