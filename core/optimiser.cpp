@@ -287,11 +287,10 @@ bool Optimiser::iterate_gauss_newton(IterationStatistics& now) {
 /// promises is there (Nocedal & Wright 2006, section 3.1; the cuts by interpolation, section 3.5).
 /// True when the trial state is one to take; `cost` is then its cost.
 bool Optimiser::shorten(Cost& cost, IterationStatistics& now) {
-  constexpr int kMostCuts = 20;
   Vector step = map(workspace_->step());
   const double slope = 2.0 * dot(step, map(negative_gradient_));  // at 0, downwards
   double length = 1.0;
-  for (int cut = 0; cut < kMostCuts; ++cut) {
+  for (int cut = 0; cut < options_.max_cuts; ++cut) {
     // The least of the parabola through the cost at 0, with its slope, and at `length`.
     const double least = 0.5 * slope * length / (slope + (cost.robust - cost_.robust) / length);
     const double factor = std::isfinite(cost.robust) ? std::clamp(least / length, 0.1, 0.5) : 0.1;

@@ -65,6 +65,8 @@ struct OptimiserOptions {
   /// do what the model says. Without this a stiff row that begins to act raises λ by many orders,
   /// for all directions, and tens of iterations crawl until it has come down by thirds.
   bool shorten_steps = false;
+  /// How often such a step may be cut before λ rises instead; each cut is an evaluation.
+  int max_cuts = 20;
   /// Of Levenberg-Marquardt and the dogleg: steps in a row that may leave the cost above the least
   /// so far (reference_cost.h); the run ends at the best state that it has seen. With 0 every step
   /// lowers the cost, and the workspace holds the best state after each, which a caller that stops

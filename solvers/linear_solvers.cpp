@@ -18,7 +18,9 @@ namespace locograph {
 namespace {
 
 /// The solver with the least estimated time. Sparse orders are only computed where they can pay.
-std::unique_ptr<LinearSolver> cheapest(const BlockPattern& pattern) {
+/// before: the one of another pattern; a banded one is used again, as it has its memory.
+std::unique_ptr<LinearSolver> cheapest(const BlockPattern& pattern,
+                                       std::unique_ptr<LinearSolver> before) {
   const double dense = DenseSolver::seconds(pattern), banded = BandedSolver::seconds(pattern);
   const double simple = std::min(dense, banded);
   // Estimates are not better than this, and the others need no order.
@@ -28,6 +30,7 @@ std::unique_ptr<LinearSolver> cheapest(const BlockPattern& pattern) {
     if (sparse->analyse_if_below(pattern, kMargin * simple)) return sparse;
   }
   if (dense <= banded) return std::make_unique<DenseSolver>();
+  if (dynamic_cast<BandedSolver*>(before.get()) != nullptr) return before;
   return std::make_unique<BandedSolver>();
 }
 
@@ -40,7 +43,7 @@ class AutoSolver final : public LinearSolver {
     if (chosen_ && pattern == pattern_) return;
     pattern_ = pattern;
     if (choose_schur(pattern)) return;
-    chosen_ = cheapest(pattern);
+    chosen_ = cheapest(pattern, std::move(chosen_));
     chosen_->use_threads(threads_);
     chosen_->analyse(pattern);
   }

@@ -3,6 +3,7 @@
 #include <locograph/solvers/linear_solvers.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace locograph {
@@ -115,6 +116,7 @@ void WindowSolver::set_state(const std::vector<double>& state) {
 
 void WindowSolver::prepare() {
   quality_known_ = false;
+  raising_.start(workspace_, *linear_solver_, true);
   optimiser_.start(workspace_, *linear_solver_);
   optimiser_.iterate();
 }
@@ -147,8 +149,9 @@ void WindowSolver::keep_multipliers() {
   for (const CompiledConstraint& c : problem_.constraints()) {
     for (int r = 0; r < c.count; ++r) {
       const ConstraintRow& row = rows[c.row + r];
+      // Before the first round ends nothing is known of any row: it is infinite.
       const double last = goes_on_ ? raising_.last_violations()[c.row + r] : 0.0;
-      if (row.shift != 0.0 || row.scale != 1.0 || last > 0.0) {
+      if (row.shift != 0.0 || row.scale != 1.0 || (last > 0.0 && std::isfinite(last))) {
         multipliers_.push_back({c.edge, r, row.shift, row.scale, last});
       }
     }
@@ -249,7 +252,11 @@ bool WindowSolver::step_plain(const Termination& termination) {
   return true;
 }
 
+/// One that has to be short cuts a refused step less often.
 bool WindowSolver::step_raising(const Termination& termination, WindowStatistics& statistics) {
+  constexpr int kFewCuts = 6;
+  const bool is_short = termination.max_iterations > 0;
+  raising_.inner_options().max_cuts = is_short ? kFewCuts : OptimiserOptions().max_cuts;
   raising_.inner_options().deadline = deadline_of_step(termination);
   const bool more = raising_.iterate();
   statistics.rounds = raising_.rounds();
