@@ -62,6 +62,7 @@ void OptimiserOptions::validate() const {
   check_option(refused_lambda > 0.0, "refused_lambda", "a positive number");
   check_option(initial_radius > 0.0, "initial_radius", "a positive number");
   check_option(max_refusals >= 1, "max_refusals", "1 or more");
+  check_option(max_cuts >= 1, "max_cuts", "1 or more");
   check_option(nonmonotonic_steps >= 0, "nonmonotonic_steps", "0 or more");
 }
 

@@ -8,8 +8,8 @@
 ///     locograph::update_together(updates, {}, {});   // as states[i].update(q[i].data())
 ///
 /// Agrees with RobotState::update() up to rounding. What a state gets does not depend on the others
-/// of the call, to the bit. Twenty states of CENTAURO take 0.45 of the time with AVX-512, 0.55
-/// with AVX2.
+/// of the call, to the bit. Twenty states of CENTAURO with 165 points each take 0.45 of the time
+/// with AVX-512, 0.55 with AVX2, as long without either.
 
 #include <locograph/robots/robot_state.h>
 #include <locograph/robots/tree_kernels.h>
@@ -28,7 +28,7 @@ struct StateUpdate {
 };
 
 /// Updates states of one robot, and points fixed to its links in two lists. Does not allocate once
-/// a thread has called it for a robot of this size.
+/// the thread has called it for as many links and points.
 void update_together(std::span<const StateUpdate> updates, std::span<const LinkPoint> first,
                      std::span<const LinkPoint> second,
                      const TreeKernels& kernels = tree_kernels());

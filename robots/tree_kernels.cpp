@@ -37,7 +37,7 @@ LOCOGRAPH_INLINE void sine_cosine(const Vector& x, Vector& sine, Vector& cosine)
   const Bits quarter = bits_of(rounded);
   const Vector k = rounded - all(kRound);
   Vector r = minus_product(x, k, all(1.5707963267341256));
-  r = minus_product(r, k, all(6.0771005065061922e-11));
+  r = minus_product(r, k, all(6.0771005063039660e-11));
   r = minus_product(r, k, all(2.0222662487959506e-21));
   const Vector z = r * r;
   const Vector s = plus_product(r, r * z, polynomial(kSine, z));
@@ -70,23 +70,20 @@ LOCOGRAPH_INLINE void sines_cosines(int n, const double* angles, double* sines, 
 template <int S, class V>
 LOCOGRAPH_INLINE void exchange(V& a, V& b) {
   constexpr int kW = kWidth<V>;
-  typedef long long Places __attribute__((vector_size(sizeof(V))));
   constexpr auto first = [](int k) { return (k & S) != 0 ? k - S + kW : k; };
   constexpr auto second = [](int k) { return (k & S) != 0 ? k + kW : k + S; };
   const V was = a;
   if constexpr (kW == 8) {
-    a = __builtin_shuffle(
-        was, b,
-        Places{first(0), first(1), first(2), first(3), first(4), first(5), first(6), first(7)});
-    b = __builtin_shuffle(was, b,
-                          Places{second(0), second(1), second(2), second(3), second(4), second(5),
-                                 second(6), second(7)});
+    a = __builtin_shufflevector(was, b, first(0), first(1), first(2), first(3), first(4), first(5),
+                                first(6), first(7));
+    b = __builtin_shufflevector(was, b, second(0), second(1), second(2), second(3), second(4),
+                                second(5), second(6), second(7));
   } else if constexpr (kW == 4) {
-    a = __builtin_shuffle(was, b, Places{first(0), first(1), first(2), first(3)});
-    b = __builtin_shuffle(was, b, Places{second(0), second(1), second(2), second(3)});
+    a = __builtin_shufflevector(was, b, first(0), first(1), first(2), first(3));
+    b = __builtin_shufflevector(was, b, second(0), second(1), second(2), second(3));
   } else {
-    a = __builtin_shuffle(was, b, Places{first(0), first(1)});
-    b = __builtin_shuffle(was, b, Places{second(0), second(1)});
+    a = __builtin_shufflevector(was, b, first(0), first(1));
+    b = __builtin_shufflevector(was, b, second(0), second(1));
   }
 }
 template <int S, class V, int W>

@@ -22,6 +22,7 @@ class AlignedMemory {
   void reserve(std::int64_t count) {
     if (count <= capacity_) return;
     memory_.reset();
+    capacity_ = 0;
     const std::size_t large_page = std::size_t{1} << 21;
     const std::size_t wanted = static_cast<std::size_t>(count) * sizeof(double);
     const std::size_t alignment = wanted >= 2 * large_page ? large_page : 64;

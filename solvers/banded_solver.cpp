@@ -37,7 +37,7 @@ double BandedSolver::seconds(const BlockPattern& pattern) {
 
 void BandedSolver::analyse(const BlockPattern& pattern) {
   if (pattern == pattern_) return;
-  pattern_ = pattern;
+  pattern_ = {};  // until there is memory for it
   find_panel_ends(
       pattern, [](int) { return true; }, last_);
   panel_begin_.assign(1, 0);
@@ -51,6 +51,7 @@ void BandedSolver::analyse(const BlockPattern& pattern) {
   height_.resize(stride_.size());
   blocks_.resize(stride_.size());
   panels_.reserve(static_cast<std::int64_t>(panel_begin_.back()));
+  pattern_ = pattern;
 }
 
 void BandedSolver::gather(const double* values) {

@@ -41,11 +41,13 @@ class AutoSolver final : public LinearSolver {
 
   void analyse(const BlockPattern& pattern) override {
     if (chosen_ && pattern == pattern_) return;
+    pattern_ = {};  // until it is analysed
+    if (!choose_schur(pattern)) {
+      chosen_ = cheapest(pattern, std::move(chosen_));
+      chosen_->use_threads(threads_);
+      chosen_->analyse(pattern);
+    }
     pattern_ = pattern;
-    if (choose_schur(pattern)) return;
-    chosen_ = cheapest(pattern, std::move(chosen_));
-    chosen_->use_threads(threads_);
-    chosen_->analyse(pattern);
   }
   void use_threads(ThreadPool* threads) override {
     threads_ = threads;

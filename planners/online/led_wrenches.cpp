@@ -20,10 +20,14 @@ class Least {
     ask_for(0);
   }
 
-  /// Null: none hold.
+  /// Null: none hold, and the others keep their margin.
   const StanceWrenches* solve(const RobotState& state, const Eigen::VectorXd& asked) {
+    const std::size_t before = part_;
     while (!least_->solve(state, asked)) {
-      if (part_ + 1 == kPartsOfMargin.size()) return nullptr;
+      if (part_ + 1 == kPartsOfMargin.size()) {
+        if (part_ != before) ask_for(before);
+        return nullptr;
+      }
       ask_for(part_ + 1);
     }
     return &least_->wrenches();

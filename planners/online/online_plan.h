@@ -69,7 +69,7 @@ class OnlinePlan {
   void slow_down(int from, int to, double duration_s);
   /// On legs: the graph's configurations in the range are the plan from now on, with slopes and
   /// wrenches that go with them; those of the plan as it was count more and more until `back`. The
-  /// configuration after them is, too, but for its wrenches.
+  /// two configurations after them are, too, but for their wrenches.
   void go_as_led(const PlanRange& range, int back);
 
   /// How far a configuration is behind its place in the plan as it came, along its heading [m].

@@ -150,25 +150,30 @@ void WayBack::begin(const Window& window, const Eigen::VectorXd& was) {
   Eigen::VectorXd there = least_off(back, executed);
   std::vector<Eigen::VectorXd> planned;
   for (int i = window.first(); i < window.end(); ++i) planned.push_back(plan_.configuration(i));
-  const auto planned_at = [&](int i) -> const Eigen::VectorXd& {
-    return planned[static_cast<std::size_t>(i - window.first())];
-  };
-  // Where balls have rolled to on the way is known once it is gone: it ends there the second time.
-  for (const bool last_time : {false, true}) {
-    for (int i = window.first(); i < window.end() && !plan_.rolls(i - 1); ++i) {
+  const auto ends = [&](int i) { return i == window.end() || plan_.rolls(i - 1); };
+  // Leads until the time is over; returns the first configuration after that.
+  const auto lead = [&] {
+    int i = window.first();
+    for (; !ends(i); ++i) {
       if (plan_.is_fixed(i)) continue;
       const double share = duration_s > 0.0 ? (plan_.time_s(i) - from_s) / duration_s : 1.0;
       constexpr double kSame = 1e-9;
-      if (share > 1.0 + kSame) {
-        if (!last_time) break;
-        add(i);
-        continue;
-      }
+      if (share > 1.0 + kSame) break;
       const Eigen::VectorXd left = there + share_left(share) * (off - there);
-      robot.integrate(planned_at(i).data(), left.data(), plan_.configuration(i).data());
-      close(i, planned_at(i));
+      const Eigen::VectorXd& was_here = planned[static_cast<std::size_t>(i - window.first())];
+      robot.integrate(was_here.data(), left.data(), plan_.configuration(i).data());
+      close(i, was_here);
     }
-    if (end_ > back) there = off_;
+    return i;
+  };
+  int next = lead();
+  if (next > back) {
+    // Where balls have rolled to on the way is known once it is gone: it ends there this time.
+    there = off_;
+    next = lead();
+  }
+  for (; !ends(next); ++next) {
+    if (!plan_.is_fixed(next)) add(next);
   }
   int is_back = executed + 1;
   while (is_back < window.last() && plan_.time_s(is_back) < from_s + duration_s) ++is_back;

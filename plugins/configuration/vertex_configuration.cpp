@@ -60,8 +60,8 @@ ConfigurationState::ConfigurationState(std::shared_ptr<const RobotParameter> par
     : robot(known(std::move(parameter))),
       kinematics(*robot->robot),
       q(robot->robot->configuration_size()),
-      sphere_centres(static_cast<Eigen::Index>(robot->spheres.size()), 3),
-      bound_centres(static_cast<Eigen::Index>(robot->bounds.size()), 3) {}
+      sphere_centres(static_cast<Eigen::Index>(robot->sphere_points.size()), 3),
+      bound_centres(static_cast<Eigen::Index>(robot->bound_points.size()), 3) {}
 
 void ConfigurationState::update(const double* configuration) {
   std::copy_n(configuration, q.size(), q.data());
