@@ -440,7 +440,7 @@ TEST_F(WalkOnLegs, WheelsThatStandDoNotTurnOnTheWayBack) {
   Graph graph = motion_graph(*task, plan);
   const Motion& planned = plan.motion;
   const int at = static_cast<int>(planned.configurations.size() / 2);
-  const Off off = put_off(*task->robot->robot, planned, at, 0.01, 0.0);
+  const Off off = put_off(*task->robot->robot, planned, at, 0.03, 0.0);
   WalkOptions options = walk_options_for(plan_of(graph));
   judging_ = judging_of(task);
   options.verify = step_check(judging_);
