@@ -2,6 +2,7 @@
 #include <locograph/robots/wheel.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace locograph {
 
@@ -35,6 +36,10 @@ double carrier_pitch(const RobotState& state, const Wheel& wheel, const Eigen::V
   const Eigen::Vector3d upright = carrier * wheel.upright_in_carrier;
   const Eigen::Vector3d axle = carrier * wheel.axle_in_carrier;
   return std::atan2(normal.cross(upright).dot(axle), normal.dot(upright));
+}
+
+double held_wheel_joint(double joint_before, double pitch_before, double pitch_now) {
+  return joint_before - std::remainder(pitch_now - pitch_before, 2.0 * std::numbers::pi);
 }
 
 Eigen::Vector3d lowest_point(const WheelPose& pose, double radius_m,

@@ -45,6 +45,10 @@ struct WheelPose {
 /// The angle of the wheel's `upright_in_carrier` from the normal of a plane, about the axle [rad].
 double carrier_pitch(const RobotState& state, const Wheel& wheel, const Eigen::Vector3d& normal);
 
+/// Where the joint of a wheel is once its carrier has pitched, in carrier_pitch() [rad], if the
+/// wheel has not turned on the ground: what the carrier pitches, the joint turns back.
+double held_wheel_joint(double joint_before, double pitch_before, double pitch_now);
+
 /// The point of the disc that is farthest against the normal.
 Eigen::Vector3d lowest_point(const WheelPose& pose, double radius_m, const Eigen::Vector3d& normal);
 

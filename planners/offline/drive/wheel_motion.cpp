@@ -82,8 +82,8 @@ void WheelMotion::hold(const Eigen::Ref<const Eigen::VectorXd>& from,
   for (int w = 0; w < wheels(); ++w) {
     const int joint = wheel(w).wheel.joint;
     if (joint < 0 || !wheel(w).locked) continue;
-    const double pitched = pitch(w) - pitch_before_[static_cast<std::size_t>(w)];
-    to[base + joint] = from[base + joint] - std::remainder(pitched, 2.0 * std::numbers::pi);
+    const double before = pitch_before_[static_cast<std::size_t>(w)];
+    to[base + joint] = held_wheel_joint(from[base + joint], before, pitch(w));
   }
 }
 

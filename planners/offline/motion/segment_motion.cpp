@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 namespace locograph {
@@ -528,8 +527,7 @@ void SegmentMover::hold_wheels(std::vector<Eigen::VectorXd>& configurations) {
     for (std::size_t i = 1; i + 1 < configurations.size(); ++i) {
       state.update(configurations[i].data());
       const double now = carrier_pitch(state, wheel, normal);
-      configurations[i][joint] =
-          configurations[i - 1][joint] - std::remainder(now - pitch, 2.0 * std::numbers::pi);
+      configurations[i][joint] = held_wheel_joint(configurations[i - 1][joint], pitch, now);
       pitch = now;
     }
   }

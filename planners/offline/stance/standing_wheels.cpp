@@ -1,9 +1,6 @@
 #include <locograph/planners/offline/stance/standing_wheels.h>
 #include <locograph/robots/wheel.h>
 
-#include <cmath>
-#include <numbers>
-
 namespace locograph {
 namespace {
 
@@ -36,11 +33,10 @@ void hold_wheels(const StanceSpace& space, StancePath& path, std::size_t first) 
       const int held = path.footings[i - 1][effector];
       if (held == kFree) continue;
       const Eigen::Vector3d normal = space.place(held).bearing.contact.normal.stableNormalized();
-      const double pitched =
-          carrier_pitch(after, wheel, normal) - carrier_pitch(before, wheel, normal);
       const int joint = robot.base_configuration_size() + wheel.joint;
       path.configurations[i][joint] =
-          path.configurations[i - 1][joint] - std::remainder(pitched, 2.0 * std::numbers::pi);
+          held_wheel_joint(path.configurations[i - 1][joint], carrier_pitch(before, wheel, normal),
+                           carrier_pitch(after, wheel, normal));
     }
   }
 }
