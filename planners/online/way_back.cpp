@@ -167,11 +167,9 @@ void WayBack::begin(const Window& window, const Eigen::VectorXd& was) {
     return i;
   };
   int next = lead();
-  if (next > back) {
-    // Where balls have rolled to on the way is known once it is gone: it ends there this time.
-    there = off_;
-    next = lead();
-  }
+  // Where balls have rolled to on the way is known once it is gone: it ends there this time.
+  there = next > back ? off_ : least_off(back, next - 1);
+  next = lead();
   for (; !ends(next); ++next) {
     if (!plan_.is_fixed(next)) add(next);
   }

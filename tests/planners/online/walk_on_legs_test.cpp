@@ -385,6 +385,41 @@ TEST_F(OffItsPlan, GoesOnEvenlyWhereTheFirstWindowEnded) {
   }
 }
 
+/// A hand closes its contact just after the robot is back: where balls have rolled to by then
+/// decides where the way leads to.
+TEST_F(OffItsPlan, ComesToAContactThatClosesFromOutside) {
+  judging_ = judging_of(task_);
+  const auto& stance_from = planned().stance_from;
+  const auto contacts = [&](std::size_t i) {
+    return planned().stances[static_cast<std::size_t>(stance_from[i])].contacts.size();
+  };
+  std::vector<int> closes;
+  for (std::size_t i = 1; i < stance_from.size(); ++i) {
+    if (contacts(i) > contacts(i - 1)) closes.push_back(static_cast<int>(i));
+  }
+  ASSERT_FALSE(closes.empty());
+  int looked_at = 0;
+  for (const int close : closes) {
+    constexpr double kBefore_s = 1.64, kOff = 0.03;
+    int at = close;
+    while (at > 0 && planned().time_s[close] - planned().time_s[at] < kBefore_s) --at;
+    if (stance_from[at] != stance_from[close - 1]) continue;
+    ++looked_at;
+    for (const double off : {kOff, -kOff}) {
+      graph_ = motion_graph(*task_, *plan_);
+      const Eigen::VectorXd q = test::put_off(robot(), planned(), at, off, 0.0).q;
+      LocalPlanner planner(graph_, walk_options_for(plan_of(graph_)).planner);
+      planner.measure(q);
+      planner.begin_window(at);
+      const CheckReport check = step_check(judging_)(
+          motion_of(graph_, planner.plan(), close - 10, planner.last_of_window(at)));
+      const Violation& deep = check.constraint("ground_penetration");
+      EXPECT_FALSE(deep.violated) << close << ": " << violation_text(deep);
+    }
+  }
+  EXPECT_GE(looked_at, 1);
+}
+
 TEST_F(OffItsPlan, IsPassedMoreSlowlyInTheMiddle) {
   OnlinePlan plan(graph_);
   const Motion before = planned();
