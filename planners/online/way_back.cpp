@@ -5,9 +5,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace locograph {
+
+namespace {
+
+/// Of what a contact is at above what it touches [m]: of a sole's lowest corner.
+double height(const ContactParameter& contact, const RobotState& state) {
+  const ContactClosure& closure = contact.closure;
+  Eigen::VectorXd error(closure.rows());
+  closure.error(state, error.data());
+  const EndEffector& effector = contact.contact.effector;
+  double height_m = std::numeric_limits<double>::infinity(), lower_m = 0.0;
+  for (int row = 0; row < closure.rows(); ++row) {
+    const int held = closure.held()[static_cast<std::size_t>(row)];
+    if (held == 2) height_m = error[row];
+    if (effector.kind != ContactKind::kSurface) continue;
+    if (held == 3) lower_m += effector.half_y_m * std::abs(error[row]);
+    if (held == 4) lower_m += effector.half_x_m * std::abs(error[row]);
+  }
+  return height_m - lower_m;
+}
+
+}  // namespace
 
 /// How long it takes, so that it asks for little acceleration [s]: of 10 t^3 - 15 t^4 +
 /// 6 t^5 the second derivative is at most 5.8.
@@ -76,6 +98,65 @@ void WayBack::close(int index, const Eigen::VectorXd& planned) {
   if (close_contacts(index, index - 1, closed)) plan_.configuration(index) = closed;
   plan_.robot().difference(planned.data(), plan_.configuration(index).data(), off_.data());
   end_ = index + 1;
+}
+
+/// Ends of limbs that swing do not come nearer to what they have touched, or will, than planned by
+/// all that they are off: h_p^2 / (h_p + d) instead of h_p - d above it, d how much lower they
+/// would be than planned; more and more of that by `share`, 0 to 1.
+void WayBack::lift(int index, double share, const Eigen::VectorXd& planned) {
+  constexpr double kNear_m = 0.12;  // all of it, and none at twice as much
+  const Robot& robot = plan_.robot();
+  const auto& stance_from = plan_.plan().stance_from;
+  const auto& here = stance_from[static_cast<std::size_t>(index)]->contacts;
+  std::vector<bool> holds(robot.axes().size(), false);
+  for (const auto& contact : here) {
+    for (const int axis : robot.support(contact->link)) {
+      holds[static_cast<std::size_t>(axis)] = true;
+    }
+  }
+  const auto is_held = [&](const ContactParameter& contact) {
+    return std::ranges::any_of(here, [&](const auto& c) { return c->link == contact.link; });
+  };
+  int before = index, after = index;
+  while (before > 0 && stance_from[static_cast<std::size_t>(before)]->contacts == here) --before;
+  while (after < plan_.last() && stance_from[static_cast<std::size_t>(after)]->contacts == here) {
+    ++after;
+  }
+  RobotState was(robot), now(robot);
+  was.update(planned.data());
+  for (const int side : {before, after}) {
+    for (const auto& contact : stance_from[static_cast<std::size_t>(side)]->contacts) {
+      if (is_held(*contact) || contact->contact.bar ||
+          contact->contact.effector.kind == ContactKind::kGrasp) {
+        continue;
+      }
+      const double planned_m = height(*contact, was);
+      const Eigen::Vector3d normal = axes_in_world(contact->contact).col(2);
+      Eigen::Vector3d aside = was.world_from_link(contact->link) * contact->contact.effector.point -
+                              contact->contact.position;
+      aside -= aside.dot(normal) * normal;
+      const double near = share_left((aside.norm() - kNear_m) / kNear_m);
+      if (!(planned_m > 0.0 && near > 0.0)) continue;
+      now.update(plan_.configuration(index).data());
+      const double lower_m = planned_m - height(*contact, now);
+      if (!(lower_m > 0.0)) continue;
+      const double by_m = near * share * lower_m * lower_m / (planned_m + lower_m);
+      Eigen::VectorXd row = Eigen::VectorXd::Zero(robot.tangent_size());
+      now.add_point_gradient(contact->link,
+                             now.world_from_link(contact->link) * contact->contact.effector.point,
+                             normal, 1.0, row.data());
+      row.head(robot.base_tangent_size()).setZero();
+      for (std::size_t a = 0; a < holds.size(); ++a) {
+        if (holds[a]) row[robot.base_tangent_size() + robot.axes()[a].active] = 0.0;
+      }
+      constexpr double kLeast = 1e-4;  // m²: no joint of the limb raises it
+      const double length = row.squaredNorm();
+      if (!(length > kLeast)) continue;
+      row *= by_m / length;
+      robot.integrate(plan_.configuration(index).data(), row.data(),
+                      plan_.configuration(index).data());
+    }
+  }
 }
 
 /// The configuration at which the next contact closes, after one of the window's; -1: one opens
@@ -157,12 +238,14 @@ void WayBack::begin(const Window& window, const Eigen::VectorXd& was) {
     for (; !ends(i); ++i) {
       if (plan_.is_fixed(i)) continue;
       const double share = duration_s > 0.0 ? (plan_.time_s(i) - from_s) / duration_s : 1.0;
-      constexpr double kSame = 1e-9;
+      constexpr double kSame = 1e-9, kLifted = 2.5;
       if (share > 1.0 + kSame) break;
       const Eigen::VectorXd left = there + share_left(share) * (off - there);
       const Eigen::VectorXd& was_here = planned[static_cast<std::size_t>(i - window.first())];
       robot.integrate(was_here.data(), left.data(), plan_.configuration(i).data());
       close(i, was_here);
+      lift(i, 1.0 - share_left(kLifted * share), was_here);
+      robot.difference(was_here.data(), plan_.configuration(i).data(), off_.data());
     }
     return i;
   };

@@ -12,8 +12,8 @@
 /// contacts change, or, where that is too soon, before the next one closes; if there is not enough
 /// time until then the plan is slowed down. Wheels that stand do not turn on the ground. Balls have
 /// rolled elsewhere then, by tenths of a millimetre: as long as they are held it stays beside its
-/// plan by as much, and goes over to it without a jump once they are lifted. Wrenches are those of
-/// led_wrenches.h.
+/// plan by as much, and goes over to it without a jump once they are lifted. Ends of limbs that
+/// swing keep away from what they have touched, or will. Wrenches are those of led_wrenches.h.
 
 #include <locograph/planners/online/plan_wheels.h>
 #include <locograph/planners/online/window.h>
@@ -44,6 +44,7 @@ class WayBack {
   void set_contacts(int index, int beside);
   bool close_contacts(int index, int beside, Eigen::VectorXd& q);
   void close(int index, const Eigen::VectorXd& planned);
+  void lift(int index, double share, const Eigen::VectorXd& planned);
   void close_before(const Window& window);
   Eigen::VectorXd least_off(int index, int from);
   void follow(const Window& window, int first, int back);

@@ -385,8 +385,8 @@ TEST_F(OffItsPlan, GoesOnEvenlyWhereTheFirstWindowEnded) {
   }
 }
 
-/// A hand closes its contact just after the robot is back: where balls have rolled to by then
-/// decides where the way leads to.
+/// A hand or a foot closes its contact just after the robot is back: where balls have rolled to by
+/// then decides where the way leads to. Or soon, so that it is near its place while it is off.
 TEST_F(OffItsPlan, ComesToAContactThatClosesFromOutside) {
   judging_ = judging_of(task_);
   const auto& stance_from = planned().stance_from;
@@ -399,10 +399,12 @@ TEST_F(OffItsPlan, ComesToAContactThatClosesFromOutside) {
   }
   ASSERT_FALSE(closes.empty());
   int looked_at = 0;
-  for (const int close : closes) {
-    constexpr double kBefore_s = 1.64, kOff = 0.03;
+  for (int k = 0; k < 2 * static_cast<int>(closes.size()); ++k) {
+    constexpr double kOff = 0.03;
+    const double before_s = k % 2 == 0 ? 1.64 : 0.45;
+    const int close = closes[k / 2];
     int at = close;
-    while (at > 0 && planned().time_s[close] - planned().time_s[at] < kBefore_s) --at;
+    while (at > 0 && planned().time_s[close] - planned().time_s[at] < before_s) --at;
     if (stance_from[at] != stance_from[close - 1]) continue;
     ++looked_at;
     for (const double off : {kOff, -kOff}) {
