@@ -9,7 +9,6 @@
 #include <vector>
 
 namespace locograph {
-
 namespace {
 
 /// Of what a contact is at above what it touches [m]: of a sole's lowest corner.
@@ -92,10 +91,11 @@ bool WayBack::close_contacts(int index, int beside, Eigen::VectorXd& q) {
 }
 
 /// Brings a configuration to its contacts, balls where they have rolled to; planned: where
-/// it was planned.
-void WayBack::close(int index, const Eigen::VectorXd& planned) {
+/// it was planned, lifted: see lift().
+void WayBack::close(int index, const Eigen::VectorXd& planned, double lifted) {
   Eigen::VectorXd closed = plan_.configuration(index);
   if (close_contacts(index, index - 1, closed)) plan_.configuration(index) = closed;
+  if (lifted > 0.0) lift(index, planned, lifted);
   plan_.robot().difference(planned.data(), plan_.configuration(index).data(), off_.data());
   end_ = index + 1;
 }
@@ -103,7 +103,7 @@ void WayBack::close(int index, const Eigen::VectorXd& planned) {
 /// Ends of limbs that swing do not come nearer to what they have touched, or will, than planned by
 /// all that they are off: h_p^2 / (h_p + d) instead of h_p - d above it, d how much lower they
 /// would be than planned; more and more of that by `share`, 0 to 1.
-void WayBack::lift(int index, double share, const Eigen::VectorXd& planned) {
+void WayBack::lift(int index, const Eigen::VectorXd& planned, double share) {
   constexpr double kNear_m = 0.12;  // all of it, and none at twice as much
   const Robot& robot = plan_.robot();
   const auto& stance_from = plan_.plan().stance_from;
@@ -194,7 +194,7 @@ void WayBack::add(int index) {
     off_rate_ = faster * (off_rate_ - kDamped_per_s * step_s * turned);
   }
   plan_.robot().integrate(planned.data(), here.data(), plan_.configuration(index).data());
-  close(index, planned);
+  close(index, planned, 0.0);
 }
 
 /// What a configuration further on is off at least, on its contacts; balls roll there from where
@@ -243,9 +243,7 @@ void WayBack::begin(const Window& window, const Eigen::VectorXd& was) {
       const Eigen::VectorXd left = there + share_left(share) * (off - there);
       const Eigen::VectorXd& was_here = planned[static_cast<std::size_t>(i - window.first())];
       robot.integrate(was_here.data(), left.data(), plan_.configuration(i).data());
-      close(i, was_here);
-      lift(i, 1.0 - share_left(kLifted * share), was_here);
-      robot.difference(was_here.data(), plan_.configuration(i).data(), off_.data());
+      close(i, was_here, 1.0 - share_left(kLifted * share));
     }
     return i;
   };

@@ -43,8 +43,8 @@ class WayBack {
   int closes_next(int index) const;
   void set_contacts(int index, int beside);
   bool close_contacts(int index, int beside, Eigen::VectorXd& q);
-  void close(int index, const Eigen::VectorXd& planned);
-  void lift(int index, double share, const Eigen::VectorXd& planned);
+  void close(int index, const Eigen::VectorXd& planned, double lifted);
+  void lift(int index, const Eigen::VectorXd& planned, double share);
   void close_before(const Window& window);
   Eigen::VectorXd least_off(int index, int from);
   void follow(const Window& window, int first, int back);
