@@ -1,15 +1,16 @@
 // Robots that are off their plan, as something has pushed them: does the online planner lead them
 // back.
 //
-//     push_campaign [--cases N] [--seed N] [--rate HZ] [--push M] [--turn RAD] [--joints RAD]
-//     [--contacts M] PLAN.g2o…
+//     push_campaign [--cases N] [--seed N] [--rate HZ] [--walk S] [--push M] [--turn RAD]
+//     [--joints RAD] [--contacts M] PLAN.g2o…
 //
 // Each case draws a time of the plan and a displacement: the base by up to `--push` and `--turn`,
 // each joint by up to `--joints`. The robot is put on the contacts that it has there, balls where
 // they have rolled to, others by up to `--contacts` beside where they are planned, wheels that
 // stand as the plan has turned them; what is off by more, or is refused by the judge as it stands,
 // is drawn again. It is measured there, at the velocity of the plan, and walked on for 2 s of the
-// plan, each step judged. It is back when its base is within 1 cm and 0.01 rad of the plan then.
+// plan, or `--walk`, each step judged. It is back when its base is within 1 cm and 0.01 rad of the
+// plan then.
 // Prints one JSON object.
 #include <locograph/check/judge.h>
 #include <locograph/common/data_folder.h>
@@ -35,7 +36,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kWalk_s = 2.0, kBack_m = 0.01, kBack_rad = 0.01;
+constexpr double kBack_m = 0.01, kBack_rad = 0.01;
 constexpr int kMostDraws = 200;
 
 struct Push {
@@ -49,8 +50,8 @@ struct Distance {
 
 class Campaign {
  public:
-  Campaign(std::uint64_t seed, const Push& push, double rate_hz)
-      : random_(seed), push_(push), rate_hz_(rate_hz) {
+  Campaign(std::uint64_t seed, const Push& push, double rate_hz, double walk_s)
+      : random_(seed), push_(push), rate_hz_(rate_hz), walk_s_(walk_s) {
     types_ = standard_types();
     add_robot_types(types_);
   }
@@ -108,7 +109,7 @@ class Campaign {
   std::optional<std::pair<int, Eigen::VectorXd>> draw(const Graph& graph, const Plan& plan,
                                                       int& refused) {
     const auto& time_s = planned_.time_s;
-    const auto until = static_cast<int>(std::ranges::upper_bound(time_s, time_s.back() - kWalk_s) -
+    const auto until = static_cast<int>(std::ranges::upper_bound(time_s, time_s.back() - walk_s_) -
                                         time_s.begin());
     for (int k = 0; k < kMostDraws; ++k) {
       const int at =
@@ -190,7 +191,7 @@ class Campaign {
     options.rate_hz = rate_hz_;
     options.verify = step_check(judging_);
     const auto& time_s = planned_.time_s;
-    const double end_s = time_s[static_cast<std::size_t>(at)] + kWalk_s;
+    const double end_s = time_s[static_cast<std::size_t>(at)] + walk_s_;
     const Distance off = distance(planned_.configurations[static_cast<std::size_t>(at)], pushed);
     PlanWalk walk(graph, {}, options, at);
     walk.measure(pushed);
@@ -218,7 +219,7 @@ class Campaign {
 
   std::mt19937_64 random_;
   Push push_;
-  double rate_hz_;
+  double rate_hz_, walk_s_;
   TypeRegistry types_;
   Motion planned_;
   Judging judging_;
@@ -231,12 +232,13 @@ int main(int argc, char** argv) {
   locograph::OptionParser app("Robots that are off their plan are led back", "push_campaign");
   int cases = 40;
   std::uint64_t seed = 1;
-  double rate_hz = 50.0;
+  double rate_hz = 50.0, walk_s = 2.0;
   locograph::Push push;
   std::vector<std::string> files;
   app.add_option("--cases", cases, "Pushes for each plan").positive();
   app.add_option("--seed", seed, "Of the pushes");
   app.add_option("--rate", rate_hz, "Cycles in a second of the plan").positive();
+  app.add_option("--walk", walk_s, "Until it has to be back, in the plan's time [s]").positive();
   app.add_option("--push", push.base_m, "Of the base, at most [m]").positive();
   app.add_option("--turn", push.base_rad, "Of the base, at most [rad]").positive();
   app.add_option("--joints", push.joint_rad, "Of each joint, at most [rad]").positive();
@@ -244,7 +246,7 @@ int main(int argc, char** argv) {
       .not_negative();
   app.add_option("PLAN", files, "Plan files (.g2o)").required();
   return locograph::run_benchmark(app, argc, argv, [&] {
-    locograph::Campaign campaign(seed, push, rate_hz);
+    locograph::Campaign campaign(seed, push, rate_hz, walk_s);
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     for (const std::string& file : files) rows.push_back(campaign.run(file, cases));
     std::cout << nlohmann::ordered_json({{"seed", seed}, {"plans", rows}}).dump(2) << '\n';

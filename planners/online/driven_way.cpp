@@ -12,6 +12,22 @@ DrivenWheels::DrivenWheels(const Robot& robot, const Stance& stance)
       state_(robot),
       closed_(robot) {}
 
+bool DrivenWheels::can_steer() const {
+  for (int w = 0; w < motion_.wheels(); ++w) {
+    if (!motion_.wheel(w).locked && motion_.steering_joint(w) < 0) return false;
+  }
+  return true;
+}
+
+void DrivenWheels::leave_out(Eigen::VectorXd& tangent) const {
+  const int base = robot_.base_tangent_size();
+  for (int w = 0; w < motion_.wheels(); ++w) {
+    for (const int joint : {motion_.steering_joint(w), motion_.wheel(w).wheel.joint}) {
+      if (joint >= 0) tangent[base + joint] = 0.0;
+    }
+  }
+}
+
 bool DrivenWheels::drive(std::vector<Eigen::VectorXd>& way) {
   for (std::size_t k = 1; k < way.size(); ++k) {
     if (!put_down(way[k])) return false;

@@ -23,6 +23,10 @@ class DrivenWheels {
   /// Robot and stance must outlive it. Throws Error as WheelMotion does.
   DrivenWheels(const Robot& robot, const Stance& stance);
 
+  /// Whether all wheels that roll can be steered.
+  bool can_steer() const;
+  /// A tangent without what steers and turns wheels.
+  void leave_out(Eigen::VectorXd& tangent) const;
   /// The wheels are as they are in the first configuration. Whether they can be put on the ground.
   bool drive(std::vector<Eigen::VectorXd>& way);
   /// The first configuration with its wheels steered along the way; false: it cannot be done.

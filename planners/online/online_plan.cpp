@@ -5,6 +5,8 @@
 #include <locograph/planners/plan/carried_wrenches.h>
 #include <locograph/planners/plan/slope_limits.h>
 #include <locograph/plugins/configuration/segment_parameter.h>
+#include <locograph/plugins/plan_tracking/edge_plan_tracking.h>
+#include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
 
 #include <algorithm>
 #include <cmath>
@@ -120,8 +122,19 @@ double OnlinePlan::time_s(int index) const {
 
 bool OnlinePlan::is_as_planned(int index) const {
   constexpr double kSame = 1e-9;  // m, rad
-  const Eigen::VectorXd& planned = planned_.configurations[static_cast<std::size_t>(index)];
-  return (configuration(index) - planned).lpNorm<Eigen::Infinity>() <= kSame;
+  const auto at = static_cast<std::size_t>(index);
+  const Eigen::VectorXd& planned = planned_.configurations[at];
+  const Eigen::Map<const Eigen::VectorXd> now = configuration(index);
+  const auto rolls = [&](Eigen::Index coordinate) {
+    const auto joint = coordinate - robot().base_configuration_size();
+    return std::ranges::any_of(plan_.stance_from[at]->wheels, [&](const auto& wheel) {
+      return !wheel.locked && wheel.wheel.joint == joint;
+    });
+  };
+  for (Eigen::Index c = 0; c < now.size(); ++c) {
+    if (std::abs(now[c] - planned[c]) > kSame && !rolls(c)) return false;
+  }
+  return true;
 }
 
 void OnlinePlan::follow_moved(int first, int last) {
@@ -251,6 +264,37 @@ void OnlinePlan::go_as_led(const PlanRange& range, int back) {
     planned_.configurations[to] = led.configurations[k];
     if (!planned_.slopes.empty()) planned_.slopes[to] = led.slopes[k];
     if (!planned_.wrenches.empty()) planned_.wrenches[to] = led.wrenches[k];
+  }
+}
+
+void OnlinePlan::move_planned(int first, std::span<const Eigen::VectorXd> by) {
+  ++revision_;
+  Eigen::VectorXd was_before, was, step(robot().tangent_size()), moved_step = step;
+  int i = first;
+  for (const Eigen::VectorXd& tangent : by) {
+    Eigen::VectorXd& planned = planned_.configurations[static_cast<std::size_t>(i)];
+    was_before.swap(was);
+    was = planned;
+    robot().integrate(was.data(), tangent.data(), planned.data());
+    if (i > first) {
+      const auto& before = planned_.configurations[static_cast<std::size_t>(i) - 1];
+      robot().difference(was_before.data(), was.data(), step.data());
+      robot().difference(before.data(), planned.data(), moved_step.data());
+    }
+    for (const int e : graph_.incident_edges(slot(i))) {
+      if (edge_is<EdgePlanTracking>(graph_, e)) {
+        Eigen::VectorXd& reference = graph_.edge<EdgePlanTracking>(EdgeId{e}).reference;
+        const Eigen::VectorXd tracked = reference;
+        robot().integrate(tracked.data(), tangent.data(), reference.data());
+      } else if (edge_is<EdgeVelocityTracking>(graph_, e)) {
+        auto& edge = graph_.edge<EdgeVelocityTracking>(EdgeId{e});
+        if (i > first && edge.vertices[1] == slot(i)) edge.step += moved_step - step;
+      }
+    }
+    // The rule of the curve gives how fast it passes there, unless the robot is at rest.
+    Eigen::VectorXd& slopes = graph_.vertex(VertexId<VertexConfiguration>{slot(i)}).slopes;
+    if (i > first && !slopes.isZero(0.0)) slopes.resize(0);
+    ++i;
   }
 }
 

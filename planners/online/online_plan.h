@@ -53,7 +53,8 @@ class OnlinePlan {
   bool is_fixed(int index) const { return graph_.vertex_record(slot(index)).fixed; }
   double time_s(int index) const;
 
-  /// Whether a configuration is where it was planned, to 1e-9 m and rad.
+  /// Whether a configuration is where it was planned, to 1e-9 m and rad, however far wheels that
+  /// roll have turned.
   bool is_as_planned(int index) const;
 
   /// Slopes are those of the plan as it came. Gives the configurations first … last that go with
@@ -71,6 +72,10 @@ class OnlinePlan {
   /// wrenches that go with them; those of the plan as it was count more and more until `back`. The
   /// two configurations after them are, too, but for their wrenches.
   void go_as_led(const PlanRange& range, int back);
+
+  /// On wheels: what is planned from `first` on, and tracked, is elsewhere from now on, by a
+  /// tangent for each configuration.
+  void move_planned(int first, std::span<const Eigen::VectorXd> by);
 
   /// How far a configuration is behind its place in the plan as it came, along its heading [m].
   double behind_m(int index) const;

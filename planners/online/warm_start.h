@@ -12,12 +12,14 @@
 /// before it, plus the drift from the plan that the step before had: steered wheels cannot return
 /// to the plan within one step.
 ///
-/// A robot that is elsewhere than its plan, by whatever pushed it, is led back: on wheels the
-/// window makes the steps that it made, from where the robot is; on legs see way_back.h.
+/// A robot that is elsewhere than its plan, by whatever pushed it, is led back: on wheels see
+/// drive_back.h, or, where that cannot be, the window makes the steps that it made, from where the
+/// robot is; on legs see way_back.h.
 ///
 /// An unfinished window is one beside that of the graph: not better yet, but worth another cycle.
 /// It is extended in the same way until a cycle loads it or drops it.
 
+#include <locograph/planners/online/drive_back.h>
 #include <locograph/planners/online/plan_wheels.h>
 #include <locograph/planners/online/way_back.h>
 
@@ -32,6 +34,7 @@ class WarmStart {
   explicit WarmStart(OnlinePlan& plan)
       : plan_(plan),
         on_legs_(plan),
+        on_wheels_(plan),
         step_(plan.robot().tangent_size()),
         unfinished_(plan.planned()) {
     made_ = planned_before_ = step_;
@@ -62,6 +65,7 @@ class WarmStart {
 
   OnlinePlan& plan_;
   WayBack on_legs_;
+  DriveBack on_wheels_;
   PlanWheels wheels_;
   Eigen::VectorXd step_, made_, planned_before_;
   std::vector<Eigen::VectorXd> unfinished_;  ///< by index in the plan

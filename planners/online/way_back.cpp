@@ -30,11 +30,9 @@ double height(const ContactParameter& contact, const RobotState& state) {
 
 }  // namespace
 
-/// How long it takes, so that it asks for little acceleration [s]: of 10 t^3 - 15 t^4 +
-/// 6 t^5 the second derivative is at most 5.8.
-double WayBack::least_time_back(const Eigen::VectorXd& off) const {
+double least_time_back(const Robot& robot, const Eigen::VectorXd& off) {
   constexpr double kAcceleration_m_s2 = 0.15, kTurn_m = 0.5, kJoint_m = 0.3;  // m for a radian
-  const int base = plan_.robot().base_tangent_size();
+  const int base = robot.base_tangent_size();
   double off_m = kJoint_m * off.tail(off.size() - base).lpNorm<Eigen::Infinity>();
   if (base > 0) {
     off_m = std::max({off_m, off.head<3>().norm(), kTurn_m * off.segment<3>(3).norm()});
@@ -223,7 +221,8 @@ void WayBack::begin(const Window& window, const Eigen::VectorXd& was) {
   const int executed = window.executed(), back = back_at(executed);
   Eigen::VectorXd off(robot.tangent_size());
   robot.difference(was.data(), plan_.configuration(executed).data(), off.data());
-  const double from_s = plan_.time_s(executed), least_s = std::min(kBack_s, least_time_back(off));
+  const double from_s = plan_.time_s(executed),
+               least_s = std::min(kBack_s, least_time_back(robot, off));
   const bool in_time = plan_.time_s(plan_.last()) + least_s <= ranges::kTime_s;
   if (plan_.time_s(back) - from_s < least_s && in_time) plan_.slow_down(executed, back, least_s);
   const double duration_s = std::min(kBack_s, plan_.time_s(back) - from_s);

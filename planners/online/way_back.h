@@ -23,6 +23,10 @@
 
 namespace locograph {
 
+/// How long a robot that is off by this tangent takes at least to come back, so that it asks for
+/// 0.15 m/s² at most [s]: of 10 t^3 - 15 t^4 + 6 t^5 the second derivative is at most 5.8.
+double least_time_back(const Robot& robot, const Eigen::VectorXd& off);
+
 class WayBack {
  public:
   /// The plan must outlive it.
@@ -38,7 +42,6 @@ class WayBack {
   void go_on(const Window& window);
 
  private:
-  double least_time_back(const Eigen::VectorXd& off) const;
   int back_at(int executed) const;
   int closes_next(int index) const;
   void set_contacts(int index, int beside);

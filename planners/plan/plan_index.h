@@ -25,10 +25,15 @@ struct PlanIndex {
 /// Without segments, which parameters say. slots: of all configurations, in the order of the plan.
 PlanIndex plan_index(const Graph& graph, const std::vector<int>& slots);
 
-/// Whether a vertex that is alive has this type.
+/// Whether a vertex or an edge that is alive has this type.
 template <class V>
 bool vertex_is(const Graph& graph, int slot) {
   return graph.vertex_pools()[graph.vertex_record(slot).pool]->type() == typeid(V);
+}
+
+template <class E>
+bool edge_is(const Graph& graph, int slot) {
+  return graph.edge_pools()[graph.edge_record(slot).pool]->type() == typeid(E);
 }
 
 }  // namespace locograph

@@ -1,4 +1,6 @@
 #include <locograph/planners/online/warm_start.h>
+#include <locograph/plugins/rolling/edge_rolling.h>
+#include <locograph/plugins/velocity_tracking/edge_velocity_tracking.h>
 
 #include "planners/online/drive_past_box.h"
 
@@ -90,6 +92,82 @@ TEST_F(Entering, AnUnfinishedWindowEndsWhereItIsDroppedOrExecuted) {
   window_.move_to(13);
   warm_start_.enter(window_);
   EXPECT_FALSE(warm_start_.has_unfinished());
+}
+
+/// Off by `off`, as measured; the whole way back is in the window.
+class DrivenBack : public Entering {
+ protected:
+  DrivenBack() : long_window_(plan_, {.steps = 20}) {}
+
+  void push(double off_m) {
+    long_window_.move_to(kPushed);
+    warm_start_.enter(long_window_);
+    const Eigen::VectorXd was = plan_.configuration(kPushed);
+    planned_ = plan_.planned();
+    Eigen::VectorXd now = was;
+    now[1] += off_m;
+    plan_.move_to(kPushed, now, kPushed);
+    warm_start_.lead_back(long_window_, was);
+  }
+  double was_left_m(int i) const {
+    return std::as_const(plan_).configuration(i)[1] - planned_[static_cast<std::size_t>(i)][1];
+  }
+
+  static constexpr int kPushed = 10;
+  Window long_window_;
+  std::vector<Eigen::VectorXd> planned_;
+};
+
+TEST_F(DrivenBack, ComesNearerEvenlyAndIsThere) {
+  push(0.04);
+  double before_m = 0.04;
+  for (int i = kPushed + 1; i < long_window_.end(); ++i) {
+    EXPECT_LE(was_left_m(i), before_m + 1e-9) << i;
+    EXPECT_GT(was_left_m(i), -1e-6) << i;
+    before_m = was_left_m(i);
+  }
+  EXPECT_GT(was_left_m(kPushed + 1), 0.03) << "it is not back at once";
+  EXPECT_LT(was_left_m(kPushed + 6), 1e-9);
+}
+
+TEST_F(DrivenBack, IsWhatIsPlannedAndTrackedFromThenOn) {
+  push(0.04);
+  const auto tracked = tracked_configurations(graph_, plan_.plan());
+  for (int i = kPushed; i < long_window_.end(); ++i) {
+    EXPECT_TRUE(plan_.is_as_planned(i)) << i;
+    EXPECT_NEAR(tracked[static_cast<std::size_t>(i)][1], plan_.configuration(i)[1], 1e-6) << i;
+  }
+  for (const EdgeVelocityTracking& edge : graph_.edges_of<EdgeVelocityTracking>()) {
+    const int to = plan_.index_of(edge.vertices[1]);
+    if (to <= kPushed || to >= long_window_.end()) continue;
+    Eigen::VectorXd step(edge.step.size());
+    plan_.robot().difference(plan_.configuration(to - 1).data(), plan_.configuration(to).data(),
+                             step.data());
+    EXPECT_LT((edge.step - step).head<6>().lpNorm<Eigen::Infinity>(), 1e-4) << to;
+  }
+}
+
+/// The wheels head along it, and turn as far as they roll.
+TEST_F(DrivenBack, WheelsRollAlongIt) {
+  push(0.04);
+  for (const EdgeRolling& edge : graph_.edges_of<EdgeRolling>()) {
+    const int to = plan_.index_of(edge.vertices[1]);
+    if (to <= kPushed + 1 || to >= long_window_.end()) continue;
+    ConfigurationState a = graph_.vertex(VertexId<VertexConfiguration>{plan_.slot(to - 1)})
+                               .make_derived(),
+                       b = a;
+    a.update(plan_.configuration(to - 1).data());
+    b.update(plan_.configuration(to).data());
+    Eigen::VectorXd slips(edge.weights.size());
+    edge.error(a, b, slips);
+    EXPECT_LT(slips.lpNorm<Eigen::Infinity>(), 3e-3) << to;
+  }
+}
+
+TEST_F(DrivenBack, StaysBesideThePlanByAsMuchWhereAConfigurationIsFixed) {
+  graph_.set_fixed(plan_.slot(kPushed + 3), true);
+  push(0.04);
+  EXPECT_NEAR(was_left_m(kPushed + 2), 0.04, 1e-6);
 }
 
 }  // namespace warm_start_test
