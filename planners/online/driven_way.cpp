@@ -12,11 +12,23 @@ DrivenWheels::DrivenWheels(const Robot& robot, const Stance& stance)
       state_(robot),
       closed_(robot) {}
 
-bool DrivenWheels::can_steer() const {
+bool DrivenWheels::can_steer(const Eigen::VectorXd& q) {
+  Eigen::VectorXd steered = q;
   for (int w = 0; w < motion_.wheels(); ++w) {
-    if (!motion_.wheel(w).locked && motion_.steering_joint(w) < 0) return false;
+    const StanceParameter::StandingWheel& standing = motion_.wheel(w);
+    if (standing.locked) continue;
+    if (motion_.steering_joint(w) < 0) return false;
+    if (!motion_.steer(steered, w, motion_.pose(q, w).heading(standing.normal))) return false;
   }
   return true;
+}
+
+std::vector<int> DrivenWheels::steering_joints() const {
+  std::vector<int> joints;
+  for (int w = 0; w < motion_.wheels(); ++w) {
+    if (motion_.steering_joint(w) >= 0) joints.push_back(motion_.steering_joint(w));
+  }
+  return joints;
 }
 
 void DrivenWheels::leave_out(Eigen::VectorXd& tangent) const {

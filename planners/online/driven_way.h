@@ -24,11 +24,15 @@ class DrivenWheels {
   DrivenWheels(const Robot& robot, const Stance& stance);
 
   /// Whether all wheels that roll can be steered.
-  bool can_steer() const;
+  bool can_steer(const Eigen::VectorXd& q);
+  /// Of wheels that have one.
+  std::vector<int> steering_joints() const;
   /// A tangent without what steers and turns wheels.
   void leave_out(Eigen::VectorXd& tangent) const;
   /// The wheels are as they are in the first configuration. Whether they can be put on the ground.
   bool drive(std::vector<Eigen::VectorXd>& way);
+  /// Turns the wheels of a configuration as far as they roll from another one.
+  void roll(const Eigen::VectorXd& from, Eigen::VectorXd& to) { motion_.roll(from, to); }
   /// The first configuration with its wheels steered along the way; false: it cannot be done.
   bool steer_along(const std::vector<Eigen::VectorXd>& way, Eigen::VectorXd& steered);
   /// The wheels are steered where the robot stands, by a share of what they are in the other

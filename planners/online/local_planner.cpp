@@ -237,6 +237,12 @@ bool LocalPlanner::move_window(int executed, const Eigen::VectorXd& measured) {
     warm_start_.lead_back(window_, was);
   }
   const bool slid = !changed_ && answer_.executed >= 0 && plan_.revision() == revision_;
+  if (plan_.forget_moved() || changed_) {  // what searches know of it does not hold any more
+    for (ProposalSchedule* schedule : {&proposals_, &fallbacks_}) {
+      schedule->give_up();
+      schedule->world_changed();
+    }
+  }
   revision_ = plan_.revision();
   solver_.compile(window_, slid);
   changed_ = false;

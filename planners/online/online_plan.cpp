@@ -269,9 +269,12 @@ void OnlinePlan::go_as_led(const PlanRange& range, int back) {
 
 void OnlinePlan::move_planned(int first, std::span<const Eigen::VectorXd> by) {
   ++revision_;
+  if (came_.empty()) came_ = planned_.configurations;
   Eigen::VectorXd was_before, was, step(robot().tangent_size()), moved_step = step;
+  double most_m = 0.0;
   int i = first;
   for (const Eigen::VectorXd& tangent : by) {
+    most_m = std::max(most_m, tangent.head<6>().lpNorm<Eigen::Infinity>());
     Eigen::VectorXd& planned = planned_.configurations[static_cast<std::size_t>(i)];
     was_before.swap(was);
     was = planned;
@@ -291,11 +294,16 @@ void OnlinePlan::move_planned(int first, std::span<const Eigen::VectorXd> by) {
         if (i > first && edge.vertices[1] == slot(i)) edge.step += moved_step - step;
       }
     }
-    // The rule of the curve gives how fast it passes there, unless the robot is at rest.
-    Eigen::VectorXd& slopes = graph_.vertex(VertexId<VertexConfiguration>{slot(i)}).slopes;
-    if (i > first && !slopes.isZero(0.0)) slopes.resize(0);
     ++i;
   }
+  moved_m_ += most_m;
+}
+
+bool OnlinePlan::forget_moved() {
+  constexpr double kMoved_m = 5e-3;
+  if (moved_m_ < kMoved_m) return false;
+  moved_m_ = 0.0;
+  return true;
 }
 
 double OnlinePlan::behind_m(int index) const {

@@ -35,8 +35,12 @@ class OnlinePlan {
   /// Whether the step from a configuration to the next one rolls on wheels.
   bool rolls(int index) const { return rolls_[static_cast<std::size_t>(index)]; }
 
-  /// Configurations as the plan came.
+  /// Configurations as the plan came, or as a way back to it leads.
   const std::vector<Eigen::VectorXd>& planned() const { return planned_.configurations; }
+  /// The same without ways back on wheels.
+  const std::vector<Eigen::VectorXd>& as_it_came() const {
+    return came_.empty() ? planned() : came_;
+  }
   /// One of them as the graph has it now.
   Eigen::Map<Eigen::VectorXd> configuration(int index);
   Eigen::Map<const Eigen::VectorXd> configuration(int index) const;
@@ -76,6 +80,8 @@ class OnlinePlan {
   /// On wheels: what is planned from `first` on, and tracked, is elsewhere from now on, by a
   /// tangent for each configuration.
   void move_planned(int first, std::span<const Eigen::VectorXd> by);
+  /// Whether that has moved it by 5 mm or mrad in all, since this was asked and was so.
+  bool forget_moved();
 
   /// How far a configuration is behind its place in the plan as it came, along its heading [m].
   double behind_m(int index) const;
@@ -107,9 +113,11 @@ class OnlinePlan {
   std::shared_ptr<const WorldParameter> world_;
   Bindings bindings_;
   Motion planned_;
-  std::vector<bool> rolls_;    ///< by configuration
-  std::vector<int> borne_at_;  ///< by slot
+  std::vector<Eigen::VectorXd> came_;  ///< empty: planned_
+  std::vector<bool> rolls_;            ///< by configuration
+  std::vector<int> borne_at_;          ///< by slot
   int revision_ = 0;
+  double moved_m_ = 0.0;  ///< see forget_moved()
 };
 
 }  // namespace locograph

@@ -35,13 +35,12 @@ void WarmStart::roll_on(int index, const Configuration& before, const Eigen::Vec
 
 void WarmStart::lead_back(const Window& window, const Eigen::VectorXd& was) {
   unfinished_end_ = 0;
-  if (!plan_.rolls(window.executed())) {
+  if (plan_.rolls(window.executed())) {
+    on_wheels_.lead(window, was);
+    roll_from(window, was);
+  } else {
     on_legs_.begin(window, was);
-    return;
   }
-  if (!on_wheels_.begin(window, was)) roll_from(window, was);
-  // How fast it passes goes with where it is, and what it comes from.
-  plan_.follow_moved(window.first(), window.last());
 }
 
 /// On wheels: the window makes the steps that it made, as long as it rolls.
@@ -58,6 +57,8 @@ void WarmStart::roll_from(const Window& window, const Eigen::VectorXd& was) {
     }
     was_before = was_here;
   }
+  // How fast it passes goes with where it is, and what it comes from.
+  plan_.follow_moved(window.first(), window.last());
 }
 
 void WarmStart::enter(const Window& window) {

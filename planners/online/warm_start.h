@@ -12,9 +12,9 @@
 /// before it, plus the drift from the plan that the step before had: steered wheels cannot return
 /// to the plan within one step.
 ///
-/// A robot that is elsewhere than its plan, by whatever pushed it, is led back: on wheels see
-/// drive_back.h, or, where that cannot be, the window makes the steps that it made, from where the
-/// robot is; on legs see way_back.h.
+/// A robot that is elsewhere than its plan, by whatever pushed it, is led back. On legs see
+/// way_back.h. On wheels the window makes the steps that it made, from where the robot is, and what
+/// it tracks leads back, see drive_back.h.
 ///
 /// An unfinished window is one beside that of the graph: not better yet, but worth another cycle.
 /// It is extended in the same way until a cycle loads it or drops it.

@@ -16,7 +16,7 @@ class AsPlanned {
   AsPlanned(const OnlinePlan& plan, int first, int last) : plan_(plan), first_(first) {
     for (int i = first; i <= last; ++i) {
       kept_.emplace_back(state(i));
-      state(i) = plan.planned()[static_cast<std::size_t>(i)];
+      state(i) = plan.as_it_came()[static_cast<std::size_t>(i)];
     }
   }
   ~AsPlanned() {
