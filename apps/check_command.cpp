@@ -7,6 +7,7 @@
 #include <locograph/apps/progress.h>
 #include <locograph/apps/record_json.h>
 #include <locograph/common/deadline.h>
+#include <locograph/common/ranges.h>
 
 #include <cmath>
 #include <limits>
@@ -136,7 +137,7 @@ Command add_check(OptionParser& app) {
   parser
       .add_option("--until", o.until_s,
                   "Time [s] until which the robot stands on where the plan ends")
-      .finite();
+      .between(0.0, ranges::kTime_s);
   add_threads_option(parser, o.threads);
   add_plugin_option(parser, o.plugins);
   parser.add_flag("--robustness", o.robustness,

@@ -408,6 +408,7 @@ Command add_refine(OptionParser& app) {
   parser
       .add_option("--rate", o.rate_hz, "Cycles in a second of the plan, one for each step at least")
       .positive()
+      .between(0.0, kMostRate_Hz)
       .show_default();
   parser.add_option("--deadline-ms", o.deadline_ms, "Time one cycle may take; 0: no limit")
       .not_negative()

@@ -37,7 +37,8 @@ void CheckOptions::validate() const {
   limit(base_angular_rad_s, "base_angular_rad_s");
   limit(joint_acceleration_rad_s2, "joint_acceleration_rad_s2");
   positive(effort_scale, "effort_scale");
-  if (until_s) check_option(std::isfinite(*until_s), "until_s", "a time");
+  if (until_s)
+    check_option(std::isfinite(*until_s) && *until_s >= 0.0, "until_s", "a time, 0 or later");
   not_negative(min_clearance_m, "min_clearance_m");
   not_negative(min_self_clearance_m, "min_self_clearance_m");
   check_option(min_balance_margin < 1.0 && std::isfinite(min_balance_margin), "min_balance_margin",

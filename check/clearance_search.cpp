@@ -180,8 +180,12 @@ double ClearanceSearch::path_bound(int step, const Sample& from, const Sample& t
       shapes.path_bound(from.world_from_link, to.world_from_link, fraction, channel.links);
   if (&channel != &channels_[0]) return robot;  // surfaces do not move, nor what may be touched
   const double from_s = time_s(step, from.fraction), to_s = time_s(step, to.fraction);
-  return robot + (one_obstacle_ ? obstacle_path_.bound(counted_->front(), from_s, to_s)
-                                : obstacle_path_.bound(from_s, to_s));
+  if (!counted_) return robot + obstacle_path_.bound(from_s, to_s);
+  double longest = 0.0;
+  for (const std::size_t o : *counted_) {
+    longest = std::max(longest, obstacle_path_.bound(o, from_s, to_s));
+  }
+  return robot + longest;
 }
 
 void ClearanceSearch::refine(int step, const JudgedStance* stance, const Sample& from,
@@ -227,7 +231,8 @@ void ClearanceSearch::run_step(int step, const JudgedStance* stance, const Sampl
     const Obstacle& obstacle = context_.world.obstacles[o];
     if (!obstacle.is_there(begin_s, end_s)) continue;
     const bool lasts = obstacle.appears_s <= begin_s && obstacle.vanishes_s >= end_s;
-    (lasts ? lasting : changing).push_back(o);
+    const bool by_itself = !lasts || (standing_ && !obstacle.motion.empty());
+    (by_itself ? changing : lasting).push_back(o);
   }
   if (!changing.empty()) counted_ = std::move(lasting);
   refine(step, stance, begin, end);
@@ -240,6 +245,7 @@ void ClearanceSearch::look_at_obstacle(int step, const JudgedStance* stance, std
   const Obstacle& one = context_.world.obstacles[obstacle];
   earliest_s_ = std::max(begin_s, one.appears_s);
   latest_s_ = std::min(end_s, one.vanishes_s);
+  if (standing_) latest_s_ = std::min(latest_s_, obstacle_path_.seen_s(obstacle, earliest_s_));
   counted_ = {obstacle};
   one_obstacle_ = true;
   const auto at = [&](double time_s) {

@@ -67,4 +67,10 @@ double ObstaclePath::bound(std::size_t obstacle, double from_s, double to_s) con
   return track == kAtRest ? 0.0 : tracks_[track].length_between(from_s, to_s);
 }
 
+double ObstaclePath::seen_s(std::size_t obstacle, double from_s) const {
+  if (track_of_[obstacle] == kAtRest) return from_s;
+  const Track& track = tracks_[track_of_[obstacle]];
+  return track.repeats ? from_s + track.time_s.back() : std::max(from_s, track.time_s.back());
+}
+
 }  // namespace locograph

@@ -22,6 +22,9 @@ class ObstaclePath {
   double bound(double from_s, double to_s) const;
   /// Of one obstacle, by its place in the list.
   double bound(std::size_t obstacle, double from_s, double to_s) const;
+  /// By then an obstacle that is there from a time on has been wherever it gets to: once round,
+  /// where it repeats its way.
+  double seen_s(std::size_t obstacle, double from_s) const;
   /// After so long, from any time that is not negative, every obstacle has been wherever it gets to
   /// from then on; 0: none moves or appears.
   double end_s() const { return end_s_; }

@@ -13,6 +13,10 @@ std::string text(const std::string& file, int line, const std::string& what,
   if (!message.empty()) message += ": ";
   message += what;
   if (!expected.empty()) message += ", expected " + expected;
+  // what() would end at one.
+  for (std::size_t at = 0; (at = message.find('\0', at)) != std::string::npos;) {
+    message.replace(at, 1, "\\x00");
+  }
   return message;
 }
 

@@ -35,9 +35,15 @@ std::optional<double> ChangingObstacles::free_after(const Motion& motion, double
   };
   for (double after_s = 0.0; after_s <= kWaits_s; after_s += kStep_s) {
     if (is_free(after_s)) return after_s;
-    if (!keep_away(all.front(), begin_s + after_s, kStillApart_m)) break;
+    waits_ = keep_away(all.front(), begin_s + after_s, kStillApart_m);
+    if (!waits_) break;
   }
   return {};
+}
+
+std::string ChangingObstacles::refusal() const {
+  if (!waits_) return "something meets the robot where it would wait";
+  return "the way is not free within " + std::to_string(static_cast<int>(kWaits_s)) + " s";
 }
 
 bool ChangingObstacles::keep_away(const std::vector<Eigen::Vector3d>& centres, double time_s,

@@ -13,6 +13,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace locograph {
@@ -35,11 +36,14 @@ class ChangingObstacles {
   /// which its own times are added, so that it keeps 2 cm away. nullopt: that is more than
   /// kWaits_s, or its first configuration does not stay free until then.
   std::optional<double> free_after(const Motion& motion, double begin_s);
+  /// Why the last free_after() gave none.
+  std::string refusal() const;
 
  private:
   const RobotParameter& robot_;
   std::vector<const Obstacle*> obstacles_;
   RobotState state_;
+  bool waits_ = true;  ///< where the robot would wait stayed free
 };
 
 }  // namespace locograph

@@ -138,10 +138,7 @@ ResumedPlan wait_for_free_drive(const Graph& stopped, const Motion& planned, con
   const double steers_s = steering_s(task, stands, steered);
   const double begin_s = whole.time_s.back();
   const auto after_s = obstacles.free_after(rest.motion, begin_s + steers_s);
-  if (!after_s) {
-    return refused("the way is not free within " + std::to_string(static_cast<int>(kWaits_s)) +
-                   " s");
-  }
+  if (!after_s) return refused(obstacles.refusal());
   whole.slopes.resize(whole.configurations.size());
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(robot.tangent_size());
   const auto add = [&](const Eigen::VectorXd& q, double time_s, const Eigen::VectorXd& slope) {

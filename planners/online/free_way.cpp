@@ -211,8 +211,7 @@ ResumedPlan wait_for_free_way(const Graph& stopped, const Motion& planned,
   const int most = later.most_steps();
   if (off && most < kFewestSteps) return refused("the robot is beside the way that was planned");
   const Judge judge(task.robot->robot, world);
-  std::string why =
-      "the way is not free within " + std::to_string(static_cast<int>(kWaits_s)) + " s";
+  std::string why;
   for (int steps = std::min(most, kFewestSteps);; steps = std::min(2 * steps, most)) {
     int slow = 0;
     MotionPlan rest = later.motion(steps, slow);
@@ -223,7 +222,10 @@ ResumedPlan wait_for_free_way(const Graph& stopped, const Motion& planned,
       std::ranges::move(back, moves.configurations.begin());
     }
     const auto after_s = obstacles.free_after(moves, executed.time_s.back());
-    if (!after_s) break;
+    if (!after_s) {
+      if (why.empty()) why = obstacles.refusal();
+      break;
+    }
     const int left = static_cast<int>(moves.configurations.size()) - 1;
     // What moves and bears the robot in the slow steps, and the edges for that.
     const auto assembled = [&] {

@@ -439,7 +439,6 @@ void put_before(const WalkReport& before, WalkReport& report) {
 
 void WalkOptions::validate() const {
   planner.validate();
-  constexpr double kMostRate_Hz = 1e5;
   check_option(rate_hz >= 0.0 && rate_hz <= kMostRate_Hz, "rate_hz",
                "0 (one cycle for each step) to 1e5");
   check_option(goal_tolerance_m >= 0.0, "goal_tolerance_m", "0 or more");

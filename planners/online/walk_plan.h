@@ -24,6 +24,8 @@
 
 namespace locograph {
 
+inline constexpr double kMostRate_Hz = 1e5;
+
 struct WalkOptions {
   LocalPlannerOptions planner = {};
   /// Cycles in a second of the plan: one for each step at least, and no more than that when 0.

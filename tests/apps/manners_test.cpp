@@ -52,8 +52,11 @@ TEST(Manners, AWholeNumberThatIsNoneIsAnsweredWithTheRange) {
   refused(plan + "--seed 1e30", "--seed: '1e30', expected a whole number (see");
   refused("posture go2 --contacts c.xml --seed 99999999999999999999",
           "expected a whole number from 0 to 18446744073709551615");
-  refused("check p.g2o --until nan", "--until: 'nan', expected a number (see");
-  refused("check p.g2o --until inf", "--until: 'inf', expected a number (see");
+  for (const std::string until : {"nan", "inf", "-1", "1e300"}) {
+    refused("check p.g2o --until " + until,
+            "--until: '" + until + "', expected a number from 0 to 1e+06 (see");
+  }
+  refused("refine p.g2o -o r.g2o --rate 2e5", "--rate: '2e5', expected a number from 0 to 100000");
 }
 
 TEST(Manners, ANameThatIsEmptyIsNone) {

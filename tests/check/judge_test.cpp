@@ -216,6 +216,35 @@ TEST(Judge, MeetsAWallThatAppearsWhereTheRobotStandsAndWaits) {
   EXPECT_TRUE(feasible(wall_at(4.0, 20.0, 20.1)));
 }
 
+/// Whoever stands for days is met by what repeats its way in its first round, or not at all:
+/// looking at each of them would take minutes.
+TEST(Judge, LooksAtWhatRepeatsItsWayOnceRoundWhereTheRobotStands) {
+  Motion motion = centauro().drive(2, 4.0, 12.0);
+  CheckOptions options;
+  options.until_s = 1e6;
+  const auto feasible = [&](double beside_m, double appears_s) {
+    Obstacle ball;
+    ball.name = "ball";
+    ball.shape = Obstacle::Shape::kSphere;
+    ball.size.setConstant(0.02);
+    ball.world_from_obstacle.translation() = Eigen::Vector3d(4.0, 30.0, 0.7);
+    KeyFrame there{1.0, ball.world_from_obstacle};
+    there.pose.translation() = Eigen::Vector3d(4.0, beside_m, 0.7);
+    ball.motion = {there};
+    ball.repeat_s = 7.0;
+    ball.appears_s = appears_s;
+    return check_with({ball, wall_at(-3.0, 0.0)}, motion, options).feasible;
+  };
+  EXPECT_FALSE(feasible(-30.0, 999990.0));
+  EXPECT_TRUE(feasible(10.0, 999990.0));
+  EXPECT_FALSE(feasible(-30.0, 20.0));
+  EXPECT_TRUE(feasible(10.0, 0.0));
+  EXPECT_TRUE(feasible(-30.0, 999999.9)) << "it has not come by then";
+  for (double& time : motion.time_s) time += 900000.0;
+  EXPECT_FALSE(feasible(0.0, 0.0));
+  EXPECT_TRUE(feasible(10.0, 899990.0));
+}
+
 TEST(Judge, DrivesOverAMappedFloorButNotThroughAMappedWall) {
   std::vector<Box> boxes(1);
   boxes[0].world_from_box.translation() << 1.0, 0.0, -0.025;
@@ -285,8 +314,10 @@ TEST(Judge, RefusesCallsThatMakeNoSense) {
   options.min_balance_margin = 1.0;
   refused(good, options);
   options = {};
-  options.until_s = kInfinity;
-  refused(good, options);
+  for (const double until_s : {kInfinity, -1.0}) {
+    options.until_s = until_s;
+    refused(good, options);
+  }
   options = {};
   options.threads = 0;
   refused(good, options);

@@ -11,6 +11,11 @@ TEST(Error, SaysWhereWhatAndWhatWasExpected) {
   EXPECT_EQ(error.line(), 12);
 }
 
+TEST(Error, IsToldWholeWhereWhatIsWrongHoldsANul) {
+  EXPECT_STREQ(Error("unknown tag 'a" + std::string(1, '\0') + "b'", "a tag").what(),
+               "unknown tag 'a\\x00b', expected a tag");
+}
+
 TEST(Error, LeavesOutWhatIsUnknown) {
   EXPECT_STREQ(Error("graph.g2o", 0, "holds no graph", "").what(), "graph.g2o: holds no graph");
   EXPECT_STREQ(Error("", 3, "bad", "").what(), "line 3: bad");

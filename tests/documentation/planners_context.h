@@ -652,6 +652,14 @@ struct Context : DriveContext {
 namespace online_warm_start_h {
 using Context = WindowContext;
 }
+namespace online_drive_back_h {
+struct Context : DriveContext {
+  OnlinePlan online_plan{graph};
+  Window window{online_plan, {.steps = 3}};
+  const Eigen::VectorXd was = online_plan.configuration(0);
+  Context() { window.move_to(0); }
+};
+}  // namespace online_drive_back_h
 namespace online_way_back_h {
 struct Context : DriveContext {
   OnlinePlan online_plan{graph};

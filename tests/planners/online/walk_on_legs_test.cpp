@@ -248,7 +248,19 @@ TEST_F(WalkOnLegs, WaitsUntilTheWayIsFree) {
   World world = judging_.world->world();
   world.obstacles = {ball};
   const auto stays = std::make_shared<const WorldSnapshot>(world);
-  EXPECT_FALSE(wait_for_free_way(stopped, planned(), segments, *task_, stays).success());
+  const ResumedPlan refused = wait_for_free_way(stopped, planned(), segments, *task_, stays);
+  EXPECT_FALSE(refused.success());
+  EXPECT_EQ(refused.reason, "the way is not free within 20 s");
+  // It stands where the ball is until that is gone.
+  Obstacle on_it = ball;
+  on_it.world_from_obstacle.translation() = planned().configurations[executed - 1].head<3>();
+  on_it.appears_s = planned().time_s[executed - 1] - 1.0;
+  on_it.vanishes_s = on_it.appears_s + 3.0;
+  world.obstacles = {on_it};
+  EXPECT_EQ(wait_for_free_way(stopped, planned(), segments, *task_,
+                              std::make_shared<const WorldSnapshot>(world))
+                .reason,
+            "something meets the robot where it would wait");
   EXPECT_FALSE(wait_for_free_way(stopped, planned(), segments, *task_, judging_.world).success());
 }
 
