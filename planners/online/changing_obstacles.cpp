@@ -27,9 +27,23 @@ std::optional<double> ChangingObstacles::free_after(const Motion& motion, double
   constexpr double kStep_s = 0.25, kApart_m = 0.02, kStillApart_m = 5e-3;
   std::vector<std::vector<Eigen::Vector3d>> all;
   for (const Eigen::VectorXd& q : motion.configurations) all.push_back(centres(q));
+  // Where something is there for less than a step, too.
+  std::vector<double> changes_s;
+  for (const Obstacle* obstacle : obstacles_) {
+    for (const double time_s : {obstacle->appears_s, obstacle->vanishes_s}) {
+      if (std::isfinite(time_s)) changes_s.push_back(time_s);
+    }
+  }
   const auto is_free = [&](double after_s) {
+    const auto at_s = [&](std::size_t i) { return begin_s + after_s + motion.time_s[i]; };
     for (std::size_t i = 0; i < all.size(); ++i) {
-      if (!keep_away(all[i], begin_s + after_s + motion.time_s[i], kApart_m)) return false;
+      if (!keep_away(all[i], at_s(i), kApart_m)) return false;
+      for (const double time_s : changes_s) {
+        if (i == 0 || time_s <= at_s(i - 1) || time_s >= at_s(i)) continue;
+        for (const std::size_t k : {i - 1, i}) {
+          if (!keep_away(all[k], time_s, kApart_m)) return false;
+        }
+      }
     }
     return true;
   };

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -198,6 +199,7 @@ void OnlinePlan::lift_out(int index) {
 
 void OnlinePlan::slow_down(int from, int to, double duration_s) {
   ++revision_;
+  moved_m_ = std::numeric_limits<double>::infinity();
   const int steps = to - from;
   std::vector<double> step_s, faster(static_cast<std::size_t>(steps) + 1);
   for (int i = from; i < to; ++i) step_s.push_back(time_s(i + 1) - time_s(i));
@@ -259,12 +261,16 @@ void OnlinePlan::go_as_led(const PlanRange& range, int back) {
   lead_wrenches(plan_, graph_,
                 {range.first, std::min(back, static_cast<int>(change - stance_from.begin()))});
   const Motion led = motion_of(graph_, plan_, range.first, moved);
+  double most_m = 0.0;
   for (int i = range.first; i <= moved; ++i) {
     const auto to = static_cast<std::size_t>(i), k = static_cast<std::size_t>(i - range.first);
+    const Eigen::VectorXd by = led.configurations[k] - planned_.configurations[to];
+    most_m = std::max(most_m, by.lpNorm<Eigen::Infinity>());
     planned_.configurations[to] = led.configurations[k];
     if (!planned_.slopes.empty()) planned_.slopes[to] = led.slopes[k];
     if (!planned_.wrenches.empty()) planned_.wrenches[to] = led.wrenches[k];
   }
+  moved_m_ += most_m;
 }
 
 void OnlinePlan::move_planned(int first, std::span<const Eigen::VectorXd> by) {

@@ -80,7 +80,7 @@ class OnlinePlan {
   /// On wheels: what is planned from `first` on, and tracked, is elsewhere from now on, by a
   /// tangent for each configuration.
   void move_planned(int first, std::span<const Eigen::VectorXd> by);
-  /// Whether that has moved it by 5 mm or mrad in all, since this was asked and was so.
+  /// Whether it has been slowed down, or moved by 5 mm or mrad in all, since this was so.
   bool forget_moved();
 
   /// How far a configuration is behind its place in the plan as it came, along its heading [m].

@@ -52,9 +52,9 @@ class Proposal {
                         const Termination& termination,
                         std::vector<Eigen::VectorXd>& candidate) = 0;
 
-  /// The world has changed, or the plan has been moved or slowed down: intermediate results about
-  /// it do not hold any more. A search that is unfinished goes on as it is, and hears of it
-  /// afterwards.
+  /// The world has changed, or the plan has been moved by some mm or slowed down: intermediate
+  /// results about it do not hold any more. A search that is unfinished goes on as it is, and hears
+  /// of it afterwards.
   virtual void world_changed() {}
 };
 

@@ -24,7 +24,7 @@
 
 namespace locograph {
 
-inline constexpr double kMostRate_Hz = 1e5;
+inline constexpr double kMostRate_Hz = 1e5;  ///< of WalkOptions::rate_hz
 
 struct WalkOptions {
   LocalPlannerOptions planner = {};

@@ -375,5 +375,22 @@ TEST(WaitForFreeDrive, LooksAtWhatMovesAsOftenAsThePlanDoes) {
   EXPECT_LT(off.lpNorm<Eigen::Infinity>(), 1e-4);
 }
 
+TEST(WaitForFreeDrive, LooksAtWhatIsThereForLessThanAStep) {
+  const auto task = std::make_shared<const Task>(task_of(centauro_drive()));
+  const Motion planned = plan_wheeled_drive(*task).motion;
+  Graph stopped = *drive_graph(*task, planned);
+  constexpr int kAt = 20, kThere = 32;
+  cut_plan(stopped, plan_of(stopped), kAt);
+  Obstacle flash = box("flash", {planned.configurations[kThere][0], 0.0, 0.7}, {0.3, 0.3, 0.3});
+  flash.appears_s = 0.5 * (planned.time_s[kThere] + planned.time_s[kThere + 1]);
+  flash.vanishes_s = flash.appears_s + 1e-3;
+  const auto world = std::make_shared<const WorldSnapshot>(world_of({flash}));
+  const ResumedPlan waited = wait_for_free_drive(stopped, planned, *task, world);
+  ASSERT_TRUE(waited.success()) << waited.reason;
+  EXPECT_GT(waited.waits_s, 0.0);
+  const Motion goes_on = motion_of(*waited.graph, plan_of(*waited.graph));
+  EXPECT_TRUE(check_step(task->robot->robot, goes_on, world->world()).feasible);
+}
+
 }  // namespace local_planner_test
 }  // namespace locograph
