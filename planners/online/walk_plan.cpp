@@ -34,6 +34,8 @@ constexpr int kMostVerifiedSteps = 12;
 /// Before the step after a measurement, at least: more than one iteration is needed until the
 /// forces on the way back balance.
 constexpr int kMeasuredCycles = 10;
+/// And, on wheels, as long as that step is not feasible: some tens of milliseconds.
+constexpr int kMoreCycles = 150;
 
 /// How many times as fast as another one a slope is, along it; up to twice, as on any ramp.
 double ratio(const Eigen::VectorXd& slope, const Eigen::VectorXd& along) {
@@ -142,6 +144,10 @@ class Walk {
     if (measured) cycles = std::max(cycles, kMeasuredCycles);
     CycleReport cycle = run_cycle(executed);
     for (; cycles > 1; --cycles) cycle = run_cycle(executed);
+    const int most = measured && rolls(executed) ? kMoreCycles : 0;
+    for (int more = 0; more < most && !cycle.next_feasible; ++more) {
+      cycle = run_cycle(executed);
+    }
     std::string refused;
     if (!cycle.next_feasible) {
       refused = cycle.reason;

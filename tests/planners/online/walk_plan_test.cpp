@@ -291,6 +291,34 @@ TEST(WalkPlan, PassesABoxWhereItIsMeasuredBesideItsWindowAtEachStep) {
   EXPECT_LT(report.goal_distance_m, 0.05);
 }
 
+/// Wheels that are turned off have to be turned back, and are steered as fast as edges let them:
+/// that takes more iterations than other steps have.
+TEST(WalkPlan, TakesMoreCyclesWhereTheNextStepIsNotFeasibleAfterAPush) {
+  if (test::kSanitized) GTEST_SKIP() << "takes long there";
+  constexpr int kPushed = 20;
+  Graph graph = drive();
+  const Plan plan = plan_of(graph);
+  const Robot& robot = *plan.robot->robot;
+  const World world = world_of({box_ahead()});
+  WalkOptions options = walk_options_for(plan);
+  options.verify = [&](const Motion& step) { return check_step(plan.robot->robot, step, world); };
+  PlanWalk walk(
+      graph, [](int executed) { return executed == 0 ? seeing({box_ahead()}) : nullptr; }, options);
+  while (walk.executed() < kPushed) ASSERT_TRUE(walk.step()) << walk.report().reason;
+  const Eigen::VectorXd was = walk.motion().configurations[kPushed];
+  Eigen::VectorXd off = Eigen::VectorXd::Zero(robot.tangent_size()), q = was;
+  off[1] = 0.03;
+  WheelMotion wheels(robot, plan.stance_from[kPushed]->stance);
+  for (int w = 0; w < wheels.wheels(); ++w) {
+    off[robot.base_tangent_size() + wheels.steering_joint(w)] = w % 2 == 0 ? 0.05 : -0.05;
+  }
+  robot.integrate(was.data(), off.data(), q.data());
+  walk.measure(q);
+  while (walk.step()) {
+  }
+  EXPECT_TRUE(walk.report().success()) << walk.report().reason;
+}
+
 TEST(WalkPlan, EndsWhereSlowStepsWouldTakeLongerThanAFileMaySay) {
   Graph graph = planned_drive(centauro_drive(0.8, 0.0, 11));
   start_at(graph, ranges::kTime_s - 1.5 * end_s(graph));
