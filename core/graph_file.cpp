@@ -339,6 +339,8 @@ class GraphReader {
 Graph read_graph_text(std::string_view text, const std::string& name,
                       const std::filesystem::path& folder, const TypeRegistry& types,
                       const ReadOptions& options, ReadReport* report) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // as some editors write it
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   ReadReport local;
   ReadReport& used = report == nullptr ? local : *report;
   used = {};

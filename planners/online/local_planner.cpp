@@ -498,7 +498,7 @@ void LocalPlanner::explain(CycleReport& last) const {
   last.violation = solver_.describe(incumbent_.best().quality.first);
   const int slot = plan_.slot(last.violated_at);
   last.reason = violated_text(*last.violation, plan_.graph().vertex_record(slot).id);
-  if (last.cut_short) last.reason += "; the search for another window was not over";
+  if (last.cut_short) last.reason += std::string("; ") + end_text(last.status);
 }
 
 }  // namespace locograph

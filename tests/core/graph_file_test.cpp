@@ -64,6 +64,10 @@ TEST(GraphFile, IsReadWithCommentsBlanksAndLinesInAnyOrder) {
   EXPECT_TRUE(graph.vertex_record(graph.slot_of(7)).fixed);
 }
 
+TEST(GraphFile, MayBeginWithAByteOrderMark) {
+  EXPECT_EQ(read("\xEF\xBB\xBFVERTEX_XY 4 1 2\n").vertex_count(), 1);
+}
+
 TEST(GraphFile, RemembersTheLineOfEveryVertexAndEdge) {
   const Graph graph = read("\nVERTEX_XY 4 1 2\n\nEDGE_POINTXY 4 5 0 0 1 0 1\nVERTEX_XY 5 1 2\n");
   EXPECT_EQ(graph.vertex_record(graph.slot_of(4)).line, 2);
