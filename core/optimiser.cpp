@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace locograph {
 namespace {
@@ -163,10 +164,14 @@ bool Optimiser::finish(Reason reason) {
 
 /// Ends because refused steps have become too short to matter. That is convergence where already
 /// the first of them, which was to lower the cost by `promised`, mattered to nobody; a gradient
-/// that is one lowers the cost before the step vanishes.
+/// that is one lowers the cost before the step vanishes. What is below the rounding of the cost
+/// that the run began with does not matter either: near nothing it is a large fraction of what is
+/// left.
 bool Optimiser::finish_refused(Reason converged, double promised) {
   const double fraction = promised / cost_.robust;
-  if (!(fraction > std::max(options_.gain, kPromise))) return finish(converged);
+  const double rounding = std::numeric_limits<double>::epsilon() * result_.initial.robust;
+  const bool matters = fraction > std::max(options_.gain, kPromise) && promised > rounding;
+  if (!matters) return finish(converged);
   result_.promised_decrease = fraction;
   return finish(Reason::kNoProgress);
 }
