@@ -38,10 +38,13 @@ std::optional<double> ChangingObstacles::free_after(const Motion& motion, double
     const auto at_s = [&](std::size_t i) { return begin_s + after_s + motion.time_s[i]; };
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (!keep_away(all[i], at_s(i), kApart_m)) return false;
+    }
+    for (std::size_t i = 1; i < all.size(); ++i) {
       for (const double time_s : changes_s) {
-        if (i == 0 || time_s <= at_s(i - 1) || time_s >= at_s(i)) continue;
-        for (const std::size_t k : {i - 1, i}) {
-          if (!keep_away(all[k], time_s, kApart_m)) return false;
+        const bool in_step = at_s(i - 1) < time_s && time_s < at_s(i);
+        if (in_step &&
+            !(keep_away(all[i - 1], time_s, kApart_m) && keep_away(all[i], time_s, kApart_m))) {
+          return false;
         }
       }
     }

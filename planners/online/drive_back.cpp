@@ -9,8 +9,6 @@
 namespace locograph {
 namespace {
 
-constexpr double kTurn_m = 0.5, kJoint_m = 0.3;  // for a radian
-
 double moved_m(const Eigen::VectorXd& step) {
   return step.head<3>().norm() + kTurn_m * step.segment<3>(3).norm();
 }

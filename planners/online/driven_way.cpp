@@ -10,7 +10,13 @@ DrivenWheels::DrivenWheels(const Robot& robot, const Stance& stance)
       contacts_(stance.contacts),
       motion_(robot, stance),
       state_(robot),
-      closed_(robot) {}
+      closed_(robot) {
+  for (int w = 0; w < motion_.wheels(); ++w) {
+    const int steering = motion_.steering_joint(w), turning = motion_.wheel(w).wheel.joint;
+    if (steering >= 0) steering_joints_.push_back(steering);
+    if (turning >= 0) turning_joints_.push_back(turning);
+  }
+}
 
 bool DrivenWheels::can_steer(const Eigen::VectorXd& q) {
   Eigen::VectorXd steered = q;
@@ -23,21 +29,10 @@ bool DrivenWheels::can_steer(const Eigen::VectorXd& q) {
   return true;
 }
 
-std::vector<int> DrivenWheels::steering_joints() const {
-  std::vector<int> joints;
-  for (int w = 0; w < motion_.wheels(); ++w) {
-    if (motion_.steering_joint(w) >= 0) joints.push_back(motion_.steering_joint(w));
-  }
-  return joints;
-}
-
 void DrivenWheels::leave_out(Eigen::VectorXd& tangent) const {
   const int base = robot_.base_tangent_size();
-  for (int w = 0; w < motion_.wheels(); ++w) {
-    for (const int joint : {motion_.steering_joint(w), motion_.wheel(w).wheel.joint}) {
-      if (joint >= 0) tangent[base + joint] = 0.0;
-    }
-  }
+  for (const int joint : steering_joints_) tangent[base + joint] = 0.0;
+  for (const int joint : turning_joints_) tangent[base + joint] = 0.0;
 }
 
 bool DrivenWheels::drive(std::vector<Eigen::VectorXd>& way) {
@@ -72,9 +67,7 @@ bool DrivenWheels::steer_along(const std::vector<Eigen::VectorXd>& way, Eigen::V
 bool DrivenWheels::steer_standing(const Eigen::VectorXd& stands, const Eigen::VectorXd& steered,
                                   double share, Eigen::VectorXd& q) {
   q = stands;
-  for (int w = 0; w < motion_.wheels(); ++w) {
-    const int joint = motion_.steering_joint(w);
-    if (joint < 0) continue;
+  for (const int joint : steering_joints_) {
     const int at = robot_.base_configuration_size() + joint;
     q[at] += share * (steered[at] - stands[at]);
   }
@@ -94,9 +87,7 @@ bool DrivenWheels::steer_standing(const Eigen::VectorXd& stands, const Eigen::Ve
 
 double DrivenWheels::largest_turn(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const {
   double largest_rad = 0.0;
-  for (int w = 0; w < motion_.wheels(); ++w) {
-    const int joint = motion_.steering_joint(w);
-    if (joint < 0) continue;
+  for (const int joint : steering_joints_) {
     const int at = robot_.base_configuration_size() + joint;
     largest_rad = std::max(largest_rad, std::abs(to[at] - from[at]));
   }
@@ -106,9 +97,7 @@ double DrivenWheels::largest_turn(const Eigen::VectorXd& from, const Eigen::Vect
 void DrivenWheels::steer_other_way(const std::vector<Eigen::VectorXd>& way,
                                    Eigen::VectorXd& steered) const {
   constexpr double kHalfRound_rad = 2.0;  // in a step: more than wheels are steered while they roll
-  for (int w = 0; w < motion_.wheels(); ++w) {
-    const int joint = motion_.steering_joint(w);
-    if (joint < 0) continue;
+  for (const int joint : steering_joints_) {
     const int at = robot_.base_configuration_size() + joint;
     const auto turned = std::ranges::adjacent_find(way, [at](const auto& q, const auto& next) {
       return std::abs(next[at] - q[at]) > kHalfRound_rad;
@@ -129,11 +118,8 @@ double DrivenWheels::longest_way(const Eigen::VectorXd& from, const Eigen::Vecto
 
 void DrivenWheels::keep(const Eigen::VectorXd& from, Eigen::VectorXd& to) const {
   const int base = robot_.base_configuration_size();
-  for (int w = 0; w < motion_.wheels(); ++w) {
-    for (const int joint : {motion_.steering_joint(w), motion_.wheel(w).wheel.joint}) {
-      if (joint >= 0) to[base + joint] = from[base + joint];
-    }
-  }
+  for (const int joint : steering_joints_) to[base + joint] = from[base + joint];
+  for (const int joint : turning_joints_) to[base + joint] = from[base + joint];
 }
 
 /// Steering axes are not quite upright: some times over.

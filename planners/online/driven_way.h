@@ -26,7 +26,7 @@ class DrivenWheels {
   /// Whether all wheels that roll can be steered.
   bool can_steer(const Eigen::VectorXd& q);
   /// Of wheels that have one.
-  std::vector<int> steering_joints() const;
+  const std::vector<int>& steering_joints() const { return steering_joints_; }
   /// A tangent without what steers and turns wheels.
   void leave_out(Eigen::VectorXd& tangent) const;
   /// The wheels are as they are in the first configuration. Whether they can be put on the ground.
@@ -57,6 +57,7 @@ class DrivenWheels {
   const Robot& robot_;
   const std::vector<Contact>& contacts_;
   WheelMotion motion_;
+  std::vector<int> steering_joints_, turning_joints_;
   RobotState state_;
   ContactProjection closed_;
 };

@@ -83,7 +83,7 @@ class OnlinePlan {
   /// Whether it has been slowed down, or moved by 5 mm or mrad in all, since this was so.
   bool forget_moved();
 
-  /// How far a configuration is behind its place in the plan as it came, along its heading [m].
+  /// How far a configuration is behind where it is planned, along its heading [m].
   double behind_m(int index) const;
 
   int slot(int index) const { return plan_.slots[static_cast<std::size_t>(index)]; }

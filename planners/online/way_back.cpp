@@ -31,7 +31,7 @@ double height(const ContactParameter& contact, const RobotState& state) {
 }  // namespace
 
 double least_time_back(const Robot& robot, const Eigen::VectorXd& off) {
-  constexpr double kAcceleration_m_s2 = 0.15, kTurn_m = 0.5, kJoint_m = 0.3;  // m for a radian
+  constexpr double kAcceleration_m_s2 = 0.15;
   const int base = robot.base_tangent_size();
   double off_m = kJoint_m * off.tail(off.size() - base).lpNorm<Eigen::Infinity>();
   if (base > 0) {

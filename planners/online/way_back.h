@@ -23,6 +23,9 @@
 
 namespace locograph {
 
+/// What a radian of the base and of a joint counts as, where ways are compared [m].
+inline constexpr double kTurn_m = 0.5, kJoint_m = 0.3;
+
 /// How long a robot that is off by this tangent takes at least to come back, so that it asks for
 /// 0.15 m/s² at most [s]: of 10 t^3 - 15 t^4 + 6 t^5 the second derivative is at most 5.8.
 double least_time_back(const Robot& robot, const Eigen::VectorXd& off);

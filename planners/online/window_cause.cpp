@@ -56,14 +56,13 @@ std::string nearest_thing(const WorldDistance& world, const Eigen::Vector3d& poi
 /// The obstacle that a violated row is about; empty where it is about something else.
 std::string obstacle_of(const OnlinePlan& plan, const ConstraintViolation& violation, int at) {
   const Graph& graph = plan.graph();
-  const std::type_index type =
-      graph.edge_pools()[graph.edge_record(violation.edge.slot).pool]->type();
-  if (type != typeid(EdgeObstacleDistance) && type != typeid(EdgeSweptObstacleDistance)) return "";
+  const int edge = violation.edge.slot;
+  const bool on_its_way = edge_is<EdgeSweptObstacleDistance>(graph, edge);
+  if (!on_its_way && !edge_is<EdgeObstacleDistance>(graph, edge)) return "";
   RobotState state(plan.robot());
   state.update(graph.state(plan.slot(at)));
   const CollisionSphere& sphere =
       plan.plan().robot->spheres[static_cast<std::size_t>(violation.row)];
-  const bool on_its_way = type == typeid(EdgeSweptObstacleDistance);
   return nearest_thing(plan.world().distance(), state.world_from_link(sphere.link) * sphere.center,
                        plan.time_s(on_its_way ? at - 1 : at), plan.time_s(at));
 }

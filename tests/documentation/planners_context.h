@@ -661,12 +661,8 @@ struct Context : DriveContext {
 };
 }  // namespace online_drive_back_h
 namespace online_way_back_h {
-struct Context : DriveContext {
-  OnlinePlan online_plan{graph};
-  Window window{online_plan, {.steps = 3}};
-  const Eigen::VectorXd was = online_plan.configuration(0);
+struct Context : online_drive_back_h::Context {
   const int executed = 1, entered = 4;
-  Context() { window.move_to(0); }
 };
 }  // namespace online_way_back_h
 namespace online_led_wrenches_h {

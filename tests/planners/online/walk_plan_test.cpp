@@ -33,6 +33,16 @@ WalkReport walk_in(Graph& graph, const Surroundings& surroundings, int horizon =
       graph, [&world](int executed) { return executed == 0 ? world : nullptr; }, options);
 }
 
+/// To the left of a configuration, and turned.
+Eigen::VectorXd beside(const Robot& robot, const Eigen::VectorXd& q, double left_m,
+                       double turned_rad) {
+  Eigen::VectorXd off = Eigen::VectorXd::Zero(robot.tangent_size()), pushed(q.size());
+  off[1] = left_m;
+  off[5] = turned_rad;
+  robot.integrate(q.data(), off.data(), pushed.data());
+  return pushed;
+}
+
 Obstacle wall_ahead() { return box("wall", {2.5, 0.0, 0.5}, {0.2, 8.0, 1.0}); }
 
 std::shared_ptr<const octomap::OcTree> map_of(const Obstacle& obstacle) {
@@ -196,10 +206,7 @@ TEST(WalkPlan, LeadsBackADriveThatIsOffItsWay) {
   options.verify = [&](const Motion& step) { return check_step(robot, step, nothing); };
   const int pushed = 10;
   PlanWalk walk(graph, {}, options, pushed);
-  Eigen::VectorXd off = Eigen::VectorXd::Zero(robot->tangent_size()), q(planned[pushed].size());
-  off[1] = 0.04;
-  off[5] = 0.03;
-  robot->integrate(planned[pushed].data(), off.data(), q.data());
+  const Eigen::VectorXd q = beside(*robot, planned[pushed], 0.04, 0.03);
   walk.measure(q);
   while (walk.step()) {
   }
@@ -208,6 +215,7 @@ TEST(WalkPlan, LeadsBackADriveThatIsOffItsWay) {
   const std::vector<Eigen::VectorXd> now = configurations(graph);
   EXPECT_EQ(now[pushed], q) << "the robot is where it is";
   constexpr int kBack = 7;  // steps, of 8 cm each
+  Eigen::VectorXd off(robot->tangent_size());
   for (std::size_t i = pushed + kBack; i < now.size(); ++i) {
     robot->difference(planned[i].data(), now[i].data(), off.data());
     EXPECT_LT(off.head<6>().lpNorm<Eigen::Infinity>(), 4e-3) << i;
@@ -226,18 +234,14 @@ TEST(WalkPlan, ArrivesWhereItIsOffItsWayJustBeforeTheGoal) {
   options.verify = [&](const Motion& step) { return check_step(plan.robot->robot, step, nothing); };
   for (int at = plan.slots.size() - 4; at + 1 < static_cast<int>(plan.slots.size()); ++at) {
     Graph graph = drive();
-    Eigen::VectorXd off = Eigen::VectorXd::Zero(robot.tangent_size());
-    off[1] = 0.02;
-    off[5] = 0.01;
-    Eigen::VectorXd q = configurations(planned)[static_cast<std::size_t>(at)];
-    const Eigen::VectorXd was = q;
-    robot.integrate(was.data(), off.data(), q.data());
+    constexpr double kOff_m = 0.02;
     PlanWalk walk(graph, {}, options, at);
-    walk.measure(q);
+    const Eigen::VectorXd was = configurations(planned)[static_cast<std::size_t>(at)];
+    walk.measure(beside(robot, was, kOff_m, 0.01));
     while (walk.step()) {
     }
     EXPECT_TRUE(walk.report().success()) << at << ": " << walk.report().reason;
-    EXPECT_LE(walk.report().goal_distance_m, off.head<3>().norm()) << at;
+    EXPECT_LE(walk.report().goal_distance_m, kOff_m) << at;
   }
 }
 
@@ -277,14 +281,9 @@ TEST(WalkPlan, PassesABoxWhereItIsMeasuredBesideItsWindowAtEachStep) {
       graph, [](int executed) { return executed == 0 ? seeing({box_ahead()}) : nullptr; }, options);
   double sign = 1.0;
   while (walk.step()) {
-    Eigen::VectorXd q = walk.motion().configurations[static_cast<std::size_t>(walk.executed())];
-    Eigen::VectorXd off = Eigen::VectorXd::Zero(robot->tangent_size());
-    off[1] = 0.01 * sign;
-    off[5] = 0.005 * sign;
+    const auto executed = static_cast<std::size_t>(walk.executed());
+    walk.measure(beside(*robot, walk.motion().configurations[executed], 0.01 * sign, 0.005 * sign));
     sign = -sign;
-    const Eigen::VectorXd is = q;
-    robot->integrate(is.data(), off.data(), q.data());
-    walk.measure(q);
   }
   const WalkReport report = walk.report();
   EXPECT_TRUE(report.success()) << report.reason;
@@ -306,13 +305,11 @@ TEST(WalkPlan, TakesMoreCyclesWhereTheNextStepIsNotFeasibleAfterAPush) {
       graph, [](int executed) { return executed == 0 ? seeing({box_ahead()}) : nullptr; }, options);
   while (walk.executed() < kPushed) ASSERT_TRUE(walk.step()) << walk.report().reason;
   const Eigen::VectorXd was = walk.motion().configurations[kPushed];
-  Eigen::VectorXd off = Eigen::VectorXd::Zero(robot.tangent_size()), q = was;
-  off[1] = 0.03;
+  Eigen::VectorXd q = beside(robot, was, 0.03, 0.0);
   WheelMotion wheels(robot, plan.stance_from[kPushed]->stance);
   for (int w = 0; w < wheels.wheels(); ++w) {
-    off[robot.base_tangent_size() + wheels.steering_joint(w)] = w % 2 == 0 ? 0.05 : -0.05;
+    q[robot.base_configuration_size() + wheels.steering_joint(w)] += w % 2 == 0 ? 0.05 : -0.05;
   }
-  robot.integrate(was.data(), off.data(), q.data());
   walk.measure(q);
   while (walk.step()) {
   }
